@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tegotae {
+
+using Vec3 = Eigen::Vector3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+/// Rigid pose X_WB: maps coordinates in frame B to frame W, p_W = q * p_B + p. Lengths in m, `q` a unit quaternion.
+struct Pose {
+  Quat q = Quat::Identity();
+  Vec3 p = Vec3::Zero();
+
+  /// The point `p_B` (m, frame B) expressed in W.
+  Vec3 operator*(const Vec3& p_B) const { return q * p_B + p; }
+  /// X_WC = X_WB * X_BC.
+  Pose operator*(const Pose& X_BC) const { return {(q * X_BC.q).normalized(), q * X_BC.p + p}; }
+  Pose inverse() const {
+    const Quat qi = q.conjugate();
+    return {qi, -(qi * p)};
+  }
+};
+
+/// Velocity of a body: `v` (m/s) of a stated point of it, `w` angular (rad/s); both expressed in the world.
+struct Twist {
+  Vec3 v = Vec3::Zero();
+  Vec3 w = Vec3::Zero();
+};
+
+/// Force (N) and torque (N·m) about a stated point; both expressed in the world.
+struct Wrench {
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+};
+
+/// A small rigid displacement: `dp` (m) of a stated center, `dr` the rotation vector (rad) about that center, in W.
+struct Displacement {
+  Vec3 dp = Vec3::Zero();
+  Vec3 dr = Vec3::Zero();
+};
+
+/// Rotation vector (rad, angle in [0, π]) of `q`.
+Vec3 rotation_vector(const Quat& q);
+/// Unit quaternion of the rotation vector `r` (rad).
+Quat rotation(const Vec3& r);
+
+/// `X` after the displacement `d` of the body point `center_B` (m, body frame): the center moves by `d.dp` and the body
+/// turns by `d.dr` about it.
+Pose displaced(const Pose& X, const Vec3& center_B, const Displacement& d);
+/// The displacement of `center_B` that takes `from` to `to`: displaced(from, center_B, d) == to up to rounding.
+Displacement displacement(const Pose& from, const Pose& to, const Vec3& center_B);
+/// `d` scaled by `s`; the path s -> displaced(X, c, s·d), s in [0, 1], has a linear center and constant angular rate.
+inline Displacement operator*(double s, const Displacement& d) { return {s * d.dp, s * d.dr}; }
+
+}  // namespace tegotae

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "tegotae/coupling/coupling.hpp"
+#include "tegotae/sim/scene.hpp"
+
+namespace tegotae {
+
+/// How the resolver's programme of a tick ended.
+enum class ResolveStatus : std::uint8_t { not_needed, solved, infeasible, stalled };
+
+/// What one tick of the contact loop did.
+struct TickReport {
+  std::vector<Pose> pieces;  ///< the free poses that X went through, in order; the last one is X (never empty)
+  ProxyState proxy;          ///< X, its velocity, and whether it touches
+  int contacts = 0;          ///< feature pairs with a gap of at most l_min
+  int limits = 0;            ///< feature pairs that limited the motion, contacts included
+  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach
+  int candidate_parts = 0;   ///< fixed parts that passed the broad phase
+  int resolves = 0;          ///< programmes solved
+  int iterations = 0;        ///< pivots of all programmes
+  ResolveStatus status = ResolveStatus::not_needed;
+  double fraction = 1;       ///< part of the wanted motion made, in [0, 1]
+  bool overflow = false;     ///< a capacity was exceeded; the motion is still free
+};
+
+/// The contact loop: follows the pen with the held part so that no two parts ever intersect.
+class HapticLoop {
+ public:
+  /// Builds everything a tick needs. Throws Error when the scene cannot be held: not exactly one held part, an unusable
+  /// setting, an unknown resolver, or parts that intersect at the start (the message names the pair and the number of
+  /// intersecting triangle pairs).
+  explicit HapticLoop(const Scene& scene);
+  ~HapticLoop();
+  HapticLoop(const HapticLoop&) = delete;
+  HapticLoop& operator=(const HapticLoop&) = delete;
+
+  /// One tick: `Y` is where the pen wants the held part's file frame, `dt` the time since the last tick (s). Never
+  /// throws; a pose that is not finite is ignored (X stays). The report is valid until the next call.
+  const TickReport& step(const Pose& Y, double dt) noexcept;
+
+  const TickReport& report() const;
+  const Vec3& center() const;             ///< center of mass of the held part, m, file frame
+  const ContactSettings& contact() const;  ///< the settings in use, nothing left open
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tegotae/core/pose.hpp"
+#include "tegotae/coupling/coupling.hpp"
+#include "tegotae/mesh/triangle_mesh.hpp"
+
+namespace tegotae {
+
+/// One rigid part. Parts may share a mesh.
+struct Part {
+  std::string name;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< welded (load_mesh does it), file frame, m
+  Pose pose;                                 ///< X_WF of the file frame in the world; of the held part, where it starts
+  bool held = false;                         ///< exactly one part of a scene is held
+};
+
+/// Settings of the contact loop. A NaN stands for "from the scene": HapticLoop::contact() tells what was chosen.
+struct ContactSettings {
+  double l_min;  ///< gap (m) that contacts keep; at most half the radial clearance of the tightest fit
+  double l_0;    ///< back-off length (m) after an intersection
+  std::string resolver = "lp";
+  double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation
+  ContactSettings();
+};
+
+/// The parts of a mock-up and the settings of its loops.
+struct Scene {
+  std::vector<Part> parts;
+  ContactSettings contact;
+  CouplingSettings coupling;
+};
+
+}  // namespace tegotae

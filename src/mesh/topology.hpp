@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tegotae/mesh/triangle_mesh.hpp"
+
+namespace tegotae {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// How the two faces of an edge meet, seen from outside.
+enum class EdgeKind : std::uint8_t {
+  convex,       ///< they bend away from the viewer
+  flat,         ///< coplanar within kFlatAngle
+  concave,      ///< they bend towards the viewer
+  boundary,     ///< one face only
+  non_manifold  ///< more than two faces, or two that turn against each other
+};
+
+/// Half-edge adjacency of a welded mesh. Half-edge h = 3 f + k runs from triangles[f][k] to triangles[f][(k + 1) % 3].
+struct Topology {
+  struct Edge {
+    std::array<std::uint32_t, 2> v;  ///< end vertices; the half-edge of face f[0] runs from v[0] to v[1]
+    std::array<std::uint32_t, 2> f;  ///< faces (f[1] is kNone at a boundary; a non-manifold edge keeps its first two)
+    EdgeKind kind;
+  };
+
+  std::vector<std::uint32_t> twin;                        ///< 3 F: opposite half-edge, kNone where there is no one
+  std::vector<Edge> edges;                                ///< E
+  std::vector<std::array<std::uint32_t, 3>> face_edges;   ///< F: edge of half-edge 3 f + k
+  std::vector<Vec3> face_normals;                         ///< F: unit, file frame; zero for a degenerate face
+  std::vector<std::uint32_t> vertex_face_begin;           ///< V + 1: offsets into vertex_faces
+  std::vector<std::uint32_t> vertex_faces;                ///< faces around each vertex
+  std::vector<std::uint32_t> vertex_edge_begin;           ///< V + 1: offsets into vertex_edges
+  std::vector<std::uint32_t> vertex_edges;                ///< edges around each vertex
+  std::vector<std::uint8_t> vertex_flat;                  ///< V: all faces around the vertex coplanar, none missing
+};
+
+/// Adjacency of `mesh`, which must be welded. Works for any surface; what is not manifold is marked.
+Topology build_topology(const TriangleMesh& mesh);
+
+}  // namespace tegotae
