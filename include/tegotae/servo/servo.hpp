@@ -54,7 +54,7 @@ class Servo {
 
   /// What the system granted to the thread of the last start().
   const RealtimeReport& realtime() const noexcept;
-  /// The thread publishes them in the channel a few times a second; call this when it does not run.
+  /// While the thread runs: as of at most a tenth of a second ago.
   ServoStatistics statistics() const noexcept;
 
  private:
