@@ -98,6 +98,7 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_.dp = d.dp;
   sweep_.dr = d.dr;
   sweep_.theta2 = d.dr.squaredNorm();
+  sweep_.axis = sweep_.theta2 > 0 ? Vec3(d.dr / std::sqrt(sweep_.theta2)) : Vec3(Vec3::Zero());
   sweep_.center_distance = center_.norm();
   sweep_.start.R = X_BA.q.toRotationMatrix();
   sweep_.start.t = X_BA * center_ - b_->origin();

@@ -21,6 +21,7 @@ struct Sweep {
   Vec3 dp = Vec3::Zero();      ///< of the center of mass, m
   Vec3 dr = Vec3::Zero();      ///< rotation vector, rad
   double theta2 = 0;           ///< |dr|²
+  Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
   double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
   double floor = 0;            ///< separations below are rounding, m
 
