@@ -47,6 +47,8 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
   stack_.reserve(capacity.pairs);
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
+  near_.reserve(capacity.pairs);
+  places_.reserve(capacity.seeds);
 }
 
 void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {
@@ -128,20 +130,24 @@ LaneSweep PatchFront::lane_sweep() const {
   return s;
 }
 
+const float* PatchFront::margins(const Group& group, const LaneSweep& sweep) {
+  if (&group == &boxes_) {
+    box_margins(group.lanes, group.count, sweep, margins_.get());
+  } else {
+    triangle_margins(group.lanes, group.count, sweep, margins_.get());
+  }
+  return margins_.get();
+}
+
 void PatchFront::collect_failures() {
   const LaneSweep sweep = lane_sweep();
-  float* margins = margins_.get();
   failures_.resize(capacity_.pairs);
   std::size_t n = 0;
-  for (Group* g : {&triangles_, &boxes_}) {
-    if (g == &boxes_) {
-      box_margins(g->lanes, g->count, sweep, margins);
-    } else {
-      triangle_margins(g->lanes, g->count, sweep, margins);
-    }
+  for (const Group* g : {&triangles_, &boxes_}) {
+    const float* margin = margins(*g, sweep);
     for (std::uint32_t i = 0; i < g->count; ++i) {
       failures_[n] = g->owner[i];
-      n += !(margins[i] > 0);
+      n += !(margin[i] > 0);
     }
   }
   failures_.resize(n);

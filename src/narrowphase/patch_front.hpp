@@ -15,6 +15,7 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 64;     ///< blocking triangle pairs that one call reports
+  std::uint32_t seeds = 256;       ///< seeds that one call can give
 };
 
 /// How much one call may do.
@@ -49,6 +50,14 @@ struct BlockingPair {
   double point_gap;     ///< of that corner from the plane through face_b's support along n_BA
 };
 
+/// Two near triangles, from which a search for contact features may start.
+struct ContactSeed {
+  std::uint32_t face_a, face_b;
+  double distance;  ///< of the points of the two faces that are nearest to `place`, m: at least that of the faces
+  Vec3 n_BA;   ///< of the plane between the patches, B's file frame
+  Vec3 place;  ///< on that plane, where the faces were looked for, m, B's file frame
+};
+
 /// The path certificate of one pair of parts (mutable scratch; the trees are shared): keeps a front of node pairs that
 /// covers all pairs of triangles, each pair with the plane that separated it last. A motion is free when every pair of
 /// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see patch_separate.cpp).
@@ -69,6 +78,14 @@ class PatchFront {
 
   /// What stopped the last motion, when its status was `blocked`; at most FrontCapacity::blocking.
   const std::vector<BlockingPair>& blocking() const { return blocking_; }
+
+  /// Pairs of faces where A at `X_BA` may be nearer than `reach` (m) to B, for contact features to start from: at most
+  /// `capacity`, near patches first, written to `out`; returns how many. Every near pair of patches gives the
+  /// corners of the region that they share, seen along their plane (so a flat face on a flat face gives the corners
+  /// that keep it from tipping), and places nearer to each other than 1/32 of A with like normals count as one. The
+  /// faces are those of the two patches that are nearest to such a place; finding a local minimum of distance is left
+  /// to the caller.
+  int contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, int capacity) noexcept;
 
   int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
 
@@ -103,6 +120,7 @@ class PatchFront {
 
   void set_sweep(const Pose& X_BA, const Displacement& d);
   LaneSweep lane_sweep() const;
+  const float* margins(const Group& group, const LaneSweep& sweep);
   void collect_failures();
   Outcome settle(std::uint32_t top);
   bool spend();
@@ -112,6 +130,9 @@ class PatchFront {
   void raise(int splits);
   bool all_in_front(std::uint32_t id) const;  ///< the children
   bool try_raise(std::uint32_t id);
+  int shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const;
+  double facing_thickness(std::uint32_t id) const;
+  ContactSeed seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const;
   void report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                     const TriangleBlock& block);
 
@@ -137,7 +158,13 @@ class PatchFront {
   std::uint32_t pool_used_ = 0;
   std::uint32_t free_twos_ = 0, free_fans_ = 0;  ///< heads of the free lists, linked through `child`
   Group boxes_, triangles_;
+  struct Near {
+    float far_side;  ///< upper bound of the gap, for patches that face each other
+    std::uint32_t id;
+  };
   std::vector<std::uint32_t> failures_, stack_, splits_;
+  std::vector<Near> near_;
+  std::vector<Vec3> places_;  ///< of the seeds
   std::vector<BlockingPair> blocking_;
   std::unique_ptr<float, void (*)(void*)> margins_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on

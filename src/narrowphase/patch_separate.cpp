@@ -18,7 +18,8 @@ constexpr double kParallel = 1e-6;
 /// With the plane going linearly from (n0, c0) to (n1, c1), the gap of a point that goes linearly is the quadratic
 /// α(1−t)² + 2γt(1−t) + βt². The turning path leaves the chord by at most ρθ²Δs²t(1−t)/2, and the path with a linear
 /// file-frame origin leaves the one with a linear center of mass by at most |c|θ²s(1−s)/2 (the rotation is the same,
-/// the second derivative of R(sθ)r is at most ρθ²). Both are across the axis of rotation: a plane across it sees none. Both terms are quadratics of the same form and are taken off.
+/// the second derivative of R(sθ)r is at most ρθ²). Both are across the axis of rotation: a plane across it sees none.
+/// Both terms are quadratics of the same form and are taken off.
 struct Bulge {
   double at_start, at_end, between;
   Vec3 axis;
