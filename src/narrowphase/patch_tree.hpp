@@ -11,7 +11,7 @@
 namespace tegotae {
 
 /// Most triangles in a leaf of a PatchTree.
-inline constexpr std::uint32_t kPatchLeaf = 4;
+inline constexpr std::uint32_t kPatchLeaf = 2;
 
 /// A convex piece of space around some triangles: { origin + center + Σ tᵢ half[i] axis[i], |tᵢ| ≤ 1 }, where `origin`
 /// is PatchTree::origin() and all lengths are in m. The axes are unit vectors up to rounding; the set above, taken with
