@@ -46,6 +46,8 @@ class PatchTree {
   const Vec3& origin() const { return origin_; }                      ///< m, file frame
   /// Largest distance of a triangle from `origin()`, m.
   double radius() const { return radius_; }
+  /// The box of one face, as if it were a leaf of its own.
+  PatchNode face_box(std::uint32_t face) const;
   std::size_t bytes() const;  ///< memory of the hierarchy without the mesh
 
   /// Corner `k` of `face`, m, file frame.
