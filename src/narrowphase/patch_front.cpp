@@ -52,7 +52,7 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
   near_.reserve(capacity.pairs);
-  places_.reserve(capacity.seeds);
+  seeds_.reserve(capacity.seeds);
 }
 
 void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {

@@ -15,7 +15,7 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 64;     ///< blocking triangle pairs that one call reports
-  std::uint32_t seeds = 256;       ///< seeds that one call can give
+  std::uint32_t seeds = 512;       ///< places that one call looks at for seeds
 };
 
 /// How much one call may do.
@@ -174,7 +174,7 @@ class PatchFront {
   };
   std::vector<std::uint32_t> failures_, stack_, splits_;
   std::vector<Near> near_;
-  std::vector<Vec3> places_;  ///< of the seeds
+  std::vector<ContactSeed> seeds_;
   std::vector<BlockingPair> blocking_;
   std::unique_ptr<float, void (*)(void*)> margins_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on
