@@ -110,6 +110,7 @@ class PatchFront {
     std::uint16_t children;       ///< 0: in the front
     bool face_a, face_b;          ///< which of a and b are faces
     std::array<float, 3> normal;  ///< last plane, kept here while split
+    float thickness;              ///< how far the surfaces may stand back behind the sides that face the plane, m
   };
   /// The pairs of the front of one kind, dense.
   struct Group {
@@ -129,11 +130,10 @@ class PatchFront {
   bool split(std::uint32_t id);
   void collapse(std::uint32_t id);
   void roll_back();
-  void raise(int splits);
+  void raise();
   bool all_in_front(std::uint32_t id) const;  ///< the children
   bool try_raise(std::uint32_t id);
   int shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const;
-  double facing_thickness(std::uint32_t id) const;
   ContactSeed seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const;
   void report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                     const TriangleBlock& block);
@@ -178,6 +178,8 @@ class PatchFront {
   std::vector<BlockingPair> blocking_;
   std::unique_ptr<float, void (*)(void*)> margins_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on
+  double motion_ = 0;         ///< longest motion of late, m
+  int debt_ = 0;              ///< pairs to raise, for those that were split
 
   Sweep sweep_;
   WorkLimit limit_;

@@ -12,9 +12,7 @@ constexpr double kPlaceSpacing = 1.0 / 32;
 /// Cosine between normals that count as alike (14°): the two walls of a groove give their own seeds.
 constexpr double kLikeNormals = 0.97;
 /// Near patches and places that are looked at, for each seed asked for: the nearest of them are given.
-constexpr std::size_t kLooksPerSeed = 4;
-/// A patch faces a plane when its normal is within 26° of the plane's.
-constexpr double kFacing = 0.9;
+constexpr std::size_t kLooksPerSeed = 2;
 /// Places where the faces are farther apart than this many times the reach give no seed. More than 1: a corner of two
 /// curved patches is farther apart than their nearest points, by up to the thickness of both.
 constexpr double kSeedReach = 4;
@@ -155,8 +153,7 @@ int PatchFront::contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, 
     const float* margin = margins(*g, sweep);
     for (std::uint32_t i = 0; i < g->count; ++i) {
       if (!(margin[i] < static_cast<float>(reach))) continue;
-      const double far_side = margin[i] + facing_thickness(g->owner[i]);
-      near_.push_back({static_cast<float>(far_side), g->owner[i]});
+      near_.push_back({margin[i] + pool_[g->owner[i]].thickness, g->owner[i]});
     }
   }
   auto nearer = [](const Near& a, const Near& b) {
@@ -217,19 +214,6 @@ int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3
   }
   for (int k = 0; k < shared.n; ++k) corners[k] = shared.p[k].x() * e[0] + shared.p[k].y() * e[1] + height * n;
   return shared.n;
-}
-
-/// How far the surfaces of a pair may stand back behind the sides of their boxes that face the plane.
-double PatchFront::facing_thickness(std::uint32_t id) const {
-  const PairNode& p = pool_[id];
-  if (faces(p)) return 0;
-  const Vec3 n = plane(id);
-  auto thickness = [](const PatchNode& node, double aligned) {
-    return std::abs(aligned) > kFacing ? 2 * double{node.half[2]} : 0.0;
-  };
-  PatchNode scratch_a, scratch_b;
-  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-  return thickness(a, n.dot(sweep_.start.R * a.axis_vec(2))) + thickness(b, n.dot(b.axis_vec(2)));
 }
 
 ContactSeed PatchFront::seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const {

@@ -58,8 +58,9 @@ void add(Figures& f, const CertifyReport& r, double us) {
   f.pairs += r.pairs, f.searches += r.searches, f.splits += r.splits, f.merges += r.merges;
 }
 
-/// Wanted motions that are not free: sideways into the wall, down to a tenth of a peg's clearance and up to millimeters.
-void pushed(PatchFront& front, const Pose& X, const Vec3& center, int ticks) {
+/// Wanted motions that are not free: sideways into the wall, down to a tenth of a peg's clearance and up to
+/// millimeters.
+void pushed(PatchFront& front, const Pose& X, int ticks) {
   std::mt19937 rng(3);
   Figures f;
   double blocking = 0, seeds_us = 0, seeds = 0;
@@ -124,7 +125,7 @@ void peg_in_hole(int peg_triangles, int hole_triangles, double ratio, double gap
     X = Y;
   }
   f.print();
-  pushed(front, X, center, ticks);
+  pushed(front, X, ticks);
 }
 
 /// Two knots; A drifts and turns, and turns back where it is blocked.
