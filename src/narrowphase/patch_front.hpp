@@ -14,7 +14,7 @@ namespace tegotae {
 /// Capacities of a PatchFront. Exceeding one never makes a wrong answer: the motion is then not certified.
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
-  std::uint32_t blocking = 64;     ///< blocking triangle pairs that one call reports
+  std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
   std::uint32_t seeds = 512;       ///< places that one call looks at for seeds
 };
 
