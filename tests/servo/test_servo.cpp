@@ -22,10 +22,6 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-StylusScript still() {
-  return StylusScript({{0, Pose()}});
-}
-
 /// A pen that says what the test tells it to, and remembers what it was asked to render.
 class PuppetDevice : public Device {
  public:
