@@ -48,7 +48,8 @@ TEST_CASE("the intersecting pairs are those of brute force, for every part", "[n
       for (std::uint32_t b = 0; b < other.triangles.size(); ++b)
         if (intersect(triangle(held, a, X), triangle(other, b, Pose{}))) expected.insert({a, b});
     std::vector<TrianglePair> pairs;
-    REQUIRE(narrow.intersections(part, X, 100000, pairs) == static_cast<int>(pairs.size()));
+    const int count = narrow.intersections(part, X, 100000, pairs);
+    REQUIRE(count == static_cast<int>(pairs.size()));
     for (const TrianglePair& p : pairs) {
       REQUIRE(p.part == part);
       found.insert({p.a, p.b});
