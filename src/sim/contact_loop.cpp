@@ -36,8 +36,8 @@ constexpr double kRecovery = 0.2;
 constexpr double kKeepShare = 0.5;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
-// Trust region: a piece that brought less than the first share of the error's predicted decrease halves it, more than
-// the second doubles it; it never falls below this many times the pen's motion of the tick.
+// Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
+// more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
@@ -132,7 +132,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ *= 0.5;
     if (!shorten(trial)) return 0;
   }
-  update_trust(wanted, trial, Y);
+  if (!worth_it(wanted, trial, Y)) return 0;
   X_ = trial.X;
   return size(trial.d);
 }
@@ -202,13 +202,16 @@ bool ContactLoop::shorten(Trial& trial) {
   return false;
 }
 
-void ContactLoop::update_trust(const Vec6& error, const Trial& trial, const Pose& Y) {
+bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y) {
+  // The programme sees flat limits. Where they curve, the error that it promises to take away does not all go, or even
+  // grows: near the end of the way such steps would swing to and fro for ever.
   const Vec6 step = metric_.whiten(trial.d);
-  const double predicted = error.squaredNorm() - (error - step).squaredNorm();
-  const Vec6 after = metric_.whiten(displacement(trial.X, Y, center_));
-  const double made = error.squaredNorm() - after.squaredNorm();
-  if (made < kPoor * predicted) trust_ *= 0.5;
-  if (made > kGood * predicted) trust_ = std::min(2 * trust_, piece_cap_);
+  const double promised = error.squaredNorm() - (error - step).squaredNorm();
+  if (promised <= 0) return true;  // a step that only opens gaps
+  const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
+  if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
+  if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
+  return made > 0;
 }
 
 void ContactLoop::gather(TickReport& report) const {

@@ -35,7 +35,8 @@ class ContactLoop {
   bool find_hits(const Pose& X);
   Pose back_off(const Displacement& d);
   bool shorten(Trial& trial);
-  void update_trust(const Vec6& error, const Trial& trial, const Pose& Y);
+  /// Whether the trial brings X nearer to Y; adapts the trust region.
+  bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
