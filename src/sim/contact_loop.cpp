@@ -138,32 +138,40 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  const auto& limits = contacts_->limits();
   Vec6 motion = wanted;
-  if (!limits.empty()) {
-    const double keep = kKeepShare * settings_.l_min;
-    rows_.clear();
-    for (const Contact& c : limits) rows_.push_row(metric_.row(c));
-    Resolution r;
-    // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always
-    // has an answer, because standing still is one.
-    for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
-      for (std::size_t i = 0; i < limits.size(); ++i)
-        bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
-      r = resolver_->resolve(rows_, bounds_.data(), wanted);
-      ++report.resolves;
-      report.iterations += r.iterations;
-      if (r.status == ResolveStatus::solved) break;
-    }
-    report.status = r.status;
-    if (r.status != ResolveStatus::solved) return false;
-    motion = r.motion;
-  }
+  if (!contacts_->limits().empty() && !solve(wanted, report, motion)) return false;
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
-  if (length > cap) trial.d = (cap / length) * trial.d;
+  if (length > cap) {
+    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
+    // would leave nearly nothing of their recovery.
+    const Vec6 scaled = (cap / length) * motion;
+    motion = scaled;
+    if (!contacts_->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    trial.d = metric_.unwhiten(motion);
+  }
   trial.X = displaced(X_, center_, trial.d);
   return true;
+}
+
+bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
+  const auto& limits = contacts_->limits();
+  const double keep = kKeepShare * settings_.l_min;
+  rows_.clear();
+  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
+  // an answer, because standing still is one.
+  for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
+    const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
+    ++report.resolves;
+    report.iterations += r.iterations;
+    report.status = r.status;
+    motion = r.motion;
+    if (r.status == ResolveStatus::solved) return true;
+  }
+  return false;
 }
 
 bool ContactLoop::find_hits(const Pose& X) {

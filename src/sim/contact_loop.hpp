@@ -31,7 +31,10 @@ class ContactLoop {
 
   /// Moves X towards Y by one free piece no longer than `cap`; returns its length (m), 0 at rest or when blocked.
   double move_piece(const Pose& Y, double cap, TickReport& report);
+  /// The trial of at most `cap` that the limits allow; false when there is none.
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
+  /// One programme over the limits: an allowed `motion` for `wanted`.
+  bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
   bool find_hits(const Pose& X);
   Pose back_off(const Displacement& d);
   bool shorten(Trial& trial);

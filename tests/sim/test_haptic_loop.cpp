@@ -99,7 +99,7 @@ TEST_CASE("scenes that cannot be held are refused with the reason", "[sim]") {
   const auto message = [](const Scene& scene) -> std::string {
     try {
       HapticLoop loop(scene);
-  FclOracle oracle(scene);
+      FclOracle oracle(scene);
     } catch (const Error& e) {
       return e.what();
     }
