@@ -139,9 +139,9 @@ void LpSolver::tableau_row(Leaving& leaving) const noexcept {
   if (leaving.row >= 0) {
     leaving.v = rows_.unit_row(leaving.row);
     leaving.weight = 1;
-    // Twice is enough: where the row nearly depends on the tight ones, the second pass removes the rounding of the
-    // first.
-    for (int pass = 0; pass < 2; ++pass) {
+    // Where the row nearly depends on the tight ones, a second pass removes the rounding of the first.
+    constexpr double kMost = 0.01;
+    for (int pass = 0; pass < 2 && (pass == 0 || leaving.v.squaredNorm() < kMost); ++pass) {
       double part[6] = {};
       for (int p = 0; p < size_; ++p) {
         part[p] = force_span_.basis(p).dot(leaving.v);

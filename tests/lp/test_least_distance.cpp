@@ -60,7 +60,7 @@ double enumerate(const Programme& p, const Vec6& z0) {
 
 }  // namespace
 
-TEST_CASE("Held bodies: the least-constraint motion, proved optimal", "[qp]") {
+TEST_CASE("Least distance: held bodies: the least-constraint motion, proved optimal", "[qp]") {
   Random random(21);
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 4000; ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("Held bodies: the least-constraint motion, proved optimal", "[qp]") {
   }
 }
 
-TEST_CASE("Well-separated normals: optimal to rounding", "[qp]") {
+TEST_CASE("Least distance: well-separated normals: optimal to rounding", "[qp]") {
   Random random(22);
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 1000; ++i) {
@@ -84,7 +84,7 @@ TEST_CASE("Well-separated normals: optimal to rounding", "[qp]") {
   }
 }
 
-TEST_CASE("Slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict", "[qp]") {
+TEST_CASE("Least distance: slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict", "[qp]") {
   Random random(23);
   LeastDistanceSolver solver(64);
   int stalled = 0;
@@ -103,7 +103,7 @@ TEST_CASE("Slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict",
   CHECK(stalled <= 40);
 }
 
-TEST_CASE("Small programmes against all active sets", "[qp]") {
+TEST_CASE("Least distance: small programmes against all active sets", "[qp]") {
   Random random(24);
   LeastDistanceSolver solver(16);
   int infeasible = 0;
@@ -125,7 +125,7 @@ TEST_CASE("Small programmes against all active sets", "[qp]") {
   CHECK(infeasible > 300);
 }
 
-TEST_CASE("Warm starts: the same motion, no iterations for an unchanged problem", "[qp]") {
+TEST_CASE("Least distance: warm starts: the same motion, no iterations for an unchanged problem", "[qp]") {
   Random random(25);
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 2000; ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("Warm starts: the same motion, no iterations for an unchanged problem"
   }
 }
 
-TEST_CASE("Simple and bad problems", "[qp]") {
+TEST_CASE("Least distance: simple and bad problems", "[qp]") {
   LeastDistanceSolver solver(4);
   Programme p;
   const Vec6 z0 = Vec6::Constant(2);

@@ -134,7 +134,10 @@ TEST_CASE("Larger programmes without structure: proved optimal or proved infeasi
   LpSolver solver(200);
   int infeasible = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Programme p = small(random, random.integer(6, 200));
+    Programme p = small(random, random.integer(6, 200));
+    if (i % 2) {  // some motion satisfies every row
+      p.d = p.g * random.vec6() - p.d.cwiseAbs();
+    }
     const LpResult& r = solver.solve(p.matrix(), p.d.data());
     if (r.status == LpStatus::optimal) {
       require_optimal(p, r, 1e-9);
@@ -146,7 +149,7 @@ TEST_CASE("Larger programmes without structure: proved optimal or proved infeasi
     }
   }
   CHECK(infeasible > 300);
-  CHECK(infeasible < 2900);
+  CHECK(infeasible <= 1500);
 }
 
 TEST_CASE("The lemma of section 3: gaps at a free pose always give a feasible programme", "[lp]") {
