@@ -94,23 +94,37 @@ void read_coupling(const TomlTable& t, CouplingSettings& s) {
   s.torsional_damping = t.at_least_zero("torsional_damping", s.torsional_damping);
 }
 
+SimulatedDeviceSettings read_device(const TomlTable& t) {
+  SimulatedDeviceSettings s;
+  if (t.text("type", "simulated") != "simulated") t.fail("type", "unknown device type (known: simulated)");
+  const TomlTable hand =
+      t.table("hand", {"stiffness", "damping", "torsional_stiffness", "torsional_damping", "mass", "inertia"});
+  s.hand.stiffness = hand.positive("stiffness", s.hand.stiffness);
+  s.hand.damping = hand.at_least_zero("damping", s.hand.damping);
+  s.hand.torsional_stiffness = hand.positive("torsional_stiffness", s.hand.torsional_stiffness);
+  s.hand.torsional_damping = hand.at_least_zero("torsional_damping", s.hand.torsional_damping);
+  s.hand.mass = hand.at_least_zero("mass", s.hand.mass);
+  s.hand.inertia = hand.at_least_zero("inertia", s.hand.inertia);
+  return s;
+}
+
 }  // namespace
 
 SceneFile load_scene(const std::string& path) {
   const toml::table parsed = parse_toml(path);
   const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  SceneFile file;
-  file.path = path;
+  Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "density"}), file.scene.contact);
+  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "density"}), scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
-                file.scene.coupling);
+                scene.coupling);
   const TomlTable device = top.table("device", {"type", "hand", "script"});
-  if (device.text("type", "simulated") != "simulated") device.fail("type", "unknown device (known: simulated)");
-  file.script = file_under(device, "script", folder);
-  read_parts(top, folder, file.scene);
-  return file;
+  const SimulatedDeviceSettings settings = read_device(device);
+  const std::string script_file = file_under(device, "script", folder);
+  StylusScript script = about(device, "script", [&] { return read_script(script_file); });
+  read_parts(top, folder, scene);
+  return {path, std::move(scene), settings, std::move(script)};
 }
 
 }  // namespace tegotae

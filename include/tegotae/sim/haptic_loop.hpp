@@ -23,8 +23,8 @@ struct TickReport {
   int resolves = 0;          ///< programmes solved
   int iterations = 0;        ///< pivots of all programmes
   ResolveStatus status = ResolveStatus::not_needed;
-  double fraction = 1;       ///< part of the wanted motion made, in [0, 1]
-  bool overflow = false;     ///< a capacity was exceeded; the motion is still free
+  double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
+  bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 
 /// The contact loop: follows the pen with the held part so that no two parts ever intersect.
@@ -43,7 +43,7 @@ class HapticLoop {
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   const TickReport& report() const;
-  const Vec3& center() const;             ///< center of mass of the held part, m, file frame
+  const Vec3& center() const;              ///< center of mass of the held part, m, file frame
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
 
  private:

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "tegotae/device/script.hpp"
+#include "tegotae/device/simulated_device.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
@@ -10,7 +12,8 @@ namespace tegotae {
 struct SceneFile {
   std::string path;
   Scene scene;
-  std::string script;  ///< stylus script, path resolved
+  SimulatedDeviceSettings device;
+  StylusScript script;  ///< what the operator's hand does
 };
 
 /// Reads a scene file (TOML, see docs/scene-file.md) and the meshes it names; parts with the same file and unit share
