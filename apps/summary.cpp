@@ -8,7 +8,7 @@ namespace tegotae::apps {
 
 namespace {
 
-nlohmann::ordered_json to_json(const Percentiles& p) {
+nlohmann::ordered_json to_json(const LatencySummary& p) {
   return {{"p50", p.p50}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
 }
 
@@ -23,7 +23,7 @@ std::string format(const char* pattern, ...) {
   return text;
 }
 
-std::string row(const char* what, const Percentiles& us) {
+std::string row(const char* what, const LatencySummary& us) {
   return format("  %-12s median %.0f us, 99 %% %.0f us, 99.9 %% %.0f us, longest %.0f us\n", what, us.p50, us.p99,
                 us.p999, us.max);
 }
@@ -41,7 +41,7 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["contacts_max"] = s.contacts_max;
   j["penetrating"] = s.penetrating;
   j["tick_us"] = to_json(s.tick_us);
-  j["servo"] = {{"rate_hz", s.servo_rate_hz}, {"late_us", to_json(s.servo_late_us)}, {"missed", s.servo_missed}};
+  j["servo"] = {{"rate_hz", s.servo.rate_hz}, {"late_us", to_json(s.servo.late_us)}, {"missed", s.servo.missed}};
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
   return j.dump();
@@ -62,9 +62,9 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const s
   if (options.fast) {
     text += format("  %-12s %.1f s in virtual time\n", "time", s.seconds);
   } else {
-    text += row("servo late", s.servo_late_us);
-    text += format("  %-12s %.1f s, servo at %.1f Hz, %lld ticks missed\n", "time", s.seconds, s.servo_rate_hz,
-                   static_cast<long long>(s.servo_missed));
+    text += row("servo late", s.servo.late_us);
+    text += format("  %-12s %.1f s, servo at %.1f Hz, %lld ticks missed\n", "time", s.seconds, s.servo.rate_hz,
+                   static_cast<long long>(s.servo.missed));
   }
   if (!options.record.empty()) text += format("  %-12s ", "recording") + options.record + "\n";
   return text;
