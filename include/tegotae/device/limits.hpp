@@ -1,0 +1,17 @@
+#pragma once
+
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// The most that is rendered. The defaults are the peak figures of a PHANTOM Premium 1.5/6DOF.
+struct WrenchLimits {
+  double force = 8.5;     ///< N
+  double torque = 0.188;  ///< N·m
+};
+
+/// `wrench` scaled down as a whole, so that neither its force nor its torque exceeds its limit: the direction of both
+/// and their ratio stay. Zero when an entry is not finite.
+Wrench saturated(const Wrench& wrench, const WrenchLimits& limits) noexcept;
+
+}  // namespace tegotae

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// Where the operator's hand wants the held part's file frame to be, over time.
+class StylusScript {
+ public:
+  struct Key {
+    double t;  ///< s
+    Pose pose;
+  };
+
+  /// Throws Error when `keys` is empty, a value is not finite, a quaternion is zero or the times do not increase (the
+  /// message counts keys from 1). Quaternions are normalized.
+  explicit StylusScript(std::vector<Key> keys);
+
+  /// Between two keys the position of the file frame goes linearly and the rotation at a constant rate on the shorter
+  /// way (slerp); before the first and after the last key it rests there.
+  Pose pose(double t) const noexcept;
+  /// The velocity of the file frame at `t` (`v` of its origin); at a key that of the interval that begins there, zero
+  /// outside.
+  Twist velocity(double t) const noexcept;
+
+  double begin() const noexcept { return keys_.front().t; }  ///< s
+  double end() const noexcept { return keys_.back().t; }     ///< s
+
+ private:
+  std::vector<Key> keys_;
+  std::vector<Twist> rates_;  // of the interval that begins at each key
+  std::size_t interval(double t) const noexcept;
+};
+
+/// Reads a CSV file with the header row `t,px,py,pz,qw,qx,qy,qz` (s, m; columns in any order), one key a row. Empty
+/// lines and lines that begin with # are skipped. Throws Error naming the file, the line and the reason.
+StylusScript read_script(const std::string& path);
+
+}  // namespace tegotae

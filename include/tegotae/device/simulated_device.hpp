@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "tegotae/device/device.hpp"
+#include "tegotae/device/limits.hpp"
+#include "tegotae/device/script.hpp"
+
+namespace tegotae {
+
+/// The hand that holds the pen: springs and dampers from the script's pose to the pen's, and the effective mass of the
+/// hand, which moves with the pen. The defaults are a relaxed pen grip, near critical damping.
+struct HandSettings {
+  double stiffness = 400.0;          ///< N/m
+  double damping = 24.0;             ///< N·s/m, on the difference to the script's velocity
+  double torsional_stiffness = 1.5;  ///< N·m/rad
+  double torsional_damping = 0.04;   ///< N·m·s/rad, on the difference to the script's angular velocity
+  double mass = 0.3;                 ///< kg
+  double inertia = 2e-4;             ///< kg·m², about the held part's center of mass, any axis
+};
+
+/// A PHANTOM Premium 1.5/6DOF-like pen. Apparent mass, friction, force limits and position resolution are the vendor's;
+/// the rotational inertia and resolution and the velocity filter are assumed.
+struct SimulatedDeviceSettings {
+  HandSettings hand;
+  double mass = 0.075;                          ///< apparent, kg
+  Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
+  double friction = 0.04;                       ///< Coulomb, N
+  WrenchLimits limits;                          ///< of what is rendered, whatever is asked for
+  double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
+  double rotation_resolution = 1e-4;            ///< rad; 0 for none
+  double velocity_cutoff_hz = 50.0;             ///< of the low-pass on differences of the reported pose
+  bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
+};
+
+/// A pen without hardware: a rigid body pushed by a hand that follows a script and by the rendered wrench. Same
+/// settings, script and calls give the same bits.
+class SimulatedDevice final : public Device {
+ public:
+  /// At rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
+  SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
+  ~SimulatedDevice() override;
+
+  void start() override;
+  void stop() override;
+  DeviceState read() noexcept override;
+  void write(const Wrench& wrench) noexcept override;
+  DeviceStatus status() const noexcept override;
+  ForceOff reason() const noexcept override;
+  void set_center(const Vec3& center) noexcept override;
+
+  /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
+  void advance(double dt) noexcept;
+  /// The script's time, s: begin of the script plus the time advanced. May be called from any thread.
+  double script_time() const noexcept;
+  /// The exact pose and velocity (v of the center of mass), before resolution and filter.
+  Pose true_pose() const noexcept;
+  Twist true_velocity() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace tegotae {
+
+/// What to do when the system does not grant real-time scheduling.
+enum class RealtimeConfig {
+  enforce,  ///< refuse to start, with the reason
+  ignore,   ///< run as well as it goes; RealtimeReport tells what is missing
+};
+
+/// What the system granted to the servo's thread.
+struct RealtimeReport {
+  bool fifo = false;           ///< SCHED_FIFO
+  bool memory_locked = false;  ///< mlockall: no page of the process is swapped out
+  bool timer_slack = false;    ///< wake-ups are not batched
+  std::string missing;         ///< what was refused and why, in one line; empty when all was granted
+};
+
+/// Asks for all of it for the calling thread (memory: for the process as it is now).
+RealtimeReport make_realtime();
+
+}  // namespace tegotae

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "tegotae/device/channel.hpp"
+#include "tegotae/device/device.hpp"
+#include "tegotae/device/limits.hpp"
+#include "tegotae/servo/latency_histogram.hpp"
+#include "tegotae/servo/realtime.hpp"
+
+namespace tegotae {
+
+/// Settings of the chain that every wrench passes before it leaves.
+struct SafetySettings {
+  WrenchLimits limits;
+  double heartbeat_timeout = 0.02;  ///< s; an older heartbeat of the contact loop means no force
+};
+
+struct ServoSettings {
+  double rate_hz = 1000.0;  ///< up to 4000
+  RealtimeConfig realtime = RealtimeConfig::ignore;
+  SafetySettings safety;
+};
+
+/// What the servo has done since it was made.
+struct ServoStatistics {
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;   ///< periods of the schedule that had no tick
+  double rate_hz = 0;         ///< achieved, mean; 0 before the second tick
+  LatencySummary late_us;     ///< wake-up minus schedule
+  LatencySummary compute_us;  ///< the servo's own work in a tick
+};
+
+/// The fast loop: pen in, coupling to the newest proxy, safety chain, wrench out, pen state to the application. Either
+/// as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.
+class Servo {
+ public:
+  /// Keeps references to both; they must outlive the servo. Throws Error for a setting out of range.
+  Servo(Device& device, Channel& channel, const ServoSettings& settings = {});
+  ~Servo();  ///< stops
+  Servo(const Servo&) = delete;
+  Servo& operator=(const Servo&) = delete;
+
+  /// Runs tick() in a thread at the set rate on an absolute schedule of the monotonic clock. The device must have been
+  /// started. Throws Error when real time is enforced and not granted.
+  void start();
+  /// Ends the thread, after which the force is zero. No effect when it does not run.
+  void stop() noexcept;
+
+  /// One tick at the time `now_ns`; heartbeats are compared with it, so give ContactLink the same clock. Never
+  /// allocates, waits, locks or throws. Not while the thread runs.
+  void tick(std::int64_t now_ns) noexcept;
+
+  /// What the system granted to the thread of the last start().
+  const RealtimeReport& realtime() const noexcept;
+  /// While the thread runs: as of at most a tenth of a second ago.
+  ServoStatistics statistics() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tegotae

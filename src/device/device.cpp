@@ -1,0 +1,39 @@
+#include "tegotae/device/device.hpp"
+
+namespace tegotae {
+
+const char* to_string(DeviceStatus status) noexcept {
+  switch (status) {
+    case DeviceStatus::uninitialized:
+      return "not started";
+    case DeviceStatus::ready:
+      return "ready, force off";
+    case DeviceStatus::enabled:
+      return "force on";
+  }
+  return "unknown device status";
+}
+
+const char* to_string(ForceOff reason) noexcept {
+  switch (reason) {
+    case ForceOff::none:
+      return "the force is on";
+    case ForceOff::button:
+      return "the force button of the device is off";
+    case ForceOff::velocity:
+      return "the pen moved too fast";
+    case ForceOff::watchdog:
+      return "the contact loop's heartbeat is too old";
+    case ForceOff::software:
+      return "no application asks for force";
+    case ForceOff::disconnected:
+      return "the device does not answer";
+    case ForceOff::dead_man:
+      return "the dead-man switch is released";
+    case ForceOff::not_finite:
+      return "a pose, velocity or setting is not finite";
+  }
+  return "unknown reason";
+}
+
+}  // namespace tegotae

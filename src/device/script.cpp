@@ -1,0 +1,143 @@
+#include "tegotae/device/script.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+
+namespace {
+
+// Shorter quaternions are no rotation but a forgotten column; files round to a few digits at worst.
+constexpr double kMinQuaternionNorm = 1e-3;
+
+constexpr std::array<std::string_view, 8> kColumns = {"t", "px", "py", "pz", "qw", "qx", "qy", "qz"};
+
+std::string_view trimmed(std::string_view s) {
+  const std::size_t first = s.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// Why `key` cannot follow a key at `previous` (s); empty when it can.
+std::string refusal(const StylusScript::Key& key, double previous) {
+  if (!std::isfinite(key.t) || !key.pose.p.allFinite() || !key.pose.q.coeffs().allFinite())
+    return "a value is not finite";
+  if (!(key.t > previous)) return "the time does not increase";
+  const double norm = key.pose.q.coeffs().stableNorm();
+  if (norm < kMinQuaternionNorm) return "the quaternion is zero";
+  return {};
+}
+
+/// For each cell of the header row the index into kColumns. Throws the reason.
+std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells) {
+  std::vector<std::size_t> order;
+  for (std::string_view cell : cells) {
+    const auto found = std::find(kColumns.begin(), kColumns.end(), cell);
+    if (found == kColumns.end())
+      throw Error("unknown column \"" + std::string(cell) + "\"; the header row is t,px,py,pz,qw,qx,qy,qz");
+    const std::size_t column = found - kColumns.begin();
+    if (std::find(order.begin(), order.end(), column) != order.end())
+      throw Error("column " + std::string(cell) + " comes twice");
+    order.push_back(column);
+  }
+  for (std::size_t column = 0; column < kColumns.size(); ++column)
+    if (std::find(order.begin(), order.end(), column) == order.end())
+      throw Error("column " + std::string(kColumns[column]) + " is missing");
+  return order;
+}
+
+StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std::vector<std::size_t>& order) {
+  if (cells.size() != order.size())
+    throw Error(std::to_string(cells.size()) + " values where the header row has " + std::to_string(order.size()));
+  std::array<double, kColumns.size()> value{};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const char* end = cells[i].data() + cells[i].size();
+    const auto [rest, error] = std::from_chars(cells[i].data(), end, value[order[i]]);
+    if (error != std::errc() || rest != end)
+      throw Error(std::string(kColumns[order[i]]) + " is not a number: \"" + std::string(cells[i]) + "\"");
+  }
+  return {value[0], {Quat(value[4], value[5], value[6], value[7]), Vec3(value[1], value[2], value[3])}};
+}
+
+}  // namespace
+
+StylusScript::StylusScript(std::vector<Key> keys) : keys_(std::move(keys)) {
+  if (keys_.empty()) throw Error("stylus script: no key");
+  double previous = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const std::string reason = refusal(keys_[i], previous);
+    if (!reason.empty()) throw Error("stylus script: key " + std::to_string(i + 1) + ": " + reason);
+    previous = keys_[i].t;
+    keys_[i].pose.q.normalize();
+  }
+  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+    const double dt = keys_[i + 1].t - keys_[i].t;
+    const Displacement d = displacement(keys_[i].pose, keys_[i + 1].pose, Vec3::Zero());
+    rates_.push_back({d.dp / dt, d.dr / dt});
+  }
+  rates_.push_back({});
+}
+
+std::size_t StylusScript::interval(double t) const noexcept {
+  const auto after =
+      std::upper_bound(keys_.begin(), keys_.end(), t, [](double s, const Key& key) { return s < key.t; });
+  return after == keys_.begin() ? 0 : after - keys_.begin() - 1;
+}
+
+Pose StylusScript::pose(double t) const noexcept {
+  const std::size_t i = interval(t);
+  const double s = std::max(0.0, t - keys_[i].t);
+  return displaced(keys_[i].pose, Vec3::Zero(), {s * rates_[i].v, s * rates_[i].w});
+}
+
+Twist StylusScript::velocity(double t) const noexcept {
+  if (!(t >= begin())) return {};
+  return rates_[interval(t)];
+}
+
+StylusScript read_script(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path + ": cannot be opened as a stylus script");
+  std::vector<std::size_t> order;
+  std::vector<StylusScript::Key> keys;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.front() == '#') continue;
+    try {
+      if (order.empty()) {
+        order = read_header(split(text));
+        continue;
+      }
+      keys.push_back(read_row(split(text), order));
+      const double previous = keys.size() > 1 ? keys[keys.size() - 2].t : -std::numeric_limits<double>::infinity();
+      const std::string reason = refusal(keys.back(), previous);
+      if (!reason.empty()) throw Error(reason);
+    } catch (const Error& error) {
+      throw Error(path + ":" + std::to_string(number) + ": " + error.what());
+    }
+  }
+  if (file.bad()) throw Error(path + ": cannot be read as a stylus script");
+  if (order.empty()) throw Error(path + ": empty; a stylus script begins with the header row t,px,py,pz,qw,qx,qy,qz");
+  if (keys.empty()) throw Error(path + ": no row after the header row");
+  return StylusScript(std::move(keys));
+}
+
+}  // namespace tegotae

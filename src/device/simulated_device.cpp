@@ -1,0 +1,207 @@
+#include "tegotae/device/simulated_device.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "device/pen_body.hpp"
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+
+namespace {
+
+// Longest step of the body's integration: 1/40 of the fastest time scale that the settings allow to be useful (a
+// torsional grip of 2 N·m/rad on the bare pen swings at 200 rad/s).
+constexpr std::int64_t kMaxStepNs = 50'000;
+
+// A servo that was held up for longer does not find the hand far away: the script waits.
+constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
+
+constexpr double kTwoPi = 6.283185307179586;
+
+void require(bool good, const char* setting) {
+  if (!good) throw Error(std::string("simulated device: ") + setting + " is out of range");
+}
+
+bool positive(double x) {
+  return std::isfinite(x) && x > 0;
+}
+bool not_negative(double x) {
+  return std::isfinite(x) && x >= 0;
+}
+
+void check(const SimulatedDeviceSettings& s) {
+  require(not_negative(s.hand.stiffness), "hand stiffness");
+  require(not_negative(s.hand.damping), "hand damping");
+  require(not_negative(s.hand.torsional_stiffness), "hand torsional_stiffness");
+  require(not_negative(s.hand.torsional_damping), "hand torsional_damping");
+  require(not_negative(s.hand.mass), "hand mass");
+  require(not_negative(s.hand.inertia), "hand inertia");
+  require(positive(s.mass), "mass");
+  require(s.inertia.allFinite() && s.inertia.minCoeff() > 0, "inertia");
+  require(not_negative(s.friction), "friction");
+  require(not_negative(s.limits.force), "force limit");
+  require(not_negative(s.limits.torque), "torque limit");
+  require(not_negative(s.position_resolution), "position_resolution");
+  require(not_negative(s.rotation_resolution), "rotation_resolution");
+  require(positive(s.velocity_cutoff_hz), "velocity_cutoff_hz");
+}
+
+PenBodySettings body_settings(const SimulatedDeviceSettings& s) {
+  return {s.mass + s.hand.mass,
+          s.inertia + Vec3::Constant(s.hand.inertia),
+          s.hand.stiffness,
+          s.hand.damping,
+          s.hand.torsional_stiffness,
+          s.hand.torsional_damping,
+          s.friction};
+}
+
+Vec3 rounded(const Vec3& value, double resolution) {
+  if (resolution == 0) return value;
+  return resolution * (value / resolution).array().round().matrix();
+}
+
+}  // namespace
+
+struct SimulatedDevice::Impl {
+  Impl(const SimulatedDeviceSettings& settings_in, StylusScript script_in)
+      : settings(settings_in), script(std::move(script_in)), body_constants(body_settings(settings)) {}
+
+  SimulatedDeviceSettings settings;
+  StylusScript script;
+  PenBodySettings body_constants;
+  PenBody body;
+  Quat encoder_zero = Quat::Identity();  // rotations are counted from where the pen started
+  Wrench rendered;
+  std::atomic<std::int64_t> time_ns{0};  // since the script's begin; atomic for script_time()
+  std::int64_t last_read_clock_ns = -1;  // wall clock
+  DeviceStatus status = DeviceStatus::uninitialized;
+
+  // What was read last.
+  bool sampled = false;
+  std::int64_t sampled_at_ns = 0;
+  Vec3 sampled_center = Vec3::Zero();
+  Quat sampled_rotation = Quat::Identity();
+  Twist filtered;
+  std::uint64_t sequence = 0;
+
+  double script_time(std::int64_t ns) const { return script.begin() + 1e-9 * static_cast<double>(ns); }
+
+  PenTarget target(double t, const Vec3& center) const {
+    const Pose pose = script.pose(t);
+    const Twist rate = script.velocity(t);
+    const Vec3 arm = pose.q * center;
+    return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
+  }
+
+  void advance(std::int64_t dt_ns, const Vec3& center) {
+    std::int64_t now = time_ns.load(std::memory_order_relaxed);
+    const std::int64_t end = now + dt_ns;
+    while (now < end) {
+      const std::int64_t step = std::min(kMaxStepNs, end - now);
+      const double h = 1e-9 * static_cast<double>(step);
+      body.step(h, body_constants, target(script_time(now) + 0.5 * h, center), rendered);
+      now += step;
+    }
+    time_ns.store(now, std::memory_order_relaxed);
+  }
+
+  /// The encoders' view of the body, and the velocity that a driver would make of it.
+  void sample() {
+    const std::int64_t now = time_ns.load(std::memory_order_relaxed);
+    const Vec3 position = rounded(body.center, settings.position_resolution);
+    const Vec3 angles =
+        rounded(rotation_vector(body.rotation * encoder_zero.conjugate()), settings.rotation_resolution);
+    const Quat turned = (rotation(angles) * encoder_zero).normalized();
+    if (sampled && now > sampled_at_ns) {
+      const double dt = 1e-9 * static_cast<double>(now - sampled_at_ns);
+      const double gain = 1.0 - std::exp(-kTwoPi * settings.velocity_cutoff_hz * dt);
+      filtered.v += gain * ((position - sampled_center) / dt - filtered.v);
+      filtered.w += gain * (rotation_vector(turned * sampled_rotation.conjugate()) / dt - filtered.w);
+    }
+    sampled = true;
+    sampled_at_ns = now;
+    sampled_center = position;
+    sampled_rotation = turned;
+  }
+};
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
+    : impl_((check(settings), std::make_unique<Impl>(settings, std::move(script)))) {
+  require(center.allFinite(), "center");
+  Device::set_center(center);
+  const Pose start = impl_->script.pose(impl_->script.begin());
+  impl_->body.center = start * center;
+  impl_->body.rotation = start.q;
+  impl_->encoder_zero = start.q;
+}
+
+SimulatedDevice::~SimulatedDevice() = default;
+
+void SimulatedDevice::start() {
+  impl_->rendered = {};
+  impl_->last_read_clock_ns = -1;
+  impl_->status = DeviceStatus::enabled;
+}
+
+void SimulatedDevice::stop() {
+  impl_->rendered = {};
+  impl_->status = DeviceStatus::uninitialized;
+}
+
+DeviceState SimulatedDevice::read() noexcept {
+  std::int64_t stamp = impl_->time_ns.load(std::memory_order_relaxed);
+  if (impl_->settings.wall_clock) {
+    stamp = monotonic_ns();
+    if (impl_->last_read_clock_ns >= 0)
+      impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs), center());
+    impl_->last_read_clock_ns = stamp;
+  }
+  impl_->sample();
+  const Quat& q = impl_->sampled_rotation;
+  return {{q, impl_->sampled_center - q * center()}, impl_->filtered, 0, stamp, impl_->sequence++};
+}
+
+void SimulatedDevice::write(const Wrench& wrench) noexcept {
+  impl_->rendered = impl_->status == DeviceStatus::enabled ? saturated(wrench, impl_->settings.limits) : Wrench{};
+}
+
+DeviceStatus SimulatedDevice::status() const noexcept {
+  return impl_->status;
+}
+
+ForceOff SimulatedDevice::reason() const noexcept {
+  return impl_->status == DeviceStatus::enabled ? ForceOff::none : ForceOff::software;
+}
+
+void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
+  PenBody& body = impl_->body;
+  const Vec3 arm = body.rotation * (center_now - center());
+  body.center += arm;
+  body.velocity += body.angular_velocity(impl_->body_constants).cross(arm);
+  // The difference to the last sample would be a jump of the point, not a motion.
+  impl_->sampled = false;
+  Device::set_center(center_now);
+}
+
+void SimulatedDevice::advance(double dt) noexcept {
+  if (dt > 0 && std::isfinite(dt)) impl_->advance(std::llround(dt * 1e9), center());
+}
+
+double SimulatedDevice::script_time() const noexcept {
+  return impl_->script_time(impl_->time_ns.load(std::memory_order_relaxed));
+}
+
+Pose SimulatedDevice::true_pose() const noexcept {
+  const PenBody& body = impl_->body;
+  return {body.rotation, body.center - body.rotation * center()};
+}
+
+Twist SimulatedDevice::true_velocity() const noexcept {
+  return {impl_->body.velocity, impl_->body.angular_velocity(impl_->body_constants)};
+}
+
+}  // namespace tegotae
