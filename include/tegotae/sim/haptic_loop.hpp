@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "tegotae/coupling/coupling.hpp"
+#include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
-
-/// How the resolver's programme of a tick ended.
-enum class ResolveStatus : std::uint8_t { not_needed, solved, infeasible, stalled };
 
 /// What one tick of the contact loop did.
 struct TickReport {

@@ -1,0 +1,275 @@
+#include "lp/simplex.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tegotae {
+namespace {
+
+/// A row counts as satisfied when it is short by less than this part of the largest violation at f = 0.
+constexpr double kFeasibility = 1e-10;
+/// The same relative to the length of the motion: rounding of g·w, with room for the cancellation in w = Gᵀ f.
+constexpr double kRounding = 1e-13;
+/// Reduced costs (costs are 1) may be negative by this; what Harris's ratio test trades for larger pivots.
+constexpr double kDualSlack = 1e-9;
+/// v is a sum of unit rows times the dual direction; below this part of the direction's size it is rounding, and zero.
+constexpr double kDependent = 1e-11;
+/// A pivot is taken when it is at least this part of the smallest that must exist (see choose_entering).
+constexpr double kPivot = 1e-3;
+/// Degenerate pivots in a row before Bland's rule takes over: a few bases' worth.
+constexpr int kDegenerateRun = 12;
+/// Dual steps below this part of the duals' own size are degenerate.
+constexpr double kDegenerateStep = 1e-12;
+/// Far above the 10 to 40 pivots that solves take.
+constexpr int kMaxPivots = 400;
+/// "Infeasible" is only said when a solution would have to move this many times the largest violation.
+constexpr double kHopeless = 1e8;
+/// Residuals above this part of the data's size are not called optimal.
+constexpr double kAccepted = 1e-6;
+
+}  // namespace
+
+const LpResult& LpSolver::solve(const LowRankMatrix& g, const double* d) noexcept {
+  result_ = LpResult{};
+  g_ = &g;
+  size_ = 0;
+  const RowWorkspace::Input input = rows_.load(g, d, Vec6::Zero());
+  if (input == RowWorkspace::Input::bad) {
+    return result_;
+  }
+  if (input == RowWorkspace::Input::infeasible) {
+    result_.status = LpStatus::infeasible;
+    result_.dual.add(rows_.zero_row(), 1);
+    return result_;
+  }
+  int degenerate = 0;
+  for (;; ++result_.iterations) {
+    if (!solve_basis()) {
+      return result_;
+    }
+    const bool bland = degenerate > kDegenerateRun;
+    Leaving leaving;
+    if (!choose_leaving(bland, leaving)) {
+      finish();
+      return result_;
+    }
+    if (result_.iterations == kMaxPivots) {
+      return result_;
+    }
+    tableau_row(leaving);
+    Entering entering;
+    if (!choose_entering(leaving, bland, entering)) {
+      if (leaving.row >= 0 && certify_infeasible(leaving)) {
+        result_.status = LpStatus::infeasible;
+      }
+      return result_;
+    }
+    // Bland's rule forbids cycles among degenerate pivots; every other pivot raises the dual objective.
+    degenerate = entering.step * leaving.weight > kDegenerateStep * (1 + u_.norm()) ? 0 : degenerate + 1;
+    pivot(leaving, entering);
+  }
+}
+
+bool LpSolver::solve_basis() noexcept {
+  double b[6][6];
+  for (int q = 0; q < size_; ++q) {
+    for (int p = 0; p < size_; ++p) {
+      b[q][p] = tight_row_[q].dot(force_row_[p]);
+    }
+  }
+  if (!lu_.factor(b, size_)) {
+    return false;
+  }
+  for (int k = 0; k < size_; ++k) {
+    f_[k] = rows_.d(tight_[k]) * rows_.inverse_norm(tight_[k]);
+    y_[k] = rows_.inverse_norm(force_[k]);
+  }
+  lu_.solve(f_);
+  lu_.solve_transposed(y_);
+  w_.setZero();
+  u_.setZero();
+  for (int k = 0; k < size_; ++k) {
+    w_ += f_[k] * force_row_[k];
+    u_ += y_[k] * tight_row_[k];
+  }
+  return true;
+}
+
+bool LpSolver::choose_leaving(bool first_index, Leaving& out) noexcept {
+  const double size = *std::max_element(f_, f_ + std::max(size_, 1));
+  const double row_tolerance = kFeasibility * rows_.largest_violation() + kRounding * (w_.norm() + (size_ ? size : 0));
+  const RowChoice row = first_index ? rows_.first_violated(w_, row_tolerance) : rows_.most_violated(w_);
+  if (row.row >= 0 && row.value > row_tolerance) {
+    out.row = row.row;
+    out.violation = row.value;
+    if (first_index) {
+      return true;
+    }
+  }
+  for (int p = 0; p < size_; ++p) {
+    // Bland's order: rows before forces, each by number.
+    const bool before = first_index ? out.force < 0 || force_[p] < force_[out.force] : -f_[p] > out.violation;
+    if (-f_[p] > row_tolerance && before) {
+      out.row = -1;
+      out.force = p;
+      out.violation = -f_[p];
+    }
+  }
+  return out.row >= 0 || out.force >= 0;
+}
+
+void LpSolver::tableau_row(Leaving& leaving) const noexcept {
+  if (leaving.row >= 0) {
+    const Vec6 row = rows_.unit_row(leaving.row);
+    for (int p = 0; p < size_; ++p) {
+      leaving.slack[p] = force_row_[p].dot(row);
+    }
+    leaving.v = row;
+    leaving.weight = 1;
+  } else {
+    std::fill_n(leaving.slack, size_, 0.0);
+    leaving.slack[leaving.force] = 1;
+  }
+  lu_.solve_transposed(leaving.slack);
+  for (int q = 0; q < size_; ++q) {
+    leaving.v -= leaving.slack[q] * tight_row_[q];
+    leaving.weight += std::abs(leaving.slack[q]);
+  }
+}
+
+bool LpSolver::choose_entering(const Leaving& leaving, bool first_index, Entering& out) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // When no slack can enter, v = Gᵀ y with y >= 0 of 1-norm `weight`, so some row of y has v·g >= |v|²/weight: a
+  // smaller pivot than about that need never be taken. With six tight rows v is zero.
+  const double length = leaving.v.norm();
+  const bool columns = size_ < 6 || leaving.row < 0;
+  const double min_pivot =
+      columns && length > kDependent * leaving.weight ? kPivot * length * length / leaving.weight : kInfinity;
+  const double slack = first_index ? 0 : kDualSlack;
+  double bound = min_pivot < kInfinity ? rows_.bound_steps(u_, leaving.v, min_pivot, slack) : kInfinity;
+  double y_size = 0;
+  double slack_size = 0;
+  for (int q = 0; q < size_; ++q) {
+    y_size = std::max(y_size, std::abs(y_[q]));
+    slack_size = std::max(slack_size, std::abs(leaving.slack[q]));
+  }
+  const double min_slack = kDependent * slack_size;
+  for (int q = 0; q < size_; ++q) {
+    if (leaving.slack[q] > min_slack) {
+      bound = std::min(bound, (std::max(y_[q], 0.0) + slack * y_size) / leaving.slack[q]);
+    }
+  }
+  if (!(bound < kInfinity)) {
+    return false;
+  }
+  double best = 0;
+  for (int q = 0; q < size_; ++q) {
+    const double step = std::max(y_[q], 0.0) / leaving.slack[q];
+    if (leaving.slack[q] > min_slack && step <= bound) {
+      // Bland's order: rows before forces, each by number.
+      if (first_index ? out.slack < 0 || tight_[q] < tight_[out.slack] : leaving.slack[q] > best) {
+        best = leaving.slack[q];
+        out.slack = q;
+        out.step = step;
+      }
+    }
+  }
+  if (min_pivot < kInfinity && !(first_index && out.slack >= 0)) {
+    const RowChoice column = first_index ? rows_.first_step(bound) : rows_.largest_pivot(bound);
+    if (column.row >= 0 && column.value > best) {
+      out.slack = -1;
+      out.force = column.row;
+      out.step = rows_.step(column.row);
+    }
+  }
+  return out.slack >= 0 || out.force >= 0;
+}
+
+void LpSolver::pivot(const Leaving& leaving, const Entering& entering) noexcept {
+  const auto set_tight = [this](int position, int row) {
+    tight_[position] = row;
+    tight_row_[position] = rows_.unit_row(row);
+    rows_.set_row_priced(row, false);
+  };
+  const auto set_force = [this](int position, int column) {
+    force_[position] = column;
+    force_row_[position] = rows_.unit_row(column);
+    rows_.set_column_priced(column, false);
+  };
+  if (leaving.row >= 0 && entering.force >= 0) {
+    set_tight(size_, leaving.row);
+    set_force(size_, entering.force);
+    ++size_;
+  } else if (leaving.row >= 0) {
+    rows_.set_row_priced(tight_[entering.slack], true);
+    set_tight(entering.slack, leaving.row);
+  } else if (entering.force >= 0) {
+    rows_.set_column_priced(force_[leaving.force], true);
+    set_force(leaving.force, entering.force);
+  } else {
+    rows_.set_row_priced(tight_[entering.slack], true);
+    rows_.set_column_priced(force_[leaving.force], true);
+    --size_;
+    tight_[entering.slack] = tight_[size_];
+    tight_row_[entering.slack] = tight_row_[size_];
+    force_[leaving.force] = force_[size_];
+    force_row_[leaving.force] = force_row_[size_];
+  }
+}
+
+bool LpSolver::certify_infeasible(const Leaving& leaving) noexcept {
+  Vec6 z = rows_.unit_row(leaving.row);
+  double gain = rows_.d(leaving.row) * rows_.inverse_norm(leaving.row);
+  result_.dual.add(leaving.row, rows_.inverse_norm(leaving.row));
+  for (int q = 0; q < size_; ++q) {
+    const double y = std::max(-leaving.slack[q], 0.0);
+    if (y > 0) {
+      z += y * tight_row_[q];
+      gain += y * rows_.d(tight_[q]) * rows_.inverse_norm(tight_[q]);
+      result_.dual.add(tight_[q], y * rows_.inverse_norm(tight_[q]));
+    }
+  }
+  result_.reach = gain / z.norm();
+  if (gain > 0 && result_.reach > kHopeless * rows_.largest_violation()) {
+    return true;
+  }
+  result_.dual = {};
+  return false;
+}
+
+void LpSolver::finish() noexcept {
+  Vec6 u = Vec6::Zero();
+  for (int k = 0; k < size_; ++k) {
+    const double f = std::max(f_[k], 0.0) * rows_.inverse_norm(force_[k]);
+    const double y = std::max(y_[k], 0.0) * rows_.inverse_norm(tight_[k]);
+    if (f > 0) {
+      result_.force.add(force_[k], f);
+      result_.w += f * g_->row(force_[k]);
+      result_.objective += f;
+    }
+    if (y > 0) {
+      result_.dual.add(tight_[k], y);
+      u += y * g_->row(tight_[k]);
+      result_.dual_objective += y * rows_.d(tight_[k]);
+    }
+  }
+  double worst = 0;
+  for (int i = 0; i < g_->rows(); ++i) {
+    const Vec6 row = g_->row(i);
+    const double short_by = rows_.d(i) - row.dot(result_.w);
+    result_.primal_residual = std::max(result_.primal_residual, short_by);
+    worst = std::max(worst, short_by * rows_.inverse_norm(i));
+    result_.dual_residual = std::max(result_.dual_residual, row.dot(u) - 1);
+  }
+  const double gap = std::abs(result_.objective - result_.dual_objective);
+  if (worst <= kAccepted * (rows_.largest_violation() + result_.w.norm()) && result_.dual_residual <= kAccepted &&
+      gap <= kAccepted * result_.objective) {
+    result_.status = LpStatus::optimal;
+    return;
+  }
+  result_.force = {};
+  result_.dual = {};
+  result_.w.setZero();
+}
+
+}  // namespace tegotae
