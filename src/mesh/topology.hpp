@@ -16,10 +16,14 @@ enum class EdgeKind : std::uint8_t {
   flat,         ///< coplanar within kFlatAngle
   concave,      ///< they bend towards the viewer
   boundary,     ///< one face only
-  non_manifold  ///< more than two faces, or two that turn against each other
+  non_manifold  ///< more than two faces, or two that turn against each other, or one of the two has no normal
 };
 
 /// Half-edge adjacency of a welded mesh. Half-edge h = 3 f + k runs from triangles[f][k] to triangles[f][(k + 1) % 3].
+///
+/// A *collapsed* face (two corners are one vertex) is no part of it: no walk reaches one, its neighbors are linked to
+/// each other. A *sliver* (three corners on a line, see precision.hpp) is linked like any face and has the normal of
+/// the face across its longest edge, so that a sliver in a flat region makes no crease.
 struct Topology {
   struct Edge {
     std::array<std::uint32_t, 2> v;  ///< end vertices; the half-edge of face f[0] runs from v[0] to v[1]
@@ -27,15 +31,15 @@ struct Topology {
     EdgeKind kind;
   };
 
-  std::vector<std::uint32_t> twin;                        ///< 3 F: opposite half-edge, kNone where there is no one
-  std::vector<Edge> edges;                                ///< E
-  std::vector<std::array<std::uint32_t, 3>> face_edges;   ///< F: edge of half-edge 3 f + k
-  std::vector<Vec3> face_normals;                         ///< F: unit, file frame; zero for a degenerate face
-  std::vector<std::uint32_t> vertex_face_begin;           ///< V + 1: offsets into vertex_faces
-  std::vector<std::uint32_t> vertex_faces;                ///< faces around each vertex
-  std::vector<std::uint32_t> vertex_edge_begin;           ///< V + 1: offsets into vertex_edges
-  std::vector<std::uint32_t> vertex_edges;                ///< edges around each vertex
-  std::vector<std::uint8_t> vertex_flat;                  ///< V: all faces around the vertex coplanar, none missing
+  std::vector<std::uint32_t> twin;                       ///< 3 F: opposite half-edge, kNone where there is no one
+  std::vector<Edge> edges;                               ///< E
+  std::vector<std::array<std::uint32_t, 3>> face_edges;  ///< F: edge of half-edge 3 f + k; kNone if collapsed
+  std::vector<Vec3> face_normals;                        ///< F: unit, file frame; zero if collapsed (or no one lends)
+  std::vector<std::uint32_t> vertex_face_begin;          ///< V + 1: offsets into vertex_faces
+  std::vector<std::uint32_t> vertex_faces;               ///< faces around each vertex
+  std::vector<std::uint32_t> vertex_edge_begin;          ///< V + 1: offsets into vertex_edges
+  std::vector<std::uint32_t> vertex_edges;               ///< edges around each vertex
+  std::vector<std::uint8_t> vertex_flat;                 ///< V: all faces around the vertex coplanar, none missing
 };
 
 /// Adjacency of `mesh`, which must be welded. Works for any surface; what is not manifold is marked.

@@ -6,14 +6,16 @@ namespace tegotae {
 
 /// Mass properties of a homogeneous part.
 struct MassProperties {
-  double mass = 0;               ///< kg
-  Vec3 center = Vec3::Zero();    ///< center of mass, m, file frame
-  Mat3 inertia = Mat3::Zero();   ///< about the center of mass, kg·m², file axes
-  bool from_volume = false;      ///< false: the stated fallback was used
+  double mass = 0;              ///< kg
+  Vec3 center = Vec3::Zero();   ///< center of mass, m, file frame
+  Mat3 inertia = Mat3::Zero();  ///< about the center of mass, kg·m², file axes
+  bool from_volume = false;     ///< false: the stated fallback was used
 };
 
-/// Mass, center and inertia. A closed mesh with positive volume: the exact volume integral at `density` (kg/m³), after
-/// Mirtich, "Fast and accurate computation of polyhedral mass properties" (1996). Any other mesh: its bounding box,
+/// Mass, center and inertia; the inertia is positive definite for any mesh with an extent. A closed mesh with a volume:
+/// the exact volume integral at `density` (kg/m³), as a sum over tetrahedra (Tonon, "Explicit exact formulas for the
+/// 3-D tetrahedron inertia tensor", 2004); a mesh turned inside out counts as its mirror, with the absolute volume. Any
+/// other mesh: its bounding box,
 /// solid, at the same density (a box with no thickness in a direction gets 1 % of its largest side there), centered on
 /// the area centroid of the surface clamped to the box.
 MassProperties mass_properties(const TriangleMesh& mesh, bool closed, double density = 1000.0);

@@ -10,11 +10,11 @@ namespace tegotae {
 struct MeshReport {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  std::size_t components = 0;          ///< sets of triangles joined over shared edges
+  std::size_t components = 0;          ///< sets of triangles joined over shared edges, collapsed ones left out
   std::size_t boundary_edges = 0;      ///< edges of one face
   std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two that turn against each other
-  std::size_t degenerate_faces = 0;    ///< no area to speak of (they are kept out of the contact surface's normals)
-  std::size_t duplicate_faces = 0;     ///< the same three vertices as an earlier face, in any order
+  std::size_t degenerate_faces = 0;    ///< collapsed, or lower than 8 steps of single precision (normals not used)
+  std::size_t duplicate_faces = 0;     ///< the same three vertices as an earlier face, in any order; none collapsed
   bool closed = false;                 ///< every edge joins exactly two faces that turn the same way
   Vec3 box_min = Vec3::Zero();         ///< m, file frame
   Vec3 box_max = Vec3::Zero();

@@ -1,0 +1,83 @@
+#include "tegotae/mesh/report.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "mesh/precision.hpp"
+#include "mesh/topology.hpp"
+
+namespace tegotae {
+namespace {
+
+std::size_t count_components(const TriangleMesh& mesh, const Topology& topology) {
+  std::vector<std::uint32_t> parent(mesh.triangles.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t f) {
+    while (parent[f] != f) f = parent[f] = parent[parent[f]];
+    return f;
+  };
+  std::size_t components = 0;
+  std::vector<std::uint32_t> first_face(topology.edges.size(), kNone);
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (is_collapsed(mesh.triangles[f])) continue;
+    ++components;
+    for (const std::uint32_t e : topology.face_edges[f]) {
+      if (first_face[e] == kNone) {
+        first_face[e] = f;
+        continue;
+      }
+      const std::uint32_t a = root(f), b = root(first_face[e]);
+      if (a == b) continue;
+      parent[a] = b;
+      --components;
+    }
+  }
+  return components;
+}
+
+std::size_t count_duplicates(const TriangleMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  faces.reserve(mesh.triangles.size());
+  for (auto t : mesh.triangles) {
+    if (is_collapsed(t)) continue;
+    std::sort(t.begin(), t.end());
+    faces.push_back(t);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces.size() - static_cast<std::size_t>(std::unique(faces.begin(), faces.end()) - faces.begin());
+}
+
+}  // namespace
+
+MeshReport report(const TriangleMesh& mesh) {
+  const Topology topology = build_topology(mesh);
+  MeshReport out;
+  out.vertices = mesh.vertices.size();
+  out.triangles = mesh.triangles.size();
+  out.components = count_components(mesh, topology);
+  out.duplicate_faces = count_duplicates(mesh);
+
+  const double step = rounding_step(mesh);
+  for (const auto& t : mesh.triangles) out.degenerate_faces += is_degenerate(mesh, t, step);
+  // By the faces that meet, not by the kind: next to a sliver without a normal the kind says non_manifold.
+  for (std::uint32_t e = 0; e < topology.edges.size(); ++e) {
+    const Topology::Edge& edge = topology.edges[e];
+    if (edge.f[1] == kNone) {
+      ++out.boundary_edges;
+      continue;
+    }
+    const auto& around = topology.face_edges[edge.f[0]];
+    const auto k = static_cast<std::uint32_t>(std::find(around.begin(), around.end(), e) - around.begin());
+    if (topology.twin[3 * edge.f[0] + k] == kNone) ++out.non_manifold_edges;
+  }
+  out.closed = !topology.edges.empty() && out.boundary_edges == 0 && out.non_manifold_edges == 0;
+
+  if (!mesh.vertices.empty()) out.box_min = out.box_max = mesh.vertices[0];
+  for (const Vec3& p : mesh.vertices) {
+    out.box_min = out.box_min.cwiseMin(p);
+    out.box_max = out.box_max.cwiseMax(p);
+  }
+  return out;
+}
+
+}  // namespace tegotae
