@@ -1,11 +1,13 @@
 #include "tegotae/sim/scene_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "resolve/resolver.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
@@ -40,6 +42,12 @@ Quat from_roll_pitch_yaw(const std::vector<double>& rpy_deg) {
       .normalized();
 }
 
+/// Length (m) of the unit under "unit".
+double read_unit(const TomlTable& t, const char* fallback) {
+  const std::string name = t.text("unit", fallback);
+  return about(t, "unit", [&] { return unit_length(name); });
+}
+
 Pose read_pose(const TomlTable& t) {
   Pose X;
   if (t.has("position")) X.p = Vec3(t.numbers("position", 3).data());
@@ -56,7 +64,7 @@ Pose read_pose(const TomlTable& t) {
 }
 
 void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene& scene) {
-  const double default_unit = about(top, "unit", [&] { return unit_length(top.text("unit", "m")); });
+  const double default_unit = read_unit(top, "m");
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
   std::string held;
@@ -69,7 +77,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene
     if (part.held && !held.empty()) t.fail("held", "part " + held + " is held already; exactly one part is");
     if (part.held) held = part.name;
     part.pose = read_pose(t);
-    const double unit = about(t, "unit", [&] { return t.has("unit") ? unit_length(t.text("unit")) : default_unit; });
+    const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder);
     auto& mesh = meshes[{file, unit}];
     if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(load_mesh(file, unit)); });
@@ -85,6 +93,11 @@ void read_contact(const TomlTable& t, ContactSettings& s) {
   s.l_0 = t.positive("l_0", s.l_0);
   s.density = t.positive("density", s.density);
   s.resolver = t.text("resolver", s.resolver);
+  const std::vector<std::string>& known = resolver_names();
+  if (std::find(known.begin(), known.end(), s.resolver) != known.end()) return;
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  t.fail("resolver", "unknown resolver " + s.resolver + " (known: " + list + ")");
 }
 
 void read_coupling(const TomlTable& t, CouplingSettings& s) {

@@ -215,7 +215,7 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {good + "hand = { mass = -1 }\n", "scene.toml:12: device.hand.mass: must not be negative"},
       {good + "type = \"phantom\"\n", "scene.toml:12: device.type: unknown device type"},
       // Parts.
-      {kDevice, "scene.toml: part: the scene has no [[part]]"},
+      {kDevice, "scene.toml:1: part: the scene has no [[part]]"},
       {replaced(good, "held = true", "held = false"), "scene.toml:2: part: no part is held"},
       {replaced(good, "\"block\"", "\"block\"\nheld = true"), "scene.toml:9: part.held: part block is held already"},
       {replaced(good, "\"peg\"", "\"block\""), "scene.toml:6: part.name: another part is named block"},
