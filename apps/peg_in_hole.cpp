@@ -12,12 +12,14 @@ int main(int argc, char** argv) {
   RunOptions options;
   double ratio = 0.94;
   std::string folder;
-  app.add_option("--ratio", ratio, "Diameter of the peg by that of the hole, " + ratio_range())
-      ->check([](const std::string& text) { return check_ratio(text); })
+  app.add_option(
+         "--ratio", ratio,
+         "Diameter of the peg by that of the hole, " + ratio_text(kLoosestRatio) + " to " + ratio_text(kTightestRatio))
       ->capture_default_str()
       ->type_name("R");
   add_run_options(app, options);
-  app.add_option("--scene-out", folder, "Also write the scene, its meshes and its script to a folder")->type_name("DIR");
+  app.add_option("--scene-out", folder, "Also write the scene, its meshes and its script to a folder")
+      ->type_name("DIR");
 
   return guarded_main(app, argc, argv, [&] {
     const PegScene peg = make_peg_scene(ratio);

@@ -38,9 +38,9 @@ double start_height(const PegTask& task) {
 StylusScript insertion_script(const PegTask& task) {
   const double mm = 1e-3, down = -task.depth;
   const std::vector<Waypoint> way = {
-      {0.0, 0, 0, start_height(task), 0},     //
-      {1.0, 1.2 * mm, 0, 4 * mm, 3},          // comes down a millimeter off and tilted
-      {1.6, 1.2 * mm, 0.3 * mm, -2 * mm, 3},  // hits the rim and presses
+      {0.0, 0, 0, task.start, 0},             //
+      {1.0, 2.2 * mm, 0, 4 * mm, 3},          // comes down two millimeters off and tilted
+      {1.6, 2.2 * mm, 0.3 * mm, -2 * mm, 3},  // hits the rim and presses
       {2.4, -0.2 * mm, 0, -2 * mm, 3},        // slides over the hole
       {3.2, 0, 0, -6 * mm, 3},                // goes in tilted until it jams
       {3.8, 0, 0, -6 * mm, 0},                // straightens up

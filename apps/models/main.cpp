@@ -1,0 +1,69 @@
+// tegotae-models: writes the parts of the experiments as OBJ files (mm).
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "models/shapes.hpp"
+#include "models/write_obj.hpp"
+
+namespace {
+
+using namespace tegotae;
+
+void write_models(const std::string& folder, const std::vector<double>& ratios, bool all, int segments, int rings) {
+  std::filesystem::create_directories(folder);
+  const auto path = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
+
+  shapes::Block block;
+  block.segments = segments;
+  block.rings = rings;
+  write_obj(shapes::block_with_hole(block), path("hole_20.obj"));
+  for (const double ratio : ratios) {
+    shapes::Peg peg;
+    peg.diameter = ratio * block.hole_diameter;
+    peg.segments = segments;
+    peg.rings = rings;
+    char name[64];
+    std::snprintf(name, sizeof name, "peg_%.9g.obj", ratio);
+    write_obj(shapes::peg(peg), path(name));
+  }
+  if (!all) return;
+  write_obj(shapes::box({0.04, 0.04, 0.04}), path("cube.obj"));
+  // The wall's face is the plane x = 0, the floor's the plane z = 0; both look at the cube.
+  write_obj(shapes::moved(shapes::box({0.01, 0.2, 0.2}), {0.005, 0, 0}), path("wall.obj"));
+  write_obj(shapes::moved(shapes::box({0.2, 0.2, 0.01}), {0, 0, -0.005}), path("floor.obj"));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Writes the parts of the experiments as OBJ files, in mm: pegs for a hole of 20 mm, a block with that "
+      "hole, a cube, a wall and a floor.");
+  std::string out;
+  std::vector<double> ratios;
+  int segments = 64, rings = 8;
+  app.add_option("--out", out, "Folder to write to")->required();
+  app.add_option("--ratio", ratios, "Peg diameter / hole diameter: writes only these pegs and the hole")
+      ->check(CLI::Range(0.01, 0.999999));
+  app.add_option("--segments", segments, "Facets around peg and hole, a multiple of 8")->check(CLI::Range(8, 8192));
+  app.add_option("--rings", rings, "Bands along peg and hole")->check(CLI::Range(1, 8192));
+  try {
+    app.parse(argc, argv);
+    const bool all = ratios.empty();
+    if (all) ratios = {0.91, 0.92, 0.93, 0.94, 0.99};
+    write_models(out, ratios, all, segments, rings);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help
+    std::fprintf(stderr, "tegotae-models: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "tegotae-models: %s\n", e.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,179 @@
+#include "mesh/file_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "mesh/ply_check.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\n";
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw Error(path + ": " + why);
+}
+
+std::string read_bytes(const std::string& path) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status)) refuse(path, "is a folder, not a mesh file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) refuse(path, "cannot be read to its end");
+  return bytes;
+}
+
+std::string extension_of(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  return value;
+}
+
+void check_stl(const std::string& path, std::string_view bytes) {
+  constexpr std::size_t kHeader = 84, kFacet = 50;
+  const std::uint64_t facets = bytes.size() < kHeader ? 0 : little_endian_32(bytes, kHeader - 4);
+  if (bytes.size() >= kHeader && kHeader + kFacet * facets == bytes.size()) return;  // binary
+  const std::size_t start = std::min(bytes.find_first_not_of(kBlank), bytes.size());
+  if (bytes.substr(start, 5) == "solid") {
+    const std::size_t end = bytes.rfind("endsolid");
+    if (end == std::string_view::npos || bytes.find("facet", end) != std::string_view::npos) {
+      refuse(path, "truncated: the last solid has no endsolid");
+    }
+    return;
+  }
+  if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
+  refuse(path, (kHeader + kFacet * facets > bytes.size() ? "truncated: " : "damaged: ") + std::to_string(facets) +
+                   " triangles are announced, the file has room for " +
+                   std::to_string((bytes.size() - kHeader) / kFacet));
+}
+
+/// An OBJ file that stops in the middle of a line: assimp takes a face of two corners for a line, and drops it.
+void check_obj(const std::string& path, std::string_view bytes) {
+  if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return;
+  const std::string_view line = bytes.substr(bytes.find_last_of("\r\n") + 1);
+  if (line.substr(0, 2) != "f " && line.substr(0, 2) != "v ") return;
+  std::size_t words = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    words += std::isspace(static_cast<unsigned char>(line[i])) == 0 && (i == 0 || std::isspace(line[i - 1]) != 0);
+  }
+  if (words < 4) refuse(path, "truncated: the last line is \"" + std::string(line) + '"');
+}
+
+/// Words of an OFF file; comments run from # to the end of the line.
+class OffWords {
+ public:
+  explicit OffWords(std::string_view bytes) : bytes_(bytes) {}
+
+  std::string_view next() {
+    skip();
+    const std::size_t begin = at_;
+    while (at_ < bytes_.size() && kBlank.find(bytes_[at_]) == std::string_view::npos) ++at_;
+    return bytes_.substr(begin, at_ - begin);
+  }
+  /// Whether the line has another word.
+  bool more_in_line() {
+    while (at_ < bytes_.size() && (bytes_[at_] == ' ' || bytes_[at_] == '\t' || bytes_[at_] == '\r')) ++at_;
+    return at_ < bytes_.size() && bytes_[at_] != '\n' && bytes_[at_] != '#';
+  }
+  bool next_integer(std::int64_t& value) {
+    const std::string_view word = next();
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size();
+  }
+
+ private:
+  void skip() {
+    while (at_ < bytes_.size()) {
+      if (bytes_[at_] == '#') {
+        at_ = std::min(bytes_.find('\n', at_), bytes_.size());
+      } else if (kBlank.find(bytes_[at_]) != std::string_view::npos) {
+        ++at_;
+      } else {
+        return;
+      }
+    }
+  }
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+void check_off(const std::string& path, std::string_view bytes) {
+  OffWords words(bytes);
+  const std::string_view magic = words.next();
+  if (magic.size() < 3 || magic.substr(magic.size() - 3) != "OFF") refuse(path, "damaged: it does not begin with OFF");
+  std::int64_t vertices = 0, faces = 0, edges = 0;
+  if (!words.next_integer(vertices) || !words.next_integer(faces) || !words.next_integer(edges) || vertices < 0 ||
+      faces < 0) {
+    refuse(path, "damaged: the counts of vertices, faces and edges are no numbers (text OFF only)");
+  }
+  const auto room = static_cast<std::int64_t>(bytes.size());
+  if (vertices > room || faces > room) refuse(path, "truncated: it announces more elements than it has bytes");
+  for (std::int64_t i = 0; i < vertices; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (words.next().empty()) refuse(path, "truncated: it ends in vertex " + std::to_string(i));
+    }
+    while (words.more_in_line()) words.next();
+  }
+  for (std::int64_t i = 0; i < faces; ++i) {
+    std::int64_t corners = 0;
+    if (!words.next_integer(corners)) refuse(path, "truncated or damaged at face " + std::to_string(i));
+    for (std::int64_t k = 0; k < corners; ++k) {
+      std::int64_t index = 0;
+      if (!words.next_integer(index)) refuse(path, "truncated or damaged in face " + std::to_string(i));
+      if (index < 0 || index >= vertices) {
+        refuse(path, "index out of range: face " + std::to_string(i) + " names vertex " + std::to_string(index) +
+                         " of " + std::to_string(vertices));
+      }
+    }
+    while (words.more_in_line()) words.next();
+  }
+}
+
+void check_glb(const std::string& path, std::string_view bytes) {
+  if (bytes.size() < 12 || bytes.substr(0, 4) != "glTF") refuse(path, "damaged: no glTF binary header");
+  if (little_endian_32(bytes, 8) > bytes.size()) refuse(path, "truncated: shorter than its header says");
+}
+
+}  // namespace
+
+void check_mesh_file(const std::string& path) {
+  const std::string bytes = read_bytes(path);
+  if (bytes.find_first_not_of(kBlank) == std::string::npos) refuse(path, "empty file");
+  const std::string extension = extension_of(path);
+  const std::string_view start = std::string_view(bytes).substr(bytes.find_first_not_of(kBlank));
+  if (start.substr(0, 12) == "ISO-10303-21" || extension == ".step" || extension == ".stp") {
+    refuse(path, "a STEP file has no triangles: tessellate it first (export STL or OBJ from the CAD program)");
+  }
+  if (extension == ".stl") {
+    check_stl(path, bytes);
+  } else if (extension == ".obj") {
+    check_obj(path, bytes);
+  } else if (extension == ".off") {
+    check_off(path, bytes);
+  } else if (extension == ".ply") {
+    check_ply(path, bytes);
+  } else if (extension == ".glb") {
+    check_glb(path, bytes);
+  } else if (extension != ".gltf") {
+    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb)");
+  }
+}
+
+}  // namespace tegotae
