@@ -27,6 +27,7 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
   result_.z = z0;
   g_ = &g;
   size_ = 0;
+  span_.clear();
   x_.setZero();
   const RowWorkspace::Input input = rows_.load(g, b, z0);
   if (input == RowWorkspace::Input::bad) {
@@ -53,8 +54,8 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
       }
       Vec6 outside;
       double along[6];
-      split(row, outside, along);
-      solve_triangular(along);
+      span_.split(row, outside, along);
+      span_.solve_upper(along);
       const double square = outside.squaredNorm();
       const bool independent = size_ < 6 && square > kDependent * kDependent;
       double step = std::numeric_limits<double>::infinity();
@@ -88,75 +89,33 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
   }
 }
 
-void LeastDistanceSolver::split(const Vec6& row, Vec6& outside, double* inside) const noexcept {
-  outside = row;
-  std::fill_n(inside, 6, 0.0);
-  // Twice is enough: the second pass removes what rounding left of the span.
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < size_; ++i) {
-      const double h = basis_[i].dot(outside);
-      inside[i] += h;
-      outside -= h * basis_[i];
-    }
-  }
-}
-
-void LeastDistanceSolver::solve_triangular(double* h) const noexcept {
-  for (int i = size_ - 1; i >= 0; --i) {
-    for (int j = i + 1; j < size_; ++j) {
-      h[i] -= r_[i][j] * h[j];
-    }
-    h[i] /= r_[i][i];
-  }
-}
-
 bool LeastDistanceSolver::append(int row) noexcept {
-  Vec6 outside;
-  double inside[6];
-  const Vec6 unit_row = rows_.unit_row(row);
-  split(unit_row, outside, inside);
-  const double length = outside.norm();
-  if (size_ == 6 || !(length > kDependent)) {
+  if (!span_.append(rows_.unit_row(row), kDependent)) {
     return false;
   }
-  for (int i = 0; i < size_; ++i) {
-    r_[i][size_] = inside[i];
-  }
-  r_[size_][size_] = length;
-  basis_[size_] = outside / length;
-  row_[size_] = unit_row;
-  active_[size_] = row;
+  active_[size_++] = row;
   rows_.set_row_priced(row, false);
-  ++size_;
   return true;
 }
 
 void LeastDistanceSolver::drop(int position) noexcept {
-  const int count = size_;
-  const std::array<int, 6> kept = active_;
-  const std::array<double, 6> lambda = lambda_;
-  rows_.set_row_priced(kept[position], true);
-  size_ = 0;
-  for (int i = 0; i < count; ++i) {
-    if (i != position && append(kept[i])) {
-      lambda_[size_ - 1] = lambda[i];
-    }
-  }
+  rows_.set_row_priced(active_[position], true);
+  span_.remove(position);
+  std::copy(active_ + position + 1, active_ + size_, active_ + position);
+  std::copy(lambda_ + position + 1, lambda_ + size_, lambda_ + position);
+  --size_;
 }
 
 void LeastDistanceSolver::solve_active() noexcept {
-  double c[6];
+  for (int i = 0; i < size_; ++i) {
+    lambda_[i] = rows_.d(active_[i]) * rows_.inverse_norm(active_[i]);
+  }
+  span_.solve_lower(lambda_);
   x_.setZero();
   for (int i = 0; i < size_; ++i) {
-    c[i] = rows_.d(active_[i]) * rows_.inverse_norm(active_[i]);
-    for (int j = 0; j < i; ++j) {
-      c[i] -= r_[j][i] * c[j];
-    }
-    c[i] /= r_[i][i];
-    x_ += c[i] * basis_[i];
+    x_ += lambda_[i] * span_.basis(i);
   }
-  solve_triangular(c);
-  std::copy_n(c, size_, lambda_.begin());
+  span_.solve_upper(lambda_);
 }
 
 void LeastDistanceSolver::start_from(const int* warm, int warm_count) noexcept {
@@ -168,11 +127,11 @@ void LeastDistanceSolver::start_from(const int* warm, int warm_count) noexcept {
   // The method may start from any set of rows whose own problem has them all pulling.
   for (;;) {
     solve_active();
-    const auto least = std::min_element(lambda_.begin(), lambda_.begin() + size_);
+    const double* least = std::min_element(lambda_, lambda_ + size_);
     if (size_ == 0 || *least >= 0) {
       return;
     }
-    drop(static_cast<int>(least - lambda_.begin()));
+    drop(static_cast<int>(least - lambda_));
   }
 }
 
@@ -183,7 +142,7 @@ bool LeastDistanceSolver::certify_infeasible(int row, const double* along) noexc
   for (int i = 0; i < size_; ++i) {
     const double y = std::max(-along[i], 0.0);
     if (y > 0) {
-      z += y * row_[i];
+      z += y * rows_.unit_row(active_[i]);
       gain += y * rows_.d(active_[i]) * rows_.inverse_norm(active_[i]);
       result_.multipliers.add(active_[i], y * rows_.inverse_norm(active_[i]));
     }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <limits>
 
 #include "lp/low_rank_matrix.hpp"
 #include "lp/row_workspace.hpp"
 #include "lp/solution.hpp"
+#include "lp/span_basis.hpp"
 
 namespace tegotae {
 
@@ -38,10 +38,6 @@ class LeastDistanceSolver {
                         int warm_count = 0) noexcept;
 
  private:
-  /// row = outside + Σ inside_i basis_i.
-  void split(const Vec6& row, Vec6& outside, double* inside) const noexcept;
-  /// h becomes R⁻¹ h.
-  void solve_triangular(double* h) const noexcept;
   /// Makes `row` active; false when it depends on the active rows.
   bool append(int row) noexcept;
   void drop(int position) noexcept;
@@ -52,13 +48,11 @@ class LeastDistanceSolver {
 
   RowWorkspace rows_;
   const LowRankMatrix* g_ = nullptr;
-  int size_ = 0;                    ///< active rows
-  std::array<int, 6> active_{};     ///< which
-  Vec6 row_[6];                     ///< their unit rows
-  Vec6 basis_[6];                   ///< orthonormal basis of their span
-  double r_[6][6] = {};             ///< row_[j] = Σ_i r_[i][j] basis_[i], upper triangular
-  std::array<double, 6> lambda_{};  ///< multipliers times the row length
-  Vec6 x_ = Vec6::Zero();           ///< z - z0
+  int size_ = 0;           ///< active rows
+  int active_[6] = {};     ///< which
+  SpanBasis span_;         ///< of their unit rows
+  double lambda_[6] = {};  ///< multipliers times the row length
+  Vec6 x_ = Vec6::Zero();  ///< z - z0
   QpResult result_;
 };
 

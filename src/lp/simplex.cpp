@@ -33,6 +33,8 @@ const LpResult& LpSolver::solve(const LowRankMatrix& g, const double* d) noexcep
   result_ = LpResult{};
   g_ = &g;
   size_ = 0;
+  force_span_.clear();
+  tight_span_.clear();
   const RowWorkspace::Input input = rows_.load(g, d, Vec6::Zero());
   if (input == RowWorkspace::Input::bad) {
     return result_;
@@ -66,32 +68,39 @@ const LpResult& LpSolver::solve(const LowRankMatrix& g, const double* d) noexcep
     }
     // Bland's rule forbids cycles among degenerate pivots; every other pivot raises the dual objective.
     degenerate = entering.step * leaving.weight > kDegenerateStep * (1 + u_.norm()) ? 0 : degenerate + 1;
-    pivot(leaving, entering);
+    if (!pivot(leaving, entering)) {
+      return result_;
+    }
   }
 }
 
 bool LpSolver::solve_basis() noexcept {
-  double b[6][6];
-  for (int q = 0; q < size_; ++q) {
-    for (int p = 0; p < size_; ++p) {
-      b[q][p] = tight_row_[q].dot(force_row_[p]);
+  // The tight rows of A over the basic forces are R_Qᵀ U_Qᵀ U_P R_P, with U and R of the two spans.
+  double cross[6][6];
+  for (int p = 0; p < size_; ++p) {
+    for (int q = 0; q < size_; ++q) {
+      cross[p][q] = force_span_.basis(p).dot(tight_span_.basis(q));
     }
   }
-  if (!lu_.factor(b, size_)) {
+  if (!cross_.factor(cross, size_)) {
     return false;
   }
   for (int k = 0; k < size_; ++k) {
     f_[k] = rows_.d(tight_[k]) * rows_.inverse_norm(tight_[k]);
     y_[k] = rows_.inverse_norm(force_[k]);
   }
-  lu_.solve(f_);
-  lu_.solve_transposed(y_);
+  tight_span_.solve_lower(f_);
+  cross_.solve_transposed(f_);
+  force_span_.solve_lower(y_);
+  cross_.solve(y_);
   w_.setZero();
   u_.setZero();
   for (int k = 0; k < size_; ++k) {
-    w_ += f_[k] * force_row_[k];
-    u_ += y_[k] * tight_row_[k];
+    w_ += f_[k] * force_span_.basis(k);
+    u_ += y_[k] * tight_span_.basis(k);
   }
+  force_span_.solve_upper(f_);
+  tight_span_.solve_upper(y_);
   return true;
 }
 
@@ -120,19 +129,22 @@ bool LpSolver::choose_leaving(bool first_index, Leaving& out) noexcept {
 
 void LpSolver::tableau_row(Leaving& leaving) const noexcept {
   if (leaving.row >= 0) {
-    const Vec6 row = rows_.unit_row(leaving.row);
-    for (int p = 0; p < size_; ++p) {
-      leaving.slack[p] = force_row_[p].dot(row);
-    }
-    leaving.v = row;
+    leaving.v = rows_.unit_row(leaving.row);
     leaving.weight = 1;
+    for (int p = 0; p < size_; ++p) {
+      leaving.slack[p] = force_span_.basis(p).dot(leaving.v);
+    }
   } else {
     std::fill_n(leaving.slack, size_, 0.0);
     leaving.slack[leaving.force] = 1;
+    force_span_.solve_lower(leaving.slack);
   }
-  lu_.solve_transposed(leaving.slack);
+  cross_.solve(leaving.slack);
   for (int q = 0; q < size_; ++q) {
-    leaving.v -= leaving.slack[q] * tight_row_[q];
+    leaving.v -= leaving.slack[q] * tight_span_.basis(q);
+  }
+  tight_span_.solve_upper(leaving.slack);
+  for (int q = 0; q < size_; ++q) {
     leaving.weight += std::abs(leaving.slack[q]);
   }
 }
@@ -185,36 +197,37 @@ bool LpSolver::choose_entering(const Leaving& leaving, bool first_index, Enterin
   return out.slack >= 0 || out.force >= 0;
 }
 
-void LpSolver::pivot(const Leaving& leaving, const Entering& entering) noexcept {
-  const auto set_tight = [this](int position, int row) {
-    tight_[position] = row;
-    tight_row_[position] = rows_.unit_row(row);
-    rows_.set_row_priced(row, false);
-  };
-  const auto set_force = [this](int position, int column) {
-    force_[position] = column;
-    force_row_[position] = rows_.unit_row(column);
-    rows_.set_column_priced(column, false);
-  };
-  if (leaving.row >= 0 && entering.force >= 0) {
-    set_tight(size_, leaving.row);
-    set_force(size_, entering.force);
-    ++size_;
-  } else if (leaving.row >= 0) {
+bool LpSolver::pivot(const Leaving& leaving, const Entering& entering) noexcept {
+  int tight_count = size_;
+  int force_count = size_;
+  if (entering.slack >= 0) {
     rows_.set_row_priced(tight_[entering.slack], true);
-    set_tight(entering.slack, leaving.row);
-  } else if (entering.force >= 0) {
-    rows_.set_column_priced(force_[leaving.force], true);
-    set_force(leaving.force, entering.force);
-  } else {
-    rows_.set_row_priced(tight_[entering.slack], true);
-    rows_.set_column_priced(force_[leaving.force], true);
-    --size_;
-    tight_[entering.slack] = tight_[size_];
-    tight_row_[entering.slack] = tight_row_[size_];
-    force_[leaving.force] = force_[size_];
-    force_row_[leaving.force] = force_row_[size_];
+    tight_span_.remove(entering.slack);
+    std::copy(tight_ + entering.slack + 1, tight_ + size_, tight_ + entering.slack);
+    --tight_count;
   }
+  if (leaving.force >= 0) {
+    rows_.set_column_priced(force_[leaving.force], true);
+    force_span_.remove(leaving.force);
+    std::copy(force_ + leaving.force + 1, force_ + size_, force_ + leaving.force);
+    --force_count;
+  }
+  if (leaving.row >= 0) {
+    if (!tight_span_.append(rows_.unit_row(leaving.row), 0)) {
+      return false;
+    }
+    rows_.set_row_priced(leaving.row, false);
+    tight_[tight_count++] = leaving.row;
+  }
+  if (entering.force >= 0) {
+    if (!force_span_.append(rows_.unit_row(entering.force), 0)) {
+      return false;
+    }
+    rows_.set_column_priced(entering.force, false);
+    force_[force_count] = entering.force;
+  }
+  size_ = tight_count;
+  return true;
 }
 
 bool LpSolver::certify_infeasible(const Leaving& leaving) noexcept {
@@ -224,7 +237,7 @@ bool LpSolver::certify_infeasible(const Leaving& leaving) noexcept {
   for (int q = 0; q < size_; ++q) {
     const double y = std::max(-leaving.slack[q], 0.0);
     if (y > 0) {
-      z += y * tight_row_[q];
+      z += y * rows_.unit_row(tight_[q]);
       gain += y * rows_.d(tight_[q]) * rows_.inverse_norm(tight_[q]);
       result_.dual.add(tight_[q], y * rows_.inverse_norm(tight_[q]));
     }
@@ -239,12 +252,12 @@ bool LpSolver::certify_infeasible(const Leaving& leaving) noexcept {
 
 void LpSolver::finish() noexcept {
   Vec6 u = Vec6::Zero();
+  result_.w = w_;
   for (int k = 0; k < size_; ++k) {
     const double f = std::max(f_[k], 0.0) * rows_.inverse_norm(force_[k]);
     const double y = std::max(y_[k], 0.0) * rows_.inverse_norm(tight_[k]);
     if (f > 0) {
       result_.force.add(force_[k], f);
-      result_.w += f * g_->row(force_[k]);
       result_.objective += f;
     }
     if (y > 0) {

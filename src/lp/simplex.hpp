@@ -6,6 +6,7 @@
 #include "lp/row_workspace.hpp"
 #include "lp/small_lu.hpp"
 #include "lp/solution.hpp"
+#include "lp/span_basis.hpp"
 
 namespace tegotae {
 
@@ -26,7 +27,8 @@ struct LpResult {
 
 /// The linear programme of the paper (equations 5 to 7 in the form of docs: A = J M⁻¹ Jᵀ = G Gᵀ) by the dual simplex
 /// method. The basis is at most six forces and as many tight rows because A has rank six; a pivot costs two passes over
-/// the rows, and A is never formed. Starts from f = 0, which is dual feasible. Deterministic: the same input gives the
+/// the rows, and A is never formed.
+/// Starts from f = 0, which is dual feasible. Deterministic: the same input gives the
 /// same bits on every CPU. `solve` allocates nothing.
 class LpSolver {
  public:
@@ -57,7 +59,7 @@ class LpSolver {
   bool choose_leaving(bool first_index, Leaving& out) noexcept;
   void tableau_row(Leaving& leaving) const noexcept;
   bool choose_entering(const Leaving& leaving, bool first_index, Entering& out) noexcept;
-  void pivot(const Leaving& leaving, const Entering& entering) noexcept;
+  bool pivot(const Leaving& leaving, const Entering& entering) noexcept;
   bool certify_infeasible(const Leaving& leaving) noexcept;
   void finish() noexcept;
 
@@ -66,13 +68,13 @@ class LpSolver {
   int size_ = 0;           ///< basic forces = tight rows
   int force_[6] = {};      ///< the basic forces (columns)
   int tight_[6] = {};      ///< the tight rows
-  Vec6 force_row_[6];      ///< their unit rows
-  Vec6 tight_row_[6];      ///< their unit rows
+  SpanBasis force_span_;   ///< of the unit rows of the basic forces: the motions they can make
+  SpanBasis tight_span_;   ///< of the unit tight rows
+  SmallLu cross_;          ///< products of the two bases, forces by tight rows
   double f_[6] = {};       ///< basic forces times the row length
   double y_[6] = {};       ///< duals times the row length
   Vec6 w_ = Vec6::Zero();  ///< Gᵀ f
   Vec6 u_ = Vec6::Zero();  ///< Gᵀ y
-  SmallLu lu_;
   LpResult result_;
 };
 

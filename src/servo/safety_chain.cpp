@@ -32,7 +32,8 @@ SafetyChain::SafetyChain(const SafetySettings& settings) : limits_(settings.limi
 }
 
 SafetyOutput SafetyChain::apply(const SafetyInput& in) noexcept {
-  if (in.device_status != DeviceStatus::enabled) return {{}, in.device_reason};
+  if (in.device_status != DeviceStatus::enabled)
+    return {{}, in.device_reason == ForceOff::none ? ForceOff::software : in.device_reason};
   if (!in.attached) return {{}, ForceOff::software};
   // A heartbeat from the future is no better than an old one.
   if (apart(in.now_ns, in.heartbeat_ns, timeout_ns_)) return {{}, ForceOff::watchdog};

@@ -7,10 +7,10 @@ namespace tegotae {
 /// Spring and damper between the held part and the pen (the paper's section 4.2). The defaults are the closed-loop
 /// stiffness that a PHANTOM Premium 1.5/6DOF renders without vibrating.
 struct CouplingSettings {
-  double stiffness = 800.0;         ///< N/m
-  double damping = 5.0;             ///< N·s/m
-  double torsional_stiffness = 0.3;   ///< N·m/rad
-  double torsional_damping = 0.004;   ///< N·m·s/rad
+  double stiffness = 800.0;          ///< N/m
+  double damping = 5.0;              ///< N·s/m
+  double torsional_stiffness = 0.3;  ///< N·m/rad
+  double torsional_damping = 0.004;  ///< N·m·s/rad
 };
 
 /// What the coupling needs of the held part: its pose `X` and the velocity of its center of mass, in the world.
@@ -22,7 +22,8 @@ struct ProxyState {
 
 /// Wrench on the pen at the held part's center of mass, expressed in the world:
 /// F = k (X − Y) + d (Ẋ − Ẏ), T = k_t rotvec(R_X R_Yᵀ) + d_t (ω_X − ω_Y); zero when nothing touches.
-/// `center` is the center of mass in the file frame (m); `Y_velocity.v` is the velocity of that point of the pen's body.
+/// `center` is the center of mass in the file frame (m); `Y_velocity.v` is the velocity of that point of the pen's
+/// body.
 Wrench coupling_wrench(const CouplingSettings& settings, const ProxyState& x, const Pose& Y, const Twist& Y_velocity,
                        const Vec3& center) noexcept;
 

@@ -1,0 +1,204 @@
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <clocale>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "catch.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/record/recorder.hpp"
+
+using namespace tegotae;
+
+namespace {
+
+/// A file name that goes away with it.
+struct TemporaryFile {
+  std::string path = (std::filesystem::temp_directory_path() / "tegotae_recording_XXXXXX").string();
+  TemporaryFile() { close(mkstemp(path.data())); }
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
+std::vector<std::string> lines_of(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (char c : line)
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  return cells;
+}
+
+/// Any bits, all finite.
+double random_double(std::mt19937_64& rng) {
+  for (;;) {
+    const std::uint64_t bits = rng();
+    double value;
+    std::memcpy(&value, &bits, sizeof value);
+    if (std::isfinite(value)) return value;
+  }
+}
+
+std::vector<double> numbers_of(const RecordFrame& f) {
+  std::vector<double> v = {f.t};
+  for (const Pose* X : {&f.y, &f.x})
+    for (double number : {X->p.x(), X->p.y(), X->p.z(), X->q.w(), X->q.x(), X->q.y(), X->q.z()}) v.push_back(number);
+  for (const Vec3* u : {&f.wrench.force, &f.wrench.torque})
+    for (int i = 0; i < 3; ++i) v.push_back((*u)[i]);
+  return v;
+}
+
+RecordFrame random_frame(std::mt19937_64& rng) {
+  const auto number = [&rng] { return random_double(rng); };
+  RecordFrame f;
+  f.tick = rng();
+  f.substep = static_cast<std::uint32_t>(rng());
+  f.t = number();
+  for (Pose* X : {&f.y, &f.x}) {
+    X->p = Vec3(number(), number(), number());
+    X->q = Quat(number(), number(), number(), number());
+  }
+  f.wrench.force = Vec3(number(), number(), number());
+  f.wrench.torque = Vec3(number(), number(), number());
+  f.contacts = static_cast<int>(rng());
+  f.gap = number();
+  f.tick_us = number();
+  return f;
+}
+
+const char* const kHeader =
+    "tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,fx,fy,fz,tx,ty,tz,contacts,"
+    "gap,tick_us";
+
+/// Limits the size of files that this process writes, and takes it back.
+struct FileSizeLimit {
+  rlimit before{};
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit now{bytes, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &now);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before); }
+};
+
+}  // namespace
+
+TEST_CASE("what is read from a recording are the same bits", "[record]") {
+  const RecordMode mode = GENERATE(RecordMode::synchronous, RecordMode::threaded);
+  // A locale with a decimal comma must not matter; where it is not installed this changes nothing.
+  std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const TemporaryFile file;
+  std::mt19937_64 rng(7);
+  std::vector<RecordFrame> frames;
+  for (int i = 0; i < 2000; ++i) frames.push_back(random_frame(rng));
+  frames[1].gap = std::numeric_limits<double>::infinity();
+  Recorder recorder(file.path, mode);
+  for (const RecordFrame& f : frames) recorder.push(f);
+  CHECK(recorder.rows() == frames.size());
+  CHECK(recorder.dropped() == 0);
+  recorder.close();
+  std::setlocale(LC_ALL, "C");
+
+  const std::vector<std::string> lines = lines_of(file.path);
+  REQUIRE(lines.size() == frames.size() + 1);
+  REQUIRE(lines[0] == kHeader);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::vector<std::string> cells = split(lines[i + 1]);
+    REQUIRE(cells.size() == 26);
+    REQUIRE(std::strtoull(cells[0].c_str(), nullptr, 10) == frames[i].tick);
+    REQUIRE(std::strtoull(cells[1].c_str(), nullptr, 10) == frames[i].substep);
+    const std::vector<double> expected = numbers_of(frames[i]);
+    REQUIRE(expected.size() == 21);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      char* end = nullptr;
+      REQUIRE(std::strtod(cells[k + 2].c_str(), &end) == expected[k]);
+      REQUIRE(*end == 0);
+    }
+    REQUIRE(std::atoi(cells[23].c_str()) == frames[i].contacts);
+    REQUIRE(std::strtod(cells[24].c_str(), nullptr) == frames[i].gap);
+    REQUIRE(std::strtod(cells[25].c_str(), nullptr) == frames[i].tick_us);
+  }
+  CHECK(split(lines[2])[24] == "inf");
+}
+
+TEST_CASE("a recording that cannot be made says so at once", "[record]") {
+  CHECK_THROWS_WITH(Recorder("/nonexistent/dir/r.csv", RecordMode::synchronous),
+                    Catch::Contains("/nonexistent/dir/r.csv") && Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(Recorder("/dev/full", RecordMode::threaded),
+                    Catch::Contains("/dev/full") && Catch::Contains("No space left"));
+}
+
+TEST_CASE("a disk that becomes full is told when closing", "[record]") {
+  const RecordMode mode = GENERATE(RecordMode::synchronous, RecordMode::threaded);
+  const TemporaryFile file;
+  const FileSizeLimit limit(100'000);
+  Recorder recorder(file.path, mode);
+  std::mt19937_64 rng(3);
+  for (int i = 0; i < 2000; ++i) recorder.push(random_frame(rng));
+  CHECK_THROWS_WITH(recorder.close(), Catch::Contains(file.path) && Catch::Contains("File too large"));
+  CHECK(std::filesystem::file_size(file.path) == 100'000);
+  CHECK_NOTHROW(recorder.close());
+}
+
+TEST_CASE("a full ring drops frames and counts them", "[record]") {
+  const TemporaryFile file;
+  Recorder recorder(file.path, RecordMode::threaded, 8);
+  RecordFrame frame;
+  // Far more and faster than the ring holds between two visits of the writer.
+  for (int i = 0; i < 10'000; ++i) {
+    frame.tick = static_cast<std::uint64_t>(i);
+    recorder.push(frame);
+  }
+  recorder.close();
+  CHECK(recorder.dropped() > 0);
+  CHECK(recorder.rows() + recorder.dropped() == 10'000);
+  const std::vector<std::string> lines = lines_of(file.path);
+  REQUIRE(lines.size() == recorder.rows() + 1);
+  long last = -1;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const long tick = std::atol(lines[i].c_str());
+    REQUIRE(tick > last);
+    last = tick;
+  }
+}
+
+TEST_CASE("a killed process leaves whole rows", "[record]") {
+  const RecordMode mode = GENERATE(RecordMode::synchronous, RecordMode::threaded);
+  const TemporaryFile file;
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    Recorder recorder(file.path, mode);
+    std::mt19937_64 rng(5);
+    for (;;) {
+      recorder.push(random_frame(rng));
+      if (mode == RecordMode::threaded) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  }
+  const auto enough = [&file] { return std::filesystem::file_size(file.path) > 200'000; };
+  for (int i = 0; i < 6000 && !enough(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  REQUIRE(enough());
+  std::ifstream in(file.path);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  REQUIRE(text.back() == '\n');
+  const std::vector<std::string> lines = lines_of(file.path);
+  for (std::size_t i = 1; i < lines.size(); ++i) REQUIRE(split(lines[i]).size() == 26);
+}

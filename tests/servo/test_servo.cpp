@@ -1,0 +1,317 @@
+#include <sched.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "alloc_guard.hpp"
+#include "catch.hpp"
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/device/simulated_device.hpp"
+#include "tegotae/servo/contact_link.hpp"
+#include "tegotae/servo/servo.hpp"
+
+using namespace tegotae;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// A pen that says what the test tells it to, and remembers what it was asked to render.
+class PuppetDevice : public Device {
+ public:
+  DeviceState state;
+  DeviceStatus now = DeviceStatus::enabled;
+  Wrench rendered;
+  void start() override {}
+  void stop() override {}
+  DeviceState read() noexcept override { return state; }
+  void write(const Wrench& wrench) noexcept override { rendered = wrench; }
+  DeviceStatus status() const noexcept override { return now; }
+  ForceOff reason() const noexcept override {
+    return now == DeviceStatus::enabled ? ForceOff::none : ForceOff::disconnected;
+  }
+};
+
+ProxyState touching_at(const Vec3& p) {
+  ProxyState x;
+  x.X.p = p;
+  x.touching = true;
+  return x;
+}
+
+/// Moves the pen by a script against the wall x >= 0, the proxy being the pen's center projected on the wall, in
+/// virtual time; gives back what the contact loop saw.
+std::vector<PenSample> push_wall(int ticks) {
+  const StylusScript script(
+      {{0, {Quat::Identity(), Vec3(0.02, 0, 0)}}, {0.3, {rotation(Vec3(0, 0.1, 0)), Vec3(-0.01, 0.005, 0)}}});
+  SimulatedDevice device({}, script);
+  device.start();
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  Servo servo(device, channel);
+  std::vector<PenSample> seen;
+  for (int i = 0; i < ticks; ++i) {
+    const std::int64_t now = i * kMs;
+    device.advance(1e-3);
+    servo.tick(now);
+    PenSample pen;
+    REQUIRE(link.read(pen));
+    seen.push_back(pen);
+    ProxyState x;
+    x.X = pen.state.pose;
+    x.touching = x.X.p.x() < 0;
+    x.X.p.x() = std::max(0.0, x.X.p.x());
+    if (x.touching) x.X.q = Quat::Identity();
+    link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, now);
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("a tick renders the coupling to the newest proxy and tells of the pen", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  const Vec3 center(0.01, 0, 0);
+  ContactLink link(channel, {800, 5, 0.3, 0.004}, center);
+  Servo servo(device, channel);
+  device.state = {{Quat::Identity(), Vec3(0, 0, -0.003)}, {Vec3(0, 0, -0.1), Vec3(0, 1, 0)}, 5, 77, 42};
+
+  PenSample pen;
+  CHECK_FALSE(link.read(pen));
+  servo.tick(kMs);
+  REQUIRE(link.read(pen));
+  CHECK(pen.status == DeviceStatus::ready);
+  CHECK(pen.reason == ForceOff::software);
+  CHECK(pen.wrench.force.norm() == 0);
+
+  link.publish(touching_at(Vec3::Zero()), 1, 42, kMs);
+  servo.tick(2 * kMs);
+  REQUIRE(link.read(pen));
+  CHECK((device.rendered.force - Vec3(0, 0, 800 * 0.003 + 5 * 0.1)).norm() < 1e-12);
+  CHECK((device.rendered.torque - Vec3(0, -0.004, 0)).norm() < 1e-15);
+  CHECK(device.center() == center);
+  CHECK(pen.wrench.force == device.rendered.force);
+  CHECK(pen.wrench.torque == device.rendered.torque);
+  CHECK(pen.status == DeviceStatus::enabled);
+  CHECK(pen.reason == ForceOff::none);
+  CHECK(pen.state.pose.p == Vec3(0, 0, -0.003));
+  CHECK(pen.state.velocity.w == Vec3(0, 1, 0));
+  CHECK(pen.state.buttons == 5);
+  CHECK(pen.state.time_ns == 77);
+  CHECK(pen.state.sequence == 42);
+  CHECK(pen.heartbeat_ns == 2 * kMs);
+  CHECK(pen.tick == 1);
+
+  ProxyState free = touching_at(Vec3::Zero());
+  free.touching = false;
+  link.publish(free, 2, 42, 2 * kMs);
+  servo.tick(3 * kMs);
+  REQUIRE(link.read(pen));
+  CHECK(device.rendered.force.norm() == 0);
+  CHECK(pen.reason == ForceOff::none);
+}
+
+TEST_CASE("the force ends with the contact loop's heartbeat and comes back with it", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  Servo servo(device, channel);
+  link.publish(touching_at(Vec3(0.001, 0, 0)), 1, 0, 0);
+  for (int i = 0; i <= 20; ++i) {
+    servo.tick(i * kMs);
+    REQUIRE(device.rendered.force.x() == Approx(0.8));
+  }
+  PenSample pen;
+  servo.tick(21 * kMs);
+  CHECK(device.rendered.force.norm() == 0);
+  REQUIRE(link.read(pen));
+  CHECK(pen.reason == ForceOff::watchdog);
+  CHECK(pen.status == DeviceStatus::ready);
+  link.publish(touching_at(Vec3(0.001, 0, 0)), 2, 0, 21 * kMs);
+  servo.tick(22 * kMs);
+  CHECK(device.rendered.force.x() == Approx(0.8));
+}
+
+TEST_CASE("a device that is lost and a pen that is not finite get no force", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  Servo servo(device, channel);
+  link.publish(touching_at(Vec3(0.001, 0, 0)), 1, 0, 0);
+  PenSample pen;
+  device.now = DeviceStatus::uninitialized;
+  servo.tick(0);
+  REQUIRE(link.read(pen));
+  CHECK(pen.status == DeviceStatus::uninitialized);
+  CHECK(pen.reason == ForceOff::disconnected);
+  CHECK(device.rendered.force.norm() == 0);
+  device.now = DeviceStatus::enabled;
+  device.state.pose.p.y() = std::numeric_limits<double>::quiet_NaN();
+  servo.tick(kMs);
+  REQUIRE(link.read(pen));
+  CHECK(pen.reason == ForceOff::not_finite);
+  CHECK(device.rendered.force.norm() == 0);
+}
+
+TEST_CASE("whatever stands in the application's slot, the wrench stays within the limits", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  Servo servo(device, channel);
+  std::mt19937_64 rng(11);
+  for (int i = 0; i < 20'000; ++i) {
+    std::uint64_t words[sizeof(tegotae_shm_application) / 8];
+    for (std::uint64_t& word : words) {
+      const double moderate = std::uniform_real_distribution<double>(-10, 10)(rng);
+      std::memcpy(&word, &moderate, sizeof word);
+      if (rng() % 8 == 0) word = rng();
+    }
+    tegotae_shm_application garbage;
+    std::memcpy(&garbage, words, sizeof garbage);
+    if (i % 2 == 0) garbage.heartbeat_ns = i * kMs;
+    channel.write(garbage);
+    servo.tick(i * kMs);
+    REQUIRE(device.rendered.force.allFinite());
+    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-15));
+    REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-15));
+    REQUIRE(device.center().allFinite());
+  }
+}
+
+TEST_CASE("closed over the simulated pen, pushing a wall settles where the springs balance", "[servo]") {
+  const std::vector<PenSample> seen = push_wall(3000);
+  // The hand (400 N/m) wants to be 10 mm inside, the coupling is 800 N/m: 3.33 mm and 2.67 N; the friction's dead zone
+  // and the encoder's step apart.
+  const PenSample& last = seen.back();
+  CHECK(last.state.pose.p.x() == Approx(-0.01 / 3).margin(0.04 / 1200 + 3e-5));
+  CHECK(last.wrench.force.x() == Approx(8.0 / 3).margin(800 * (0.04 / 1200 + 3e-5)));
+  CHECK(last.wrench.force.tail<2>().norm() < 1e-12);
+  // 1.5 N·m/rad of the hand against 0.3 of the coupling.
+  CHECK(last.wrench.torque.y() == Approx(-0.3 * 0.1 * 1.5 / 1.8).margin(0.3 * 1e-4));
+  // A rest: the last half second does not move by more than a step of the encoder.
+  for (std::size_t i = 2500; i < seen.size(); ++i)
+    REQUIRE((seen[i].state.pose.p - last.state.pose.p).cwiseAbs().maxCoeff() < 3.1e-5);
+}
+
+TEST_CASE("virtual time gives the same bits each time", "[servo]") {
+  const std::vector<PenSample> a = push_wall(800);
+  const std::vector<PenSample> b = push_wall(800);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    REQUIRE(a[i].state.pose.p == b[i].state.pose.p);
+    REQUIRE(a[i].state.pose.q.coeffs() == b[i].state.pose.q.coeffs());
+    REQUIRE(a[i].wrench.force == b[i].wrench.force);
+    REQUIRE(a[i].wrench.torque == b[i].wrench.torque);
+  }
+}
+
+TEST_CASE("the allocation guard counts", "[servo]") {
+  const test::AllocGuard guard;
+  CHECK(guard.count() == 0);
+  const std::uint64_t before = guard.count();
+  void* volatile memory = std::malloc(100);
+  std::free(memory);
+  const std::uint64_t after_malloc = guard.count();
+  int* volatile object = new int(3);
+  delete object;
+  const std::uint64_t after_new = guard.count();
+  CHECK(after_malloc == before + 2);
+  CHECK(after_new == after_malloc + 2);
+}
+
+TEST_CASE("a servo tick allocates nothing", "[servo]") {
+  SimulatedDevice device({}, StylusScript({{0, Pose()}, {1, {rotation(Vec3(0, 1, 0)), Vec3(0.1, 0, 0)}}}));
+  device.start();
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0));
+  Servo servo(device, channel);
+  std::uint64_t allocations = 0;
+  {
+    const test::AllocGuard guard;
+    PenSample pen;
+    for (int i = 0; i < 1000; ++i) {
+      device.advance(1e-3);
+      servo.tick(i * kMs);
+      link.read(pen);
+      // In contact, out of contact, and silent for longer than the watchdog allows.
+      ProxyState x = touching_at(Vec3(0.001, 0, 0));
+      x.touching = i % 200 < 150;
+      if (i < 900) link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, i * kMs);
+    }
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  ServoSettings settings;
+  settings.rate_hz = 2000;
+  Servo servo(device, channel, settings);
+  const std::int64_t begin = monotonic_ns();
+  servo.start();
+  CHECK_THROWS_WITH(servo.start(), Catch::Contains("runs already"));
+  PenSample pen;
+  std::uint64_t rendered = 0;
+  while (rendered < 300) {
+    link.publish(touching_at(Vec3(0.001, 0, 0)), rendered, 0, monotonic_ns());
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+    if (link.read(pen) && pen.reason == ForceOff::none && pen.wrench.force.x() > 0.7) ++rendered;
+  }
+  servo.stop();
+  const double elapsed = 1e-9 * static_cast<double>(monotonic_ns() - begin);
+  CHECK(device.rendered.force.norm() == 0);
+  const ServoStatistics s = servo.statistics();
+  // Every period of the schedule is a tick or a counted miss.
+  const double periods = static_cast<double>(s.ticks + s.missed);
+  CHECK(periods <= elapsed * 2000 + 2);
+  CHECK(periods >= elapsed * 2000 * 0.5);
+  CHECK(s.ticks > 250);
+  CHECK(s.rate_hz > 0);
+  CHECK(s.rate_hz < 2100);
+  CHECK(s.late_us.p50 <= s.late_us.p99);
+  CHECK(s.late_us.p99 <= s.late_us.p999);
+  CHECK(s.late_us.p999 <= s.late_us.max);
+  tegotae_shm_statistics published;
+  REQUIRE(channel.read(published));
+  CHECK(published.ticks == s.ticks);
+  CHECK(published.missed == s.missed);
+  CHECK(published.late_us[3] == s.late_us.max);
+  CHECK_NOTHROW(servo.start());
+}
+
+TEST_CASE("what is missing of real time is told, and refused when enforced", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ServoSettings settings;
+  Servo servo(device, channel, settings);
+  servo.start();
+  servo.stop();
+  const RealtimeReport report = servo.realtime();
+  CHECK(report.missing.empty() == (report.fifo && report.memory_locked && report.timer_slack));
+  CHECK(report.fifo == (report.missing.find("SCHED_FIFO") == std::string::npos));
+  settings.realtime = RealtimeConfig::enforce;
+  Servo strict(device, channel, settings);
+  if (report.missing.empty()) {
+    CHECK_NOTHROW(strict.start());
+  } else {
+    CHECK_THROWS_WITH(strict.start(), Catch::Contains(report.missing));
+  }
+}
+
+TEST_CASE("servo settings out of range are refused", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ServoSettings settings;
+  settings.rate_hz = 4001;
+  CHECK_THROWS_WITH(Servo(device, channel, settings), Catch::Contains("rate"));
+  settings.rate_hz = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(Servo(device, channel, settings), Catch::Contains("rate"));
+}
