@@ -1,7 +1,6 @@
 #include "peg_scene.hpp"
 
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -17,16 +16,9 @@ namespace tegotae::apps {
 
 namespace {
 
-constexpr double kScriptStep = 0.02;  // s; the script is linear between rows, which is smooth to a hand
-constexpr double kDecimals = 1e9;     // of the script's numbers: nanometers
-
 // Finer fits get more facets, so that the clearance stays well above the facets' height.
 int facets(double ratio) {
   return ratio <= 0.99 ? 64 : ratio <= 0.995 ? 128 : 256;
-}
-
-double rounded(double value) {
-  return std::round(value * kDecimals) / kDecimals;
 }
 
 // As it comes back from a file in mm, whose numbers are read in single precision.
@@ -36,19 +28,6 @@ std::shared_ptr<const TriangleMesh> as_read(TriangleMesh mesh) {
   return std::make_shared<TriangleMesh>(weld(mesh));
 }
 
-StylusScript sampled(const StylusScript& script) {
-  std::vector<StylusScript::Key> keys;
-  const auto n = static_cast<int>(std::lround((script.end() - script.begin()) / kScriptStep));
-  for (int i = 0; i <= n; ++i) {
-    const double t = rounded(script.begin() + i * kScriptStep);
-    Pose X = script.pose(t);
-    for (double& x : X.p) x = rounded(x);
-    for (double& x : X.q.coeffs()) x = rounded(x);
-    keys.push_back({t, X});
-  }
-  return StylusScript(std::move(keys));
-}
-
 void write_text(const std::filesystem::path& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
@@ -56,12 +35,9 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
   if (!out) throw Error(path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
-std::string script_text(const StylusScript& script) {
+std::string script_text(const std::vector<StylusScript::Key>& keys) {
   std::string text = "t,px,py,pz,qw,qx,qy,qz\n";
-  const auto n = static_cast<int>(std::lround((script.end() - script.begin()) / kScriptStep));
-  for (int i = 0; i <= n; ++i) {
-    const double t = rounded(script.begin() + i * kScriptStep);
-    const Pose X = script.pose(t);
+  for (const auto& [t, X] : keys) {
     char row[256];
     std::snprintf(row, sizeof row, "%.9g,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", t, X.p.x(), X.p.y(), X.p.z(), X.q.w(),
                   X.q.x(), X.q.y(), X.q.z());
@@ -91,11 +67,12 @@ PegScene make_peg_scene(double ratio) {
   task.start = 0.02;
   task.depth = block.depth;
 
-  StylusScript script = sampled(insertion_script(task));
+  const std::vector<StylusScript::Key> keys = insertion_script(task);
+  StylusScript script(keys);
   Scene scene;
   scene.parts.push_back({"hole", as_read(shapes::block_with_hole(block)), Pose(), false});
   scene.parts.push_back({"peg", as_read(shapes::peg(peg)), script.pose(script.begin()), true});
-  return {ratio, task.start, {"peg_in_hole_" + ratio_text(ratio), std::move(scene), {}, std::move(script)}};
+  return {ratio, task.start, keys, {"peg_in_hole_" + ratio_text(ratio), std::move(scene), {}, std::move(script)}};
 }
 
 void write_peg_scene(const PegScene& peg, const std::string& folder) {
@@ -107,7 +84,7 @@ void write_peg_scene(const PegScene& peg, const std::string& folder) {
   const std::string hole = facets(peg.ratio) == 64 ? "hole_20.obj" : "hole_20_" + r + ".obj";
   write_obj(*peg.file.scene.parts[0].mesh, (to / hole).string());
   write_obj(*peg.file.scene.parts[1].mesh, (to / ("peg_" + r + ".obj")).string());
-  write_text(to / ("insert_" + r + ".csv"), script_text(peg.file.script));
+  write_text(to / ("insert_" + r + ".csv"), script_text(peg.keys));
   char start[64];
   std::snprintf(start, sizeof start, "%.9g", peg.file.scene.parts[1].pose.p.z());
   write_text(to / ("peg_in_hole_" + r + ".toml"), "# A peg and its hole of 20 mm, as `peg_in_hole --ratio " + r +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tegotae/sim/scene_file.hpp"
 
@@ -12,12 +13,13 @@ inline constexpr double kTightestRatio = 0.9995;
 
 /// A peg over its hole of 20 mm, and the hand that carries it in.
 struct PegScene {
-  double ratio;         ///< diameter of the peg by that of the hole
-  double start_height;  ///< of the peg's tip above the block's top face, m
+  double ratio;                         ///< diameter of the peg by that of the hole
+  double start_height;                  ///< of the peg's tip above the block's top face, m
+  std::vector<StylusScript::Key> keys;  ///< of the script
   SceneFile file;
 };
 
-/// Throws Error for a ratio out of range. Meshes and script are rounded as write_peg_scene() writes them: the files and
+/// Throws Error for a ratio out of range. Meshes and script are rounded to what write_peg_scene() writes: the files and
 /// the program give the same run.
 PegScene make_peg_scene(double ratio);
 

@@ -7,7 +7,8 @@ namespace tegotae::apps {
 
 namespace {
 
-constexpr double kSample = 0.02;  // s; the script is linear between rows, and this is smooth to a hand
+constexpr double kSample = 0.02;   // s; the script is linear between rows, which is smooth to a hand
+constexpr double kDecimals = 1e9;  // a file with nine decimals gives the same bits
 
 // Where the peg's tip and axis are wanted.
 struct Waypoint {
@@ -21,21 +22,23 @@ double smooth(double s) {
   return s * s * (3 - 2 * s);
 }
 
-Pose peg_pose(const PegTask& task, const Waypoint& w) {
+double rounded(double value) {
+  return std::round(value * kDecimals) / kDecimals;
+}
+
+StylusScript::Key key(const PegTask& task, const Waypoint& w) {
   const double angle = w.tilt_deg * std::acos(-1.0) / 180;
   Pose X;
   X.q = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   X.p = Vec3(w.x, w.y, w.z) - X.q * task.tip;
-  return X;
+  for (double& x : X.p) x = rounded(x);
+  for (double& x : X.q.coeffs()) x = rounded(x);
+  return {rounded(w.t), X};
 }
 
 }  // namespace
 
-double start_height(const PegTask& task) {
-  return task.diameter;
-}
-
-StylusScript insertion_script(const PegTask& task) {
+std::vector<StylusScript::Key> insertion_script(const PegTask& task) {
   const double mm = 1e-3, down = -task.depth;
   const std::vector<Waypoint> way = {
       {0.0, 0, 0, task.start, 0},             //
@@ -52,7 +55,7 @@ StylusScript insertion_script(const PegTask& task) {
       {7.5, 0, 0, down - 1 * mm, 0},
   };
   std::vector<StylusScript::Key> keys;
-  keys.push_back({way.front().t, peg_pose(task, way.front())});
+  keys.push_back(key(task, way.front()));
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Waypoint &a = way[i - 1], &b = way[i];
     const int n = static_cast<int>(std::lround((b.t - a.t) / kSample));
@@ -60,10 +63,10 @@ StylusScript insertion_script(const PegTask& task) {
       const double s = smooth(static_cast<double>(k) / n);
       const Waypoint w = {a.t + (b.t - a.t) * k / n, a.x + s * (b.x - a.x), a.y + s * (b.y - a.y),
                           a.z + s * (b.z - a.z), a.tilt_deg + s * (b.tilt_deg - a.tilt_deg)};
-      keys.push_back({w.t, peg_pose(task, w)});
+      keys.push_back(key(task, w));
     }
   }
-  return StylusScript(std::move(keys));
+  return keys;
 }
 
 }  // namespace tegotae::apps

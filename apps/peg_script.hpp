@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "tegotae/device/script.hpp"
 
 namespace tegotae::apps {
@@ -14,6 +16,6 @@ struct PegTask {
 /// A hand that misses the hole: comes down two millimeters off and three degrees tilted, hits the rim, slides, goes in
 /// tilted until it jams, straightens up, and rocks its way down to the bottom. It begins and ends upright over the
 /// hole's axis.
-StylusScript insertion_script(const PegTask& task);
+std::vector<StylusScript::Key> insertion_script(const PegTask& task);
 
 }  // namespace tegotae::apps
