@@ -4,6 +4,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
 #include <map>
@@ -35,15 +36,19 @@ struct FclNarrowPhase::State {
   fcl::CollisionRequestd request;
   fcl::CollisionResultd result;  // reused: its vector stops allocating once warm
 
-  int collide(std::uint32_t part, const Pose& X_BA, int most) {
+  static fcl::Transform3d transform_of(const Pose& X) {
     fcl::Transform3d transform = fcl::Transform3d::Identity();
-    transform.linear() = X_BA.q.toRotationMatrix();
-    transform.translation() = X_BA.p;
+    transform.linear() = X.q.toRotationMatrix();
+    transform.translation() = X.p;
+    return transform;
+  }
+
+  int collide(std::uint32_t part, const Pose& X_BA, int most) {
     request.num_max_contacts = static_cast<std::size_t>(most);
     request.enable_contact = false;
     result.clear();
     return static_cast<int>(
-        fcl::collide(held.get(), transform, fixed[part].get(), fcl::Transform3d::Identity(), request, result));
+        fcl::collide(held.get(), transform_of(X_BA), fixed[part].get(), fcl::Transform3d::Identity(), request, result));
   }
 };
 
@@ -68,6 +73,17 @@ int FclNarrowPhase::intersections(std::uint32_t part, const Pose& X_BA, int most
     pairs.push_back({part, static_cast<std::uint32_t>(c.b1), static_cast<std::uint32_t>(c.b2)});
   }
   return n;
+}
+
+double FclNarrowPhase::distance_below(double bound, std::uint32_t part, const Pose& X_BA, TrianglePair& nearest) {
+  const fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  result.min_distance = bound;  // the traversal leaves out whatever is farther than the best so far
+  fcl::distance(state_->held.get(), State::transform_of(X_BA), state_->fixed[part].get(), fcl::Transform3d::Identity(),
+                request, result);
+  if (!(result.min_distance < bound)) return bound;
+  nearest = {part, static_cast<std::uint32_t>(result.b1), static_cast<std::uint32_t>(result.b2)};
+  return result.min_distance;
 }
 
 bool FclNarrowPhase::intersects(std::uint32_t part, const Pose& X_BA) {

@@ -23,6 +23,9 @@ class FclNarrowPhase {
   int intersections(std::uint32_t part, const Pose& X_BA, int most, std::vector<TrianglePair>& pairs);
   /// Whether any pair intersects.
   bool intersects(std::uint32_t part, const Pose& X_BA);
+  /// The distance of the nearest pair if it is less than `bound` (m), else `bound`; for parts that do not intersect.
+  /// `nearest` is set when it is less.
+  double distance_below(double bound, std::uint32_t part, const Pose& X_BA, TrianglePair& nearest);
 
  private:
   struct State;

@@ -34,6 +34,9 @@ constexpr int kMostBackOffs = 4;
 constexpr double kRecovery = 0.2;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
 constexpr double kKeepShare = 0.5;
+// No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
+// count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
+constexpr double kGapFloor = 1.1e-6;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
@@ -73,6 +76,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   trust_ = piece_cap_;
   X_ = last_Y_ = held->pose;
   hits_.reserve(kMostHits);
+  spheres_.query(X_ * center_, radius_, kGapFloor, near_);
+  floor_ = floor_at(X_);
 }
 
 void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
@@ -134,6 +139,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   }
   if (!worth_it(wanted, trial, Y)) return 0;
   X_ = trial.X;
+  if (floor_ < kGapFloor) floor_ = floor_at(X_);
   return size(trial.d);
 }
 
@@ -178,7 +184,20 @@ bool ContactLoop::find_hits(const Pose& X) {
   hits_.clear();
   for (const std::uint32_t part : near_)
     narrow_->intersections(part, fixed_poses_[part].inverse() * X, kMostHits - static_cast<int>(hits_.size()), hits_);
+  if (!hits_.empty()) return true;
+  TrianglePair nearest{};
+  for (const std::uint32_t part : near_)
+    if (narrow_->distance_below(floor_, part, fixed_poses_[part].inverse() * X, nearest) < floor_)
+      hits_.push_back(nearest);
   return !hits_.empty();
+}
+
+double ContactLoop::floor_at(const Pose& X) {
+  double floor = kGapFloor;
+  TrianglePair nearest{};
+  for (const std::uint32_t part : near_)
+    floor = narrow_->distance_below(floor, part, fixed_poses_[part].inverse() * X, nearest);
+  return floor;
 }
 
 Pose ContactLoop::back_off(const Displacement& d) {

@@ -35,7 +35,10 @@ class ContactLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One programme over the limits: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Lists the triangle pairs that intersect at `X` or are nearer than the gap floor; false when there are none.
   bool find_hits(const Pose& X);
+  /// The smaller of the gap floor and the distance at the free pose `X`.
+  double floor_at(const Pose& X);
   Pose back_off(const Displacement& d);
   bool shorten(Trial& trial);
   /// Whether the trial brings X nearer to Y; adapts the trust region.
@@ -63,6 +66,7 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
+  double floor_;  ///< gap below which a pose does not count as free, m
 };
 
 }  // namespace tegotae

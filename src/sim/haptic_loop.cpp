@@ -10,9 +10,9 @@
 namespace tegotae {
 namespace {
 
-// Keeps half of it (1 µm) in contact: well under the 5 µm radial clearance of a close fit, well over the rounding of
-// meters in double precision.
-constexpr double kDefaultLMin = 2e-6;
+// Keeps half of it (2 µm) in contact: under half the 5 µm radial clearance of a close fit, over the 1 µm below which
+// other collision libraries count triangles as touching.
+constexpr double kDefaultLMin = 4e-6;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
 
