@@ -26,7 +26,9 @@ constexpr std::string_view kBlank = " \t\r\n";
 
 std::string read_bytes(const std::string& path) {
   std::error_code status;
-  if (std::filesystem::is_directory(path, status)) refuse(path, "is a folder, not a mesh file");
+  if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
+    refuse(path, "is not a regular file");  // a device or pipe might have no end
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
   std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -256,7 +256,8 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
     CHECK(message.find(reason) != std::string::npos);
   };
   CHECK(refusal(s, "/no/such/file.stl").find("cannot be read") != std::string::npos);
-  CHECK(refusal(s, fs::temp_directory_path().string()).find("folder") != std::string::npos);
+  CHECK(refusal(s, fs::temp_directory_path().string()).find("not a regular file") != std::string::npos);
+  CHECK(refusal(s, "/dev/zero").find("not a regular file") != std::string::npos);
   for (const char* name : {"e.stl", "e.obj", "e.ply", "e.off", "e.gltf", "e.glb"}) {
     refuse(name, "", "empty file");
     refuse(name, " \n\n", "empty file");
@@ -268,7 +269,7 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
 
   refuse("empty.stl", "solid Empty\nendsolid Empty", "no triangles");
   refuse("points.obj", "v 0 0 0\nv 1 0 0\np 1\nl 1 2\n", "no triangles");
-  refuse("vertices.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no triangles");
+  refuse("vertices.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no valid faces");
   refuse("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "no triangle has an area");
 
   refuse("range.obj", replaced(kObj, "f 2 3 4", "f 2 3 9"), "index");

@@ -14,11 +14,11 @@ double unit_length(const std::string& unit);
 ///
 /// Dirty surfaces load (see report.hpp for what is counted); a file that cannot be used throws Error with the file and
 /// the reason: unreadable, empty, truncated, no triangles, indices out of range, non-finite or absurd coordinates,
-/// STEP, unknown format.
+/// no triangle with an area, STEP, unknown format. Coordinates have the precision of a float of the file's numbers.
 TriangleMesh load_mesh(const std::string& path, double unit_in_m = 1.0);
 
-/// Welds bit-equal vertices (and vertices within a rounding step of the mesh's size) and drops unused ones. Face count
-/// and face order stay.
+/// Welds bit-equal vertices, then those within one step of single precision at the largest coordinate (3 nm at 25 mm),
+/// and drops unused ones. Face count and face order stay: a face whose corners became one vertex is still there.
 TriangleMesh weld(const TriangleMesh& mesh);
 
 }  // namespace tegotae
