@@ -124,7 +124,7 @@ void glpk(benchmark::State& state) {
   std::size_t k = 0;
   for (auto _ : state) {
     glp_std_basis(problems[k]);
-    if (glp_simplex(problems[k], &settings) != 0) {
+    if (glp_simplex(problems[k], &settings) != 0 || glp_get_status(problems[k]) != GLP_OPT) {
       state.SkipWithError("GLPK failed");
     }
     k = (k + 1) % problems.size();
