@@ -14,6 +14,8 @@ constexpr double kRounding = 1e-14;
 constexpr double kDependent = 1e-10;
 /// Far above the 2 to 30 changes that solves take.
 constexpr int kMaxChanges = 400;
+/// Changes after which rounding must be what keeps the solve going, and kAccepted will do.
+constexpr int kPatience = 100;
 /// "Infeasible" is only said when a solution would have to move this many times the largest violation.
 constexpr double kHopeless = 1e8;
 /// Residuals above this part of the data's size are not called optimal.
@@ -41,7 +43,10 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
   start_from(warm, warm_count);
   for (;;) {
     const RowChoice violated = rows_.most_violated(x_);
-    if (!(violated.value > kFeasibility * rows_.largest_violation() + kRounding * x_.norm())) {
+    const double tolerance = result_.iterations < kPatience
+                                 ? kFeasibility * rows_.largest_violation() + kRounding * x_.norm()
+                                 : kAccepted * (rows_.largest_violation() + x_.norm());
+    if (!(violated.value > tolerance)) {
       finish(b, z0);
       return result_;
     }
@@ -70,8 +75,14 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
       if (!independent && blocking < 0) {
         if (certify_infeasible(violated.row, along)) {
           result_.status = LpStatus::infeasible;
+          return result_;
         }
-        return result_;
+        if (violated.value > kAccepted * (rows_.largest_violation() + x_.norm())) {
+          return result_;
+        }
+        // The row depends on the active ones but for rounding, and so does what it is short by: leave it at that.
+        rows_.set_row_priced(violated.row, false);
+        break;
       }
       if (independent && full <= step) {
         append(violated.row);
@@ -166,7 +177,7 @@ void LeastDistanceSolver::finish(const double* b, const Vec6& z0) noexcept {
     worst = std::max(worst, (rows_.d(i) - g_->row(i).dot(x_)) * rows_.inverse_norm(i));
   }
   Vec6 rest = x;
-  double work = 0;
+  double terms = 0;  // of Gᵀ λ, which cancel
   for (int i = 0; i < size_; ++i) {
     const double lambda = std::max(lambda_[i], 0.0) * rows_.inverse_norm(active_[i]);
     if (lambda > 0) {
@@ -175,12 +186,12 @@ void LeastDistanceSolver::finish(const double* b, const Vec6& z0) noexcept {
       rest -= lambda * row;
       result_.complementarity =
           std::max(result_.complementarity, lambda * std::abs(row.dot(result_.z) - b[active_[i]]));
-      work = std::max(work, lambda * row.norm());
+      terms += lambda * row.norm();
     }
   }
   result_.dual_residual = rest.norm();
   if (worst <= kAccepted * (rows_.largest_violation() + x_.norm()) &&
-      (x_ - (x - rest)).norm() <= kAccepted * std::max(x_.norm(), kRounding * work)) {
+      result_.dual_residual <= kAccepted * x_.norm() + kRounding * terms) {
     result_.status = LpStatus::optimal;
     return;
   }

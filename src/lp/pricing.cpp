@@ -186,15 +186,24 @@ TEGOTAE_PRICING(avx512, __attribute__((target("avx512f"))), 64)
 
 }  // namespace
 
-const Pricing& pricing() noexcept {
+const Pricing* pricing(InstructionSet set) noexcept {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512f")) {
-    return kPricing_avx512;
+  if (set == InstructionSet::avx512) {
+    return __builtin_cpu_supports("avx512f") ? &kPricing_avx512 : nullptr;
   }
-  if (__builtin_cpu_supports("avx2")) {
-    return kPricing_avx2;
+  if (set == InstructionSet::avx2) {
+    return __builtin_cpu_supports("avx2") ? &kPricing_avx2 : nullptr;
   }
 #endif
+  return set == InstructionSet::baseline ? &kPricing_baseline : nullptr;
+}
+
+const Pricing& pricing() noexcept {
+  for (const InstructionSet set : {InstructionSet::avx512, InstructionSet::avx2}) {
+    if (const Pricing* wide = pricing(set)) {
+      return *wide;
+    }
+  }
   return kPricing_baseline;
 }
 

@@ -26,7 +26,10 @@ struct Pricing {
   RowChoice (*largest_pivot)(const LaneBlock* step, const LaneBlock* pivot, int blocks, double bound);
 };
 
-/// The fastest implementation that this CPU runs.
+enum class InstructionSet { baseline, avx2, avx512 };
+/// The passes compiled for `set`; null when this CPU does not run it.
+const Pricing* pricing(InstructionSet set) noexcept;
+/// The widest that this CPU runs.
 const Pricing& pricing() noexcept;
 
 }  // namespace tegotae

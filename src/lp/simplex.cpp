@@ -13,9 +13,10 @@ constexpr double kRounding = 1e-13;
 /// Reduced costs (costs are 1) may be negative by this; what Harris's ratio test trades for larger pivots.
 constexpr double kDualSlack = 1e-9;
 /// v is a sum of unit rows times the dual direction; below this part of the direction's size it is rounding, and zero.
-constexpr double kDependent = 1e-11;
-/// A pivot is taken when it is at least this part of the smallest that must exist (see choose_entering).
-constexpr double kPivot = 1e-3;
+constexpr double kDependent = 1e-9;
+/// A column whose pivot is below this part of the smallest that must exist (see choose_entering) is left out of the
+/// ratio test: its reduced cost may turn negative by as much.
+constexpr double kPivot = 1e-9;
 /// Degenerate pivots in a row before Bland's rule takes over: a few bases' worth.
 constexpr int kDegenerateRun = 12;
 /// Dual steps below this part of the duals' own size are degenerate.
@@ -63,8 +64,14 @@ const LpResult& LpSolver::solve(const LowRankMatrix& g, const double* d) noexcep
     if (!choose_entering(leaving, bland, entering)) {
       if (leaving.row >= 0 && certify_infeasible(leaving)) {
         result_.status = LpStatus::infeasible;
+        return result_;
       }
-      return result_;
+      if (leaving.row < 0 || leaving.violation > kAccepted * (rows_.largest_violation() + w_.norm())) {
+        return result_;
+      }
+      // The row depends on the tight ones but for rounding, and so does what it is short by: leave it at that.
+      rows_.set_row_priced(leaving.row, false);
+      continue;
     }
     // Bland's rule forbids cycles among degenerate pivots; every other pivot raises the dual objective.
     degenerate = entering.step * leaving.weight > kDegenerateStep * (1 + u_.norm()) ? 0 : degenerate + 1;
@@ -128,20 +135,30 @@ bool LpSolver::choose_leaving(bool first_index, Leaving& out) noexcept {
 }
 
 void LpSolver::tableau_row(Leaving& leaving) const noexcept {
+  // v moves no basic force but the leaving one: the part of the row that the tight rows cannot undo.
   if (leaving.row >= 0) {
     leaving.v = rows_.unit_row(leaving.row);
     leaving.weight = 1;
-    for (int p = 0; p < size_; ++p) {
-      leaving.slack[p] = force_span_.basis(p).dot(leaving.v);
+    // Where the row nearly depends on the tight ones, a second pass removes the rounding of the first.
+    constexpr double kMost = 0.01;
+    for (int pass = 0; pass < 2 && (pass == 0 || leaving.v.squaredNorm() < kMost); ++pass) {
+      double part[6] = {};
+      for (int p = 0; p < size_; ++p) {
+        part[p] = force_span_.basis(p).dot(leaving.v);
+      }
+      cross_.solve(part);
+      for (int q = 0; q < size_; ++q) {
+        leaving.slack[q] += part[q];
+        leaving.v -= part[q] * tight_span_.basis(q);
+      }
     }
   } else {
-    std::fill_n(leaving.slack, size_, 0.0);
     leaving.slack[leaving.force] = 1;
     force_span_.solve_lower(leaving.slack);
-  }
-  cross_.solve(leaving.slack);
-  for (int q = 0; q < size_; ++q) {
-    leaving.v -= leaving.slack[q] * tight_span_.basis(q);
+    cross_.solve(leaving.slack);
+    for (int q = 0; q < size_; ++q) {
+      leaving.v -= leaving.slack[q] * tight_span_.basis(q);
+    }
   }
   tight_span_.solve_upper(leaving.slack);
   for (int q = 0; q < size_; ++q) {
@@ -251,8 +268,8 @@ bool LpSolver::certify_infeasible(const Leaving& leaving) noexcept {
 }
 
 void LpSolver::finish() noexcept {
-  Vec6 u = Vec6::Zero();
   result_.w = w_;
+  double terms = 0;  // of the dual objective, which cancel
   for (int k = 0; k < size_; ++k) {
     const double f = std::max(f_[k], 0.0) * rows_.inverse_norm(force_[k]);
     const double y = std::max(y_[k], 0.0) * rows_.inverse_norm(tight_[k]);
@@ -262,7 +279,7 @@ void LpSolver::finish() noexcept {
     }
     if (y > 0) {
       result_.dual.add(tight_[k], y);
-      u += y * g_->row(tight_[k]);
+      terms += y * std::abs(rows_.d(tight_[k]));
       result_.dual_objective += y * rows_.d(tight_[k]);
     }
   }
@@ -272,11 +289,11 @@ void LpSolver::finish() noexcept {
     const double short_by = rows_.d(i) - row.dot(result_.w);
     result_.primal_residual = std::max(result_.primal_residual, short_by);
     worst = std::max(worst, short_by * rows_.inverse_norm(i));
-    result_.dual_residual = std::max(result_.dual_residual, row.dot(u) - 1);
+    result_.dual_residual = std::max(result_.dual_residual, row.dot(u_) - 1);
   }
   const double gap = std::abs(result_.objective - result_.dual_objective);
   if (worst <= kAccepted * (rows_.largest_violation() + result_.w.norm()) && result_.dual_residual <= kAccepted &&
-      gap <= kAccepted * result_.objective) {
+      gap <= kAccepted * result_.objective + kRounding * terms) {
     result_.status = LpStatus::optimal;
     return;
   }

@@ -7,12 +7,17 @@ namespace tegotae {
 void SpanBasis::split(const Vec6& row, Vec6& outside, double* inside) const noexcept {
   outside = row;
   std::fill_n(inside, 6, 0.0);
-  // Twice is enough: the second pass removes what rounding left of the span.
+  // Once will do while most of the row remains; else a second pass removes what rounding left of the span.
+  constexpr double kMost = 0.25;
+  const double enough = kMost * row.squaredNorm();
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < size_; ++i) {
       const double h = basis_[i].dot(outside);
       inside[i] += h;
       outside -= h * basis_[i];
+    }
+    if (outside.squaredNorm() > enough) {
+      return;
     }
   }
 }
@@ -28,8 +33,8 @@ bool SpanBasis::append(const Vec6& row, double dependent) noexcept {
   for (int i = 0; i < size_; ++i) {
     r_[i][size_] = inside[i];
   }
-  r_[size_][size_] = length;
-  basis_[size_] = outside / length;
+  inverse_[size_] = 1 / length;
+  basis_[size_] = outside * inverse_[size_];
   row_[size_] = row;
   ++size_;
   return true;
@@ -49,7 +54,7 @@ void SpanBasis::solve_upper(double* h) const noexcept {
     for (int j = i + 1; j < size_; ++j) {
       h[i] -= r_[i][j] * h[j];
     }
-    h[i] /= r_[i][i];
+    h[i] *= inverse_[i];
   }
 }
 
@@ -58,7 +63,7 @@ void SpanBasis::solve_lower(double* h) const noexcept {
     for (int j = 0; j < i; ++j) {
       h[i] -= r_[j][i] * h[j];
     }
-    h[i] /= r_[i][i];
+    h[i] *= inverse_[i];
   }
 }
 

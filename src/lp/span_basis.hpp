@@ -28,7 +28,8 @@ class SpanBasis {
   int size_ = 0;
   Vec6 row_[6];
   Vec6 basis_[6];
-  double r_[6][6] = {};
+  double r_[6][6] = {};     ///< above the diagonal
+  double inverse_[6] = {};  ///< of the diagonal of R
 };
 
 }  // namespace tegotae

@@ -36,8 +36,8 @@ constexpr double kRecovery = 0.2;
 constexpr double kKeepShare = 0.5;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
-// Trust region: a piece that brought less than the first share of the error's predicted decrease halves it, more than
-// the second doubles it; it never falls below this many times the pen's motion of the tick.
+// Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
+// more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
@@ -132,38 +132,46 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ *= 0.5;
     if (!shorten(trial)) return 0;
   }
-  update_trust(wanted, trial, Y);
+  if (!worth_it(wanted, trial, Y)) return 0;
   X_ = trial.X;
   return size(trial.d);
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  const auto& limits = contacts_->limits();
   Vec6 motion = wanted;
-  if (!limits.empty()) {
-    const double keep = kKeepShare * settings_.l_min;
-    rows_.clear();
-    for (const Contact& c : limits) rows_.push_row(metric_.row(c));
-    Resolution r;
-    // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always
-    // has an answer, because standing still is one.
-    for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
-      for (std::size_t i = 0; i < limits.size(); ++i)
-        bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
-      r = resolver_->resolve(rows_, bounds_.data(), wanted);
-      ++report.resolves;
-      report.iterations += r.iterations;
-      if (r.status == ResolveStatus::solved) break;
-    }
-    report.status = r.status;
-    if (r.status != ResolveStatus::solved) return false;
-    motion = r.motion;
-  }
+  if (!contacts_->limits().empty() && !solve(wanted, report, motion)) return false;
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
-  if (length > cap) trial.d = (cap / length) * trial.d;
+  if (length > cap) {
+    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
+    // would leave nearly nothing of their recovery.
+    const Vec6 scaled = (cap / length) * motion;
+    motion = scaled;
+    if (!contacts_->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    trial.d = metric_.unwhiten(motion);
+  }
   trial.X = displaced(X_, center_, trial.d);
   return true;
+}
+
+bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
+  const auto& limits = contacts_->limits();
+  const double keep = kKeepShare * settings_.l_min;
+  rows_.clear();
+  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
+  // an answer, because standing still is one.
+  for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
+    const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
+    ++report.resolves;
+    report.iterations += r.iterations;
+    report.status = r.status;
+    motion = r.motion;
+    if (r.status == ResolveStatus::solved) return true;
+  }
+  return false;
 }
 
 bool ContactLoop::find_hits(const Pose& X) {
@@ -202,13 +210,16 @@ bool ContactLoop::shorten(Trial& trial) {
   return false;
 }
 
-void ContactLoop::update_trust(const Vec6& error, const Trial& trial, const Pose& Y) {
+bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y) {
+  // The programme sees flat limits. Where they curve, the error that it promises to take away does not all go, or even
+  // grows: near the end of the way such steps would swing to and fro for ever.
   const Vec6 step = metric_.whiten(trial.d);
-  const double predicted = error.squaredNorm() - (error - step).squaredNorm();
-  const Vec6 after = metric_.whiten(displacement(trial.X, Y, center_));
-  const double made = error.squaredNorm() - after.squaredNorm();
-  if (made < kPoor * predicted) trust_ *= 0.5;
-  if (made > kGood * predicted) trust_ = std::min(2 * trust_, piece_cap_);
+  const double promised = error.squaredNorm() - (error - step).squaredNorm();
+  if (promised <= 0) return true;  // a step that only opens gaps
+  const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
+  if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
+  if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
+  return made > 0;
 }
 
 void ContactLoop::gather(TickReport& report) const {

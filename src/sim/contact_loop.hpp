@@ -31,11 +31,15 @@ class ContactLoop {
 
   /// Moves X towards Y by one free piece no longer than `cap`; returns its length (m), 0 at rest or when blocked.
   double move_piece(const Pose& Y, double cap, TickReport& report);
+  /// The trial of at most `cap` that the limits allow; false when there is none.
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
+  /// One programme over the limits: an allowed `motion` for `wanted`.
+  bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
   bool find_hits(const Pose& X);
   Pose back_off(const Displacement& d);
   bool shorten(Trial& trial);
-  void update_trust(const Vec6& error, const Trial& trial, const Pose& Y);
+  /// Whether the trial brings X nearer to Y; adapts the trust region.
+  bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }

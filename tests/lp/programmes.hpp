@@ -162,7 +162,7 @@ inline Programme held_body(Random& random, int kind) {
       return programme(near_parallel(random, random.integer(2, 40), std::pow(10.0, random.uniform(-9, -1)), false),
                        body, delta, l_min);
     case 3:
-      return programme(near_parallel(random, random.integer(2, 40), std::pow(10.0, random.uniform(-9, -1)), true), body,
+      return programme(near_parallel(random, random.integer(2, 40), std::pow(10.0, random.uniform(-7, -1)), true), body,
                        delta, l_min);
     case 4:
       return programme(peg(random, 64, random.integer(1, 8), 1e-4), body, delta, l_min);
