@@ -45,9 +45,13 @@ void check_scene(const std::string& path) {
   }
   std::printf("script: %.3g s\n", file.script.end() - file.script.begin());
   std::fflush(stdout);
-  const HapticLoop loop(file.scene);
-  std::printf("start: free; l_min %.3g um, l_0 %.3g um, resolver %s\n", 1e6 * loop.contact().l_min,
-              1e6 * loop.contact().l_0, loop.contact().resolver.c_str());
+  try {
+    const HapticLoop loop(file.scene);
+    std::printf("start: free; l_min %.3g um, l_0 %.3g um, resolver %s\n", 1e6 * loop.contact().l_min,
+                1e6 * loop.contact().l_0, loop.contact().resolver.c_str());
+  } catch (const Error& e) {
+    throw Error(path + ": " + e.what());
+  }
 }
 
 }  // namespace

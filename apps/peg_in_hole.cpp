@@ -22,8 +22,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
 
   return guarded_main(app, argc, argv, [&] {
-    const PegScene peg = make_peg_scene(ratio);
-    if (!folder.empty()) write_peg_scene(peg, folder);
-    return run_and_report(peg.file, options, "peg in hole, " + ratio_text(ratio), -peg.start_height);
+    if (!folder.empty()) write_peg_scene(ratio, folder);
+    return run_and_report(make_peg_scene(ratio), options, "peg in hole, " + ratio_text(ratio), -kStartHeight);
   });
 }

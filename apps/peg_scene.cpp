@@ -2,33 +2,29 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
 #include "peg_script.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
 
 namespace tegotae::apps {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-// Finer fits get more facets, so that the clearance stays well above the facets' height.
+// Finer fits get more facets, so that the facets' height stays below the clearance.
 int facets(double ratio) {
   return ratio <= 0.99 ? 64 : ratio <= 0.995 ? 128 : 256;
 }
 
-// As it comes back from a file in mm, whose numbers are read in single precision.
-std::shared_ptr<const TriangleMesh> as_read(TriangleMesh mesh) {
-  for (Vec3& v : mesh.vertices)
-    for (double& x : v) x = static_cast<double>(static_cast<float>(1000 * x)) * unit_length("mm");
-  return std::make_shared<TriangleMesh>(weld(mesh));
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
+void write_text(const fs::path& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.close();
@@ -46,6 +42,43 @@ std::string script_text(const std::vector<StylusScript::Key>& keys) {
   return text;
 }
 
+std::string scene_text(const std::string& ratio, const std::string& hole, const std::string& peg,
+                       const std::string& script, double z) {
+  char position[32];
+  std::snprintf(position, sizeof position, "%.9g", z);
+  return "# A peg and its hole of 20 mm, as written by `peg_in_hole --ratio " + ratio +
+         " --scene-out DIR`.\n"
+         "unit = \"mm\"\n\n"
+         "[[part]]\nname = \"hole\"\nmesh = \"" +
+         hole +
+         "\"\n\n"
+         "[[part]]\nname = \"peg\"\nmesh = \"" +
+         peg + "\"\nheld = true\nposition = [0, 0, " + position +
+         "]\n\n"
+         "[device]\nscript = \"" +
+         script + "\"\n";
+}
+
+/// A folder of its own, gone with the object.
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string pattern = (fs::temp_directory_path() / "peg_in_hole_XXXXXX").string();
+    if (!::mkdtemp(pattern.data())) throw Error(pattern + ": cannot be made: " + std::strerror(errno));
+    path_ = pattern;
+  }
+  ~TempFolder() {
+    std::error_code ignored;  // what is left in the temporary folder does no harm
+    fs::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace
 
 std::string ratio_text(double ratio) {
@@ -54,9 +87,13 @@ std::string ratio_text(double ratio) {
   return text;
 }
 
-PegScene make_peg_scene(double ratio) {
+std::string write_peg_scene(double ratio, const std::string& folder) {
   if (!(ratio >= kLoosestRatio && ratio <= kTightestRatio))
     throw Error("--ratio: must be between " + ratio_text(kLoosestRatio) + " and " + ratio_text(kTightestRatio));
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw Error(folder + ": cannot be made: " + failed.message());
+
   shapes::Block block;
   block.segments = facets(ratio);
   shapes::Peg peg;
@@ -64,40 +101,26 @@ PegScene make_peg_scene(double ratio) {
   peg.segments = facets(ratio);
   PegTask task;
   task.tip = Vec3(0, 0, -peg.length / 2);
-  task.start = 0.02;
+  task.start = kStartHeight;
   task.depth = block.depth;
-
   const std::vector<StylusScript::Key> keys = insertion_script(task);
-  StylusScript script(keys);
-  Scene scene;
-  scene.parts.push_back({"hole", as_read(shapes::block_with_hole(block)), Pose(), false});
-  scene.parts.push_back({"peg", as_read(shapes::peg(peg)), script.pose(script.begin()), true});
-  return {ratio, task.start, keys, {"peg_in_hole_" + ratio_text(ratio), std::move(scene), {}, std::move(script)}};
+
+  const std::string r = ratio_text(ratio), peg_file = "peg_" + r + ".obj", script_file = "insert_" + r + ".csv";
+  const std::string hole_file =
+      block.segments == shapes::Block().segments ? "hole_20.obj" : "hole_20_" + std::to_string(block.segments) + ".obj";
+  const fs::path to = folder, scene_file = to / ("peg_in_hole_" + r + ".toml");
+  write_obj(shapes::block_with_hole(block), (to / hole_file).string());
+  write_obj(shapes::peg(peg), (to / peg_file).string());
+  write_text(to / script_file, script_text(keys));
+  write_text(scene_file, scene_text(r, hole_file, peg_file, script_file, keys.front().pose.p.z()));
+  return scene_file.string();
 }
 
-void write_peg_scene(const PegScene& peg, const std::string& folder) {
-  const std::string r = ratio_text(peg.ratio);
-  const std::filesystem::path to = folder;
-  std::error_code failed;
-  std::filesystem::create_directories(to, failed);
-  if (failed) throw Error(folder + ": " + failed.message());
-  const std::string hole = facets(peg.ratio) == 64 ? "hole_20.obj" : "hole_20_" + r + ".obj";
-  write_obj(*peg.file.scene.parts[0].mesh, (to / hole).string());
-  write_obj(*peg.file.scene.parts[1].mesh, (to / ("peg_" + r + ".obj")).string());
-  write_text(to / ("insert_" + r + ".csv"), script_text(peg.keys));
-  char start[64];
-  std::snprintf(start, sizeof start, "%.9g", peg.file.scene.parts[1].pose.p.z());
-  write_text(to / ("peg_in_hole_" + r + ".toml"), "# A peg and its hole of 20 mm, as `peg_in_hole --ratio " + r +
-                                                      " --scene-out DIR` writes them.\n"
-                                                      "unit = \"mm\"\n"
-                                                      "\n[[part]]\nname = \"hole\"\nmesh = \"" +
-                                                      hole +
-                                                      "\"\n"
-                                                      "\n[[part]]\nname = \"peg\"\nmesh = \"peg_" +
-                                                      r + ".obj\"\nheld = true\nposition = [0, 0, " + start +
-                                                      "]\n"
-                                                      "\n[device]\nscript = \"insert_" +
-                                                      r + ".csv\"\n");
+SceneFile make_peg_scene(double ratio) {
+  const TempFolder folder;
+  SceneFile file = load_scene(write_peg_scene(ratio, folder.path()));
+  file.path = "peg_in_hole_" + ratio_text(ratio);
+  return file;
 }
 
 }  // namespace tegotae::apps

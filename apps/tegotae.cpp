@@ -1,4 +1,5 @@
 // tegotae: runs scenes and looks at part files.
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,11 @@ int main(int argc, char** argv) {
   run->add_option("SCENE", scene, "Scene file (TOML)")->required();
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) -> std::string {
+        double value = 0;  // CLI::PositiveNumber lets nan pass
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return "";
+        return "must be a positive number";
+      })
       ->type_name("S");
 
   std::vector<std::string> files;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -100,4 +101,15 @@ TEST_CASE("includes go only leftwards", "[include]") {
   CHECK(wrong == "");
   CHECK(shm_files.size() <= 1);
   for (const std::string& file : shm_files) CHECK(starts_with(file, "src/device/"));
+}
+
+TEST_CASE("the README's code is the example that is built", "[include]") {
+  const fs::path root = fs::path(TEGOTAE_TEST_DATA_DIR).parent_path();
+  const auto text = [](const fs::path& path) {
+    std::ifstream in(path);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string example = text(root / "apps/examples/first_touch.cpp");
+  REQUIRE(!example.empty());
+  CHECK(text(root / "README.md").find("```cpp\n" + example + "```\n") != std::string::npos);
 }

@@ -99,8 +99,11 @@ TEST_CASE("a run cut short by --seconds is done but not completed", "[programs]"
 TEST_CASE("a run that does not arrive is a failure", "[programs]") {
   const TempFolder folder;
   write_small_scene(folder);
-  // The hand wants to go through the block to its other side.
-  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0.002,0.002,0.02,1,0,0,0\n0.5,0.002,0.002,-0.02,1,0,0,0\n");
+  // The hand wants to go through the floor.
+  folder.write("floor.obj", "v -200 -200 0\nv 200 -200 0\nv 200 200 0\nv -200 200 0\nf 1 2 3\nf 1 3 4\n");
+  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.02,1,0,0,0\n0.5,0,0,-0.02,1,0,0,0\n");
+  std::string scene = read_text(folder / "scene.toml");
+  folder.write("scene.toml", scene.replace(scene.find("tet.obj"), 7, "floor.obj"));
   const Output o = run_program("tegotae", "run --fast --json " + (folder / "scene.toml"));
   CHECK(o.code == 1);
   const json j = summary_of(o);
@@ -149,26 +152,39 @@ TEST_CASE("Ctrl-C ends a run and keeps the recording", "[programs]") {
   CHECK(std::count(text.begin(), text.end(), '\n') > j.at("ticks").get<int>());
 }
 
-TEST_CASE("the same run gives the same recording byte for byte, on any load", "[programs]") {
+TEST_CASE("the peg goes in, and the same run gives the same recording byte for byte, on any load", "[programs]") {
   const TempFolder folder;
-  const auto record = [&](const std::string& name) {
-    const Output o = run_program("peg_in_hole", "--fast --json --record " + (folder / name));
-    CHECK(o.code == 0);
-    return read_text(folder / name);
-  };
-  const std::string first = record("first.csv");
-  CHECK(std::count(first.begin(), first.end(), '\n') > 8000);
-  std::atomic<bool> stop{false};
-  std::vector<std::thread> load;
-  for (int i = 0; i < 4; ++i)
-    load.emplace_back([&] {
-      while (!stop.load(std::memory_order_relaxed)) {
-      }
-    });
-  const std::string loaded = record("loaded.csv");
-  stop = true;
-  for (std::thread& t : load) t.join();
-  CHECK(loaded == first);
+  for (const std::string ratio : {"0.94", "0.99"}) {
+    INFO(ratio);
+    const Output program = run_program("peg_in_hole", "--fast --json --ratio " + ratio + " --scene-out " +
+                                                          (folder / "out") + " --record " + (folder / "program.csv"));
+    CHECK(program.code == 0);
+    const json j = summary_of(program);
+    CHECK(j.at("completed") == true);
+    CHECK(j.at("depth_m").get<double>() == Approx(0.04).margin(1e-4));  // the hole's depth
+    CHECK(j.at("contacts_max").get<int>() >= 2);
+    CHECK(j.at("penetrating") == 0);
+    const std::string recording = read_text(folder / "program.csv");
+    CHECK(std::count(recording.begin(), recording.end(), '\n') > 8000);
+
+    // The files in models/ are what the program runs.
+    for (const std::string& file : {"peg_in_hole_" + ratio + ".toml", "insert_" + ratio + ".csv",
+                                    "peg_" + ratio + ".obj", std::string("hole_20.obj")})
+      CHECK(read_text(folder / ("out/" + file)) == read_text(TEGOTAE_MODELS_DIR "/" + file));
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> load;
+    for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i)
+      load.emplace_back([&] {
+        while (!stop.load(std::memory_order_relaxed)) {
+        }
+      });
+    const Output loaded = run_program("tegotae", std::string("run --fast --json " TEGOTAE_MODELS_DIR "/peg_in_hole_") +
+                                                     ratio + ".toml --record " + (folder / "loaded.csv"));
+    stop = true;
+    for (std::thread& t : load) t.join();
+    CHECK(loaded.code == 0);
+    CHECK(read_text(folder / "loaded.csv") == recording);
+  }
 }
 
 TEST_CASE("check reports on meshes and scenes", "[programs]") {
