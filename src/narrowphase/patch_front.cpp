@@ -1,0 +1,398 @@
+#include "narrowphase/patch_front.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae {
+namespace {
+
+constexpr std::uint32_t kNoPair = 0xffffffffu;
+/// Children of a pair of leaves: all their triangle pairs.
+constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
+/// Separations below this times the size of the scene are rounding (double precision, some dozens of operations on
+/// coordinates of that size, and a pose that was composed anew).
+constexpr double kFloor = 1e-12;
+/// Rounding of one gap in single precision: 32 units in the last place of the largest terms (about 20 from turning the
+/// normal and the products, 7 from the sums).
+constexpr double kLaneError = 1.0 / (1 << 19);
+/// Searches between two looks at the clock.
+constexpr int kClockStride = 16;
+/// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
+constexpr std::size_t kBlocksPerPair = 2;
+/// More splits than this are undone when the motion turns out to be blocked.
+constexpr std::size_t kKeepSplits = 512;
+
+/// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again.
+constexpr double kRaiseSpare = 0.02;
+
+float round_up(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+PatchFront::PatchFront(const FrontCapacity& capacity)
+    : capacity_(capacity),
+      // Every pair of a fan is in the front, so a tree of splits has less than twice as many pairs as the front; odd
+      // fans leave unused places, which the factor allows for.
+      pool_(4 * std::size_t{capacity.pairs} + kFan),
+      boxes_{LaneBlocks(capacity.pairs, kBoxFields), std::vector<std::uint32_t>(capacity.pairs), 0},
+      triangles_{LaneBlocks(capacity.pairs, kTriFields), std::vector<std::uint32_t>(capacity.pairs), 0},
+      margins_(static_cast<float*>(std::aligned_alloc(kLanes * sizeof(float),
+                                                      (capacity.pairs + kLanes) / kLanes * kLanes * sizeof(float))),
+               std::free) {
+  failures_.reserve(capacity.pairs);
+  stack_.reserve(capacity.pairs);
+  splits_.reserve(capacity.pairs);
+  blocking_.reserve(capacity.blocking);
+  near_.reserve(capacity.pairs);
+  places_.reserve(capacity.seeds);
+}
+
+void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {
+  a_ = &a;
+  b_ = &b;
+  center_ = center_A;
+  offset_a_ = a.origin() - center_A;
+  boxes_.count = triangles_.count = 0;
+  blocking_.clear();
+  splits_.clear();
+  pool_used_ = 1;
+  free_twos_ = free_fans_ = kNoPair;
+  cursor_ = 0;
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, {0, 0, 0}};
+  enter(0);
+}
+
+CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const WorkLimit& limit) noexcept {
+  report_ = {};
+  limit_ = limit;
+  blocking_.clear();
+  splits_.clear();
+  set_sweep(X_BA, d);
+  collect_failures();
+  for (std::uint32_t id : failures_) {
+    const Outcome outcome = settle(id);
+    if (outcome == Outcome::out_of_work) {
+      report_.exhausted = true;
+      break;
+    }
+    if (outcome == Outcome::blocked && blocking_.size() == capacity_.blocking) {
+      report_.overflow = true;
+      break;
+    }
+  }
+  report_.splits = static_cast<int>(splits_.size());
+  if (!blocking_.empty()) {
+    report_.status = CertifyStatus::blocked;
+    if (splits_.size() > kKeepSplits) roll_back();
+  } else if (report_.exhausted) {
+    report_.status = CertifyStatus::cut;
+  }
+  if (report_.status == CertifyStatus::certified) raise(report_.splits);
+  report_.pairs = pairs();
+  return report_;
+}
+
+void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
+  sweep_.dp = d.dp;
+  sweep_.dr = d.dr;
+  sweep_.theta2 = d.dr.squaredNorm();
+  sweep_.axis = sweep_.theta2 > 0 ? Vec3(d.dr / std::sqrt(sweep_.theta2)) : Vec3(Vec3::Zero());
+  sweep_.center_distance = center_.norm();
+  sweep_.start.R = X_BA.q.toRotationMatrix();
+  sweep_.start.t = X_BA * center_ - b_->origin();
+  const Pose end = displaced(X_BA, center_, d);
+  sweep_.end.R = end.q.toRotationMatrix();
+  sweep_.end.t = end * center_ - b_->origin();
+  const double size = sweep_.start.t.norm() + sweep_.end.t.norm() + a_->radius() + offset_a_.norm() + b_->radius() +
+                      b_->origin().norm() + center_.norm();
+  sweep_.floor = kFloor * size;
+}
+
+LaneSweep PatchFront::lane_sweep() const {
+  LaneSweep s;
+  for (int i = 0; i < 3; ++i) {
+    s.t0[i] = static_cast<float>(sweep_.start.t[i]);
+    s.t1[i] = static_cast<float>(sweep_.end.t[i]);
+    for (int j = 0; j < 3; ++j) {
+      s.R0[3 * i + j] = static_cast<float>(sweep_.start.R(i, j));
+      s.R1[3 * i + j] = static_cast<float>(sweep_.end.R(i, j));
+    }
+  }
+  s.bulge = round_up(1.00001 * sweep_.theta2 / 8);
+  s.bulge_offset = round_up(1.00001 * sweep_.center_distance * sweep_.theta2 / 8);
+  const double box_size = node_reach(a_->nodes()[0]);
+  const double terms = std::max(sweep_.start.t.norm(), sweep_.end.t.norm()) + 3 * box_size + 2 * b_->radius();
+  s.error = round_up(kLaneError * terms + sweep_.floor);
+  return s;
+}
+
+const float* PatchFront::margins(const Group& group, const LaneSweep& sweep) {
+  if (&group == &boxes_) {
+    box_margins(group.lanes, group.count, sweep, margins_.get());
+  } else {
+    triangle_margins(group.lanes, group.count, sweep, margins_.get());
+  }
+  return margins_.get();
+}
+
+void PatchFront::collect_failures() {
+  const LaneSweep sweep = lane_sweep();
+  failures_.resize(capacity_.pairs);
+  std::size_t n = 0;
+  for (const Group* g : {&triangles_, &boxes_}) {
+    const float* margin = margins(*g, sweep);
+    for (std::uint32_t i = 0; i < g->count; ++i) {
+      failures_[n] = g->owner[i];
+      n += !(margin[i] > 0);
+    }
+  }
+  failures_.resize(n);
+}
+
+bool PatchFront::spend() {
+  if (++report_.searches > limit_.searches) return false;
+  return report_.searches % kClockStride != 0 || limit_.deadline_ns == std::numeric_limits<std::int64_t>::max() ||
+         monotonic_ns() < limit_.deadline_ns;
+}
+
+PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
+  const std::size_t before = blocking_.size();
+  stack_.clear();
+  stack_.push_back(top);
+  while (!stack_.empty()) {
+    const std::uint32_t id = stack_.back();
+    stack_.pop_back();
+    if (!spend()) return Outcome::out_of_work;
+    const PairNode& p = pool_[id];
+    Vec3 n = plane(id);
+    if (p.faces) {
+      const auto a = face_a(p.a), b = face_b(p.b);
+      const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
+      TriangleBlock block;
+      if (separate_triangles(a, b, sweep_, reach, n, block)) {
+        set_plane(id, n);
+        continue;
+      }
+      report_block(p, a, b, block);
+      if (blocking_.size() == capacity_.blocking || blocking_.size() - before == kBlocksPerPair)
+        return Outcome::blocked;
+      continue;
+    }
+    const PatchNode& a = a_->nodes()[p.a];
+    const PatchNode& b = b_->nodes()[p.b];
+    const BoxPair boxes(a, node_center(a), b, sweep_);
+    if (separate_boxes(boxes, sweep_, node_reach(a), 0, n)) {
+      set_plane(id, n);
+      continue;
+    }
+    if (!split(id)) {
+      report_.overflow = true;
+      return Outcome::out_of_work;
+    }
+    for (std::uint32_t k = 0; k < pool_[id].children; ++k) stack_.push_back(pool_[id].child + k);
+  }
+  return blocking_.size() > before ? Outcome::blocked : Outcome::free;
+}
+
+void PatchFront::report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                              const TriangleBlock& block) {
+  BlockingPair out{p.a, p.b, block.overlap_at_end, block.normal, block.gap, Vec3::Zero(), 0};
+  double support = -std::numeric_limits<double>::infinity();
+  for (const Vec3& v : b) support = std::max(support, block.normal.dot(v));
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& v : a) {
+    const double depth = block.normal.dot(sweep_.end.R * v + sweep_.end.t) - support;
+    if (depth >= least) continue;
+    least = depth;
+    const Vec3 start = sweep_.start.R * v + sweep_.start.t;
+    out.point_A = start + b_->origin();
+    out.point_gap = block.normal.dot(start) - support;
+  }
+  blocking_.push_back(out);
+}
+
+std::uint32_t PatchFront::allocate(std::uint32_t children) {
+  const bool two = children <= 2;
+  std::uint32_t& head = two ? free_twos_ : free_fans_;
+  if (head != kNoPair) {
+    const std::uint32_t id = head;
+    head = pool_[id].child;
+    return id;
+  }
+  const std::uint32_t size = two ? 2 : kFan;
+  if (pool_used_ + size > pool_.size()) return kNoPair;
+  pool_used_ += size;
+  return pool_used_ - size;
+}
+
+bool PatchFront::split(std::uint32_t id) {
+  const PairNode p = pool_[id];
+  const PatchNode& a = a_->nodes()[p.a];
+  const PatchNode& b = b_->nodes()[p.b];
+  const bool fan = a.leaf() && b.leaf();
+  const std::uint32_t children = fan ? a.count * b.count : 2;
+  if (boxes_.count + triangles_.count + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
+      stack_.size() + children > stack_.capacity()) {
+    return false;
+  }
+  const std::uint32_t child = allocate(children);
+  if (child == kNoPair) return false;
+  const Vec3 n = plane(id);
+  leave(id);
+  PairNode& parent = pool_[id];
+  parent.child = child;
+  parent.children = static_cast<std::uint16_t>(children);
+  for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
+  // The node with the larger second extent: a long strip is as good as a short one while it is narrow.
+  const bool split_a = !a.leaf() && (b.leaf() || a.half[1] > b.half[1]);
+  for (std::uint32_t k = 0; k < children; ++k) {
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, fan, parent.normal};
+    if (fan) {
+      c.a = a_->order()[a.first + k / b.count];
+      c.b = b_->order()[b.first + k % b.count];
+    } else if (split_a) {
+      c.a = a.first + k;
+    } else {
+      c.b = b.first + k;
+    }
+    pool_[child + k] = c;
+    enter(child + k);
+  }
+  splits_.push_back(id);
+  return true;
+}
+
+void PatchFront::collapse(std::uint32_t id) {
+  const PairNode& p = pool_[id];
+  const std::uint32_t child = p.child, children = p.children;
+  for (std::uint32_t k = 0; k < children; ++k) leave(child + k);
+  std::uint32_t& head = children <= 2 ? free_twos_ : free_fans_;
+  pool_[child].child = head;
+  head = child;
+  pool_[id].children = 0;
+  pool_[id].child = kNoPair;
+  enter(id);
+}
+
+void PatchFront::roll_back() {
+  for (auto it = splits_.rbegin(); it != splits_.rend(); ++it) collapse(*it);
+  splits_.clear();
+}
+
+void PatchFront::raise(int splits) {
+  // Half as much again as was split (or the front grows without end), and a little always.
+  const int wanted = splits + splits / 2 + 4;
+  int tries = 2 * wanted;
+  // Round robin over both groups, once around at most.
+  for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries > 0; --looks) {
+    if (++cursor_ >= boxes_.count + triangles_.count) cursor_ = 0;
+    const std::uint32_t id = cursor_ < boxes_.count ? boxes_.owner[cursor_] : triangles_.owner[cursor_ - boxes_.count];
+    const std::uint32_t parent = pool_[id].parent;
+    if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
+    --tries;
+    if (try_raise(parent)) ++report_.merges;
+  }
+}
+
+bool PatchFront::all_in_front(std::uint32_t id) const {
+  const PairNode& p = pool_[id];
+  for (std::uint32_t k = 0; k < p.children; ++k) {
+    if (pool_[p.child + k].children > 0) return false;
+  }
+  return true;
+}
+
+bool PatchFront::try_raise(std::uint32_t id) {
+  const PairNode& p = pool_[id];
+  const PatchNode& a = a_->nodes()[p.a];
+  const PatchNode& b = b_->nodes()[p.b];
+  const double reach = node_reach(a);
+  // With some gap to spare, or the next motion splits it again.
+  const double spare = kRaiseSpare * (sweep_.dp.norm() + reach * std::sqrt(sweep_.theta2));
+  Vec3 n = plane(p.child);
+  if (!separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) return false;
+  collapse(id);
+  set_plane(id, n);
+  return true;
+}
+
+void PatchFront::enter(std::uint32_t id) {
+  PairNode& p = pool_[id];
+  Group& g = group(p);
+  p.slot = g.count++;
+  g.owner[p.slot] = id;
+  if (p.faces) {
+    const auto a = face_a(p.a);
+    double reach2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) g.lanes.at(p.slot, kTriCorners + 3 * k + i) = static_cast<float>(a[k][i]);
+      reach2 = std::max(reach2, a[k].squaredNorm());
+    }
+    g.lanes.at(p.slot, kTriReach) = round_up(std::sqrt(reach2));
+  } else {
+    const PatchNode& a = a_->nodes()[p.a];
+    const Vec3 c = node_center(a);
+    for (int i = 0; i < 3; ++i) {
+      g.lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
+      for (int k = 0; k < 3; ++k) g.lanes.at(p.slot, kBoxEdges + 3 * i + k) = a.half[i] * a.axis[i][k];
+    }
+    g.lanes.at(p.slot, kBoxReach) = round_up(node_reach(a));
+  }
+  set_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+}
+
+void PatchFront::leave(std::uint32_t id) {
+  Group& g = group(pool_[id]);
+  const std::uint32_t slot = pool_[id].slot, last = --g.count;
+  if (slot == last) return;
+  g.lanes.move(last, slot);
+  g.owner[slot] = g.owner[last];
+  pool_[g.owner[slot]].slot = slot;
+}
+
+void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
+  const PairNode& p = pool_[id];
+  Group& g = group(p);
+  Vec3 rounded;
+  for (int k = 0; k < 3; ++k) {
+    g.lanes.at(p.slot, kBoxNormal + k) = static_cast<float>(n[k]);
+    rounded[k] = g.lanes.at(p.slot, kBoxNormal + k);
+  }
+  double support = -std::numeric_limits<double>::infinity();
+  if (p.faces) {
+    for (const Vec3& v : face_b(p.b)) support = std::max(support, rounded.dot(v));
+  } else {
+    const PatchNode& b = b_->nodes()[p.b];
+    support = rounded.dot(b.center_vec());
+    for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
+  }
+  g.lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
+}
+
+Vec3 PatchFront::plane(std::uint32_t id) const {
+  const PairNode& p = pool_[id];
+  const LaneBlocks& lanes = (p.faces ? triangles_ : boxes_).lanes;
+  return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
+}
+
+double PatchFront::node_reach(const PatchNode& n) const {
+  // Half edges may not be quite orthogonal (single precision), which the sum of their lengths squared does not see.
+  constexpr double kSkew = 1 + 1e-6;
+  const double half2 = double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2];
+  return node_center(n).norm() + kSkew * std::sqrt(half2);
+}
+
+std::array<Vec3, 3> PatchFront::face_a(std::uint32_t f) const {
+  return {a_->corner(f, 0) - center_, a_->corner(f, 1) - center_, a_->corner(f, 2) - center_};
+}
+
+std::array<Vec3, 3> PatchFront::face_b(std::uint32_t f) const {
+  const Vec3& o = b_->origin();
+  return {b_->corner(f, 0) - o, b_->corner(f, 1) - o, b_->corner(f, 2) - o};
+}
+
+}  // namespace tegotae

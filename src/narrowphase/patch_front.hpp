@@ -1,0 +1,177 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "narrowphase/patch_lanes.hpp"
+#include "narrowphase/patch_separate.hpp"
+#include "narrowphase/patch_tree.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// Capacities of a PatchFront. Exceeding one never makes a wrong answer: the motion is then not certified.
+struct FrontCapacity {
+  std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
+  std::uint32_t blocking = 64;     ///< blocking triangle pairs that one call reports
+  std::uint32_t seeds = 256;       ///< seeds that one call can give
+};
+
+/// How much one call may do.
+struct WorkLimit {
+  int searches = 8192;                                                  ///< searches for a plane; about 0.2 µs each
+  std::int64_t deadline_ns = std::numeric_limits<std::int64_t>::max();  ///< of monotonic_ns()
+};
+
+enum class CertifyStatus : std::uint8_t {
+  certified,  ///< the whole motion is free
+  blocked,    ///< some triangle pairs have no moving plane that separates them: see PatchFront::blocking()
+  cut         ///< work, time or a capacity ran out before anything was found to block
+};
+
+/// What one call of PatchFront::certify did.
+struct CertifyReport {
+  CertifyStatus status = CertifyStatus::certified;
+  bool overflow = false;   ///< a capacity was exceeded
+  bool exhausted = false;  ///< work or time ran out (with `blocked`: the list may lack pairs)
+  int pairs = 0;           ///< pairs in the front after the call
+  int searches = 0;        ///< planes searched
+  int splits = 0, merges = 0;
+};
+
+/// Two triangles that stop a motion. All in B's file frame, m.
+struct BlockingPair {
+  std::uint32_t face_a, face_b;
+  bool overlap_at_end;  ///< they intersect at the wanted pose; else only the path is in doubt
+  Vec3 n_BA;            ///< of the planes that separate them at the start, the one that the motion violates least
+  double gap;           ///< separation along n_BA at the start
+  Vec3 point_A;         ///< at the start: the corner of face_a that comes farthest past the plane
+  double point_gap;     ///< of that corner from the plane through face_b's support along n_BA
+};
+
+/// Two near triangles, from which a search for contact features may start.
+struct ContactSeed {
+  std::uint32_t face_a, face_b;
+  double distance;  ///< of the points of the two faces that are nearest to `place`, m: at least that of the faces
+  Vec3 n_BA;   ///< of the plane between the patches, B's file frame
+  Vec3 place;  ///< on that plane, where the faces were looked for, m, B's file frame
+};
+
+/// The path certificate of one pair of parts (mutable scratch; the trees are shared): keeps a front of node pairs that
+/// covers all pairs of triangles, each pair with the plane that separated it last. A motion is free when every pair of
+/// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see patch_separate.cpp).
+/// No call but the constructor allocates.
+class PatchFront {
+ public:
+  explicit PatchFront(const FrontCapacity& capacity = {});
+
+  /// Starts over between `a` (with its center of mass `center_A`, m, file frame) and `b`; they must outlive the front's
+  /// use. The next call of certify builds the front (a few hundred µs in a tight fit).
+  void attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept;
+
+  /// Is the motion s -> displaced(X_BA, center_A, s·d), s in [0, 1], of A past the resting B free of intersecting
+  /// triangles, and likewise the one between the same two poses whose file-frame origin moves linearly? `X_BA` is A's
+  /// file frame in B's, `d` is expressed in B's axes. The start need not be certified before. Never says certified
+  /// wrongly; a motion of length zero asks whether the start is free.
+  CertifyReport certify(const Pose& X_BA, const Displacement& d, const WorkLimit& limit = {}) noexcept;
+
+  /// What stopped the last motion, when its status was `blocked`; at most FrontCapacity::blocking.
+  const std::vector<BlockingPair>& blocking() const { return blocking_; }
+
+  /// Pairs of faces where A at `X_BA` may be nearer than `reach` (m) to B, for contact features to start from: at most
+  /// `capacity`, near patches first, written to `out`; returns how many. Every near pair of patches gives the
+  /// corners of the region that they share, seen along their plane (so a flat face on a flat face gives the corners
+  /// that keep it from tipping), and places nearer to each other than 1/32 of A with like normals count as one. The
+  /// faces are those of the two patches that are nearest to such a place; finding a local minimum of distance is left
+  /// to the caller.
+  int contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, int capacity) noexcept;
+
+  int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
+
+  /// Calls f(a, b, faces) for every pair of the front: nodes of the trees, or faces.
+  template <typename F>
+  void for_each_pair(F f) const {
+    for (std::uint32_t i = 0; i < boxes_.count; ++i) f(pool_[boxes_.owner[i]].a, pool_[boxes_.owner[i]].b, false);
+    for (std::uint32_t i = 0; i < triangles_.count; ++i) {
+      f(pool_[triangles_.owner[i]].a, pool_[triangles_.owner[i]].b, true);
+    }
+  }
+
+ private:
+  /// A pair of the tree of splits; those without children are the front.
+  struct PairNode {
+    std::uint32_t a, b;           ///< nodes, or faces
+    std::uint32_t parent;         ///< kNoPair for the root
+    std::uint32_t child;          ///< first of `children` in a row
+    std::uint32_t slot;           ///< in its group, while in the front
+    std::uint16_t children;       ///< 0: in the front
+    bool faces;                   ///< a and b are faces
+    std::array<float, 3> normal;  ///< last plane, kept here while split
+  };
+  /// The pairs of the front of one kind, dense.
+  struct Group {
+    LaneBlocks lanes;
+    std::vector<std::uint32_t> owner;
+    std::uint32_t count = 0;
+  };
+
+  enum class Outcome : std::uint8_t { free, blocked, out_of_work };
+
+  void set_sweep(const Pose& X_BA, const Displacement& d);
+  LaneSweep lane_sweep() const;
+  const float* margins(const Group& group, const LaneSweep& sweep);
+  void collect_failures();
+  Outcome settle(std::uint32_t top);
+  bool spend();
+  bool split(std::uint32_t id);
+  void collapse(std::uint32_t id);
+  void roll_back();
+  void raise(int splits);
+  bool all_in_front(std::uint32_t id) const;  ///< the children
+  bool try_raise(std::uint32_t id);
+  int shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const;
+  double facing_thickness(std::uint32_t id) const;
+  ContactSeed seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const;
+  void report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                    const TriangleBlock& block);
+
+  std::uint32_t allocate(std::uint32_t children);
+  void enter(std::uint32_t id);
+  void leave(std::uint32_t id);
+  void set_plane(std::uint32_t id, const Vec3& n);
+  Vec3 plane(std::uint32_t id) const;
+  Group& group(const PairNode& p) { return p.faces ? triangles_ : boxes_; }
+
+  Vec3 node_center(const PatchNode& n) const { return n.center_vec() + offset_a_; }
+  double node_reach(const PatchNode& n) const;
+  std::array<Vec3, 3> face_a(std::uint32_t f) const;
+  std::array<Vec3, 3> face_b(std::uint32_t f) const;
+
+  FrontCapacity capacity_;
+  const PatchTree* a_ = nullptr;
+  const PatchTree* b_ = nullptr;
+  Vec3 center_ = Vec3::Zero();    ///< A's center of mass, file frame
+  Vec3 offset_a_ = Vec3::Zero();  ///< from the center of mass to the origin of A's tree
+
+  std::vector<PairNode> pool_;
+  std::uint32_t pool_used_ = 0;
+  std::uint32_t free_twos_ = 0, free_fans_ = 0;  ///< heads of the free lists, linked through `child`
+  Group boxes_, triangles_;
+  struct Near {
+    float far_side;  ///< upper bound of the gap, for patches that face each other
+    std::uint32_t id;
+  };
+  std::vector<std::uint32_t> failures_, stack_, splits_;
+  std::vector<Near> near_;
+  std::vector<Vec3> places_;  ///< of the seeds
+  std::vector<BlockingPair> blocking_;
+  std::unique_ptr<float, void (*)(void*)> margins_;
+  std::uint32_t cursor_ = 0;  ///< where raising goes on
+
+  Sweep sweep_;
+  WorkLimit limit_;
+  CertifyReport report_;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+
+namespace tegotae {
+
+/// A motion in single precision for the wide check of a front (see Sweep): rotations row by row.
+struct LaneSweep {
+  std::array<float, 9> R0, R1;
+  std::array<float, 3> t0, t1;
+  float bulge = 0;         ///< θ²/8, rounded up
+  float bulge_offset = 0;  ///< |center| θ²/8, rounded up
+  float error = 0;         ///< bound of the rounding of one gap, m
+};
+
+inline constexpr std::size_t kLanes = 16;
+
+/// Blocks of kLanes front pairs, field after field: 16 boxes or triangles are checked at once.
+class LaneBlocks {
+ public:
+  LaneBlocks(std::size_t capacity, std::size_t fields) : fields_(fields), blocks_((capacity + kLanes - 1) / kLanes) {
+    const std::size_t bytes = blocks_ * kLanes * fields_ * sizeof(float);
+    data_.reset(static_cast<float*>(std::aligned_alloc(kLanes * sizeof(float), bytes)));
+    for (std::size_t i = 0; i < blocks_ * kLanes * fields_; ++i) data_.get()[i] = 0;
+  }
+
+  float& at(std::size_t slot, std::size_t field) {
+    return data_.get()[((slot / kLanes) * fields_ + field) * kLanes + slot % kLanes];
+  }
+  float at(std::size_t slot, std::size_t field) const { return const_cast<LaneBlocks*>(this)->at(slot, field); }
+  const float* data() const { return data_.get(); }
+  std::size_t fields() const { return fields_; }
+  void move(std::size_t from, std::size_t to) {
+    for (std::size_t f = 0; f < fields_; ++f) at(to, f) = at(from, f);
+  }
+
+ private:
+  struct Free {
+    void operator()(float* p) const { std::free(p); }
+  };
+  std::size_t fields_, blocks_;
+  std::unique_ptr<float, Free> data_;
+};
+
+/// Fields of a box pair: plane normal (B's axes), offset of B's support along it; of A's box, relative to the center of
+/// mass and along A's axes: center, three half edges; largest distance of a point of it from the center of mass.
+enum BoxField : std::size_t {
+  kBoxNormal = 0,
+  kBoxOffset = 3,
+  kBoxCenter = 4,
+  kBoxEdges = 7,
+  kBoxReach = 16,
+  kBoxFields
+};
+/// Fields of a triangle pair: the same (the plane stands at the same place), with three corners.
+enum TriangleField : std::size_t { kTriNormal = 0, kTriOffset = 3, kTriCorners = 4, kTriReach = 13, kTriFields };
+
+/// Lower bounds (m) of the gap that each of the first `count` pairs keeps to its plane during the motion; positive
+/// means certified. `margins` has room for whole blocks. The same bits on every processor: the wide versions do the
+/// same single-precision operations in the same order, none fused.
+void box_margins(const LaneBlocks& pairs, std::size_t count, const LaneSweep& sweep, float* margins);
+void triangle_margins(const LaneBlocks& pairs, std::size_t count, const LaneSweep& sweep, float* margins);
+
+}  // namespace tegotae

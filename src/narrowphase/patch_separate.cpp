@@ -1,0 +1,417 @@
+#include "narrowphase/patch_separate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tegotae {
+namespace {
+
+constexpr int kTimeHalvings = 4;
+/// Normals are kept in single precision, so their length may exceed 1 by 1e-7 and the bulge along them with it.
+constexpr double kUnitSlack = 1 + 1e-6;
+/// Products of unit vectors shorter than this have no reliable direction.
+constexpr double kParallel = 1e-6;
+
+/// The part of a motion between s0 and s1, seen by a body whose points are up to `reach` from the center of mass.
+///
+/// With the plane going linearly from (n0, c0) to (n1, c1), the gap of a point that goes linearly is the quadratic
+/// α(1−t)² + 2γt(1−t) + βt². The turning path leaves the chord by at most ρθ²Δs²t(1−t)/2, and the path with a linear
+/// file-frame origin leaves the one with a linear center of mass by at most |c|θ²s(1−s)/2 (the rotation is the same,
+/// the second derivative of R(sθ)r is at most ρθ²). Both are across the axis of rotation: a plane across it sees none.
+/// Both terms are quadratics of the same form and are taken off.
+struct Bulge {
+  double at_start, at_end, between;
+  Vec3 axis;
+
+  Bulge(const Sweep& sweep, double reach, double s0, double s1) {
+    axis = sweep.axis;
+    const double k = 0.5 * kUnitSlack * sweep.theta2;
+    const double paths = k * sweep.center_distance, turn = k * reach * (s1 - s0) * (s1 - s0);
+    at_start = paths * s0 * (1 - s0);
+    at_end = paths * s1 * (1 - s1);
+    between = paths * (s0 * (1 - s1) + s1 * (1 - s0)) + turn;  // of 2γ
+  }
+
+  /// The part of the bulge that planes between n0 and n1 see.
+  double share(const Vec3& n0, const Vec3& n1) const {
+    return std::sqrt(std::max(axis.cross(n0).squaredNorm(), axis.cross(n1).squaredNorm()));
+  }
+};
+
+template <typename Pair>
+bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, double floor, double spare) {
+  // Half the floor is enough at the start: what the last motion left there was at least the floor, up to rounding.
+  const double share = bulge.share(n0, n1);
+  const double alpha = pair.start(n0) - share * bulge.at_start - spare - 0.5 * floor;
+  if (!(alpha >= 0)) return false;
+  const double beta = pair.end(n1) - share * bulge.at_end - spare - floor;
+  if (!(beta >= 0)) return false;
+  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - floor;
+  return gamma + std::sqrt(alpha * beta) >= 0;
+}
+
+/// Keeps the best candidates of a search.
+template <typename Pair>
+class Search {
+ public:
+  explicit Search(const Pair& pair) : pair_(pair) {}
+
+  /// A direction of the start and its counterpart at the end.
+  void offer(const Vec3& n0, const Vec3& n1) {
+    const double s0 = pair_.start(n0), s1 = pair_.end(n1);
+    if (s0 > start_) start_ = s0, best_.n0 = n0;
+    if (s1 > end_) end_ = s1, best_.n1 = n1;
+    if (std::min(s0, s1) > both_) both_ = std::min(s0, s1), together_ = {n0, n1};
+  }
+  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
+    offer(n0, n1);
+    offer(-n0, -n1);
+  }
+
+  double start() const { return start_; }
+  double end() const { return end_; }
+  double both() const { return both_; }
+  const MovingPlane& best() const { return best_; }
+  const MovingPlane& together() const { return together_; }
+
+ private:
+  const Pair& pair_;
+  double start_ = -std::numeric_limits<double>::infinity();
+  double end_ = start_;
+  double both_ = start_;
+  MovingPlane best_{Vec3::Zero(), Vec3::Zero()};
+  MovingPlane together_{Vec3::Zero(), Vec3::Zero()};
+};
+
+template <typename Pair>
+bool accept(const Search<Pair>& search, const Pair& pair, const Bulge& bulge, double floor, double spare, Vec3& plane) {
+  for (const MovingPlane& p : {search.together(), search.best()}) {
+    if (stays_apart(pair, p.n0, p.n1, bulge, floor, spare)) {
+      plane = p.n1;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Separation of two boxes along the 15 axes of the separating-axis theorem (Gottschalk, Lin, Manocha, "OBBTree",
+/// 1996), negative signs folded in: sep[i] along sign[i] · axis i. Edge products that are nearly parallel get −inf.
+struct BoxAxes {
+  std::array<double, 15> sep;
+  std::array<double, 15> sign;
+
+  BoxAxes(const Vec3& d, const std::array<Vec3, 3>& a, const std::array<double, 3>& ha, const std::array<Vec3, 3>& b,
+          const std::array<double, 3>& hb) {
+    double c[3][3], m[3][3], db[3], da[3];
+    for (int i = 0; i < 3; ++i) {
+      db[i] = d.dot(b[i]);
+      da[i] = d.dot(a[i]);
+      for (int j = 0; j < 3; ++j) {
+        c[i][j] = b[i].dot(a[j]);
+        m[i][j] = std::abs(c[i][j]);
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      set(i, db[i], hb[i] + ha[0] * m[i][0] + ha[1] * m[i][1] + ha[2] * m[i][2]);
+      set(3 + i, da[i], ha[i] + hb[0] * m[0][i] + hb[1] * m[1][i] + hb[2] * m[2][i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      for (int j = 0; j < 3; ++j) {
+        const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        const double length2 = 1 - c[i][j] * c[i][j];
+        const int k = 6 + 3 * i + j;
+        if (length2 < kParallel) {
+          sep[k] = -std::numeric_limits<double>::infinity();
+          sign[k] = 1;
+          continue;
+        }
+        // b_i × a_j has the coordinates (0, −c[i2][j], c[i1][j]) along (b_i, b_i1, b_i2).
+        const double along = db[i2] * c[i1][j] - db[i1] * c[i2][j];
+        const double span = ha[j1] * m[i][j2] + ha[j2] * m[i][j1] + hb[i1] * m[i2][j] + hb[i2] * m[i1][j];
+        set(k, along, span);
+        sep[k] /= std::sqrt(length2);
+      }
+    }
+  }
+
+ private:
+  void set(int k, double along, double span) {
+    sep[k] = std::abs(along) - span;
+    sign[k] = along < 0 ? -1 : 1;
+  }
+};
+
+Vec3 box_axis(int k, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  if (k < 3) return b[k];
+  if (k < 6) return a[k - 3];
+  return b[(k - 6) / 3].cross(a[(k - 6) % 3]).normalized();
+}
+
+/// Closest points of the segments p + s u and q + t v, s, t in [0, 1]; returns the vector from the second to the first
+/// (Ericson, "Real-Time Collision Detection", 5.1.9).
+Vec3 segment_gap(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
+  const Vec3 w = p - q;
+  const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(w);
+  auto clamp01 = [](double x) { return std::min(std::max(x, 0.0), 1.0); };
+  double s = 0, t = 0;
+  const double c = u.dot(w), b = u.dot(v);
+  const double denominator = a * e - b * b;
+  if (a > 0 && denominator > 0) s = clamp01((b * f - c * e) / denominator);
+  if (e > 0) t = (b * s + f) / e;
+  if (t < 0 || t > 1 || e <= 0) {
+    t = clamp01(t);
+    s = a > 0 ? clamp01((b * t - c) / a) : 0;
+  }
+  return w + s * u - t * v;
+}
+
+/// Direction between the closest points of the two triangles' edges, from B to A, or zero.
+Vec3 edge_direction(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) {
+  Vec3 best = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 d = segment_gap(p[i], p[(i + 1) % 3] - p[i], q[j], q[(j + 1) % 3] - q[j]);
+      const double l = d.squaredNorm();
+      if (l < least) least = l, best = d;
+    }
+  }
+  return least > 0 ? Vec3(best / std::sqrt(least)) : Vec3(Vec3::Zero());
+}
+
+struct Edges {
+  std::array<Vec3, 3> e;
+  Vec3 n;  ///< unit or zero
+
+  explicit Edges(const std::array<Vec3, 3>& v) {
+    double longest = 0;
+    for (int i = 0; i < 3; ++i) {
+      e[i] = v[(i + 1) % 3] - v[i];
+      longest = std::max(longest, e[i].squaredNorm());
+    }
+    n = e[0].cross(e[1]);
+    const double l = n.norm();
+    n = l > kParallel * kParallel * longest ? Vec3(n / l) : Vec3(Vec3::Zero());
+    for (Vec3& x : e) {
+      const double length = x.norm();
+      if (length > 0) x /= length;
+    }
+  }
+};
+
+/// Keeps the axis of the start that, taken as it stands, the end violates least.
+class LeastLimiting {
+ public:
+  LeastLimiting(const TrianglePair& pair, double floor) : pair_(pair), floor_(floor) {}
+
+  void offer(const Vec3& n0, const Vec3&) {
+    const double s0 = pair_.start(n0);
+    const bool apart = s0 >= floor_;
+    // Where nothing separates at the start either (by rounding), the axis of least overlap.
+    const double value = apart ? pair_.end(n0) : s0;
+    if (apart == apart_ ? value > value_ : apart) apart_ = apart, value_ = value, gap_ = s0, normal_ = n0;
+  }
+  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
+    offer(n0, n1);
+    offer(-n0, -n1);
+  }
+  const Vec3& normal() const { return normal_; }
+  double gap() const { return gap_; }
+
+ private:
+  const TrianglePair& pair_;
+  double floor_;
+  bool apart_ = false;
+  double value_ = -std::numeric_limits<double>::infinity();
+  double gap_ = 0;
+  Vec3 normal_ = Vec3::Zero();
+};
+
+/// The cheap directions: both normals, and from center to center.
+void offer_normals(const TrianglePair& t, Search<TrianglePair>& search) {
+  auto normal = [](const std::array<Vec3, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); };
+  const Vec3 b = normal(t.q);
+  search.offer_both_ways(b, b);
+  search.offer_both_ways(normal(t.p0), normal(t.p1));
+  const Vec3 center = t.q[0] + t.q[1] + t.q[2];
+  search.offer((t.p0[0] + t.p0[1] + t.p0[2] - center).normalized(),
+               (t.p1[0] + t.p1[1] + t.p1[2] - center).normalized());
+}
+
+/// All directions that can separate two triangles; offered to `search` with their counterparts at the end.
+template <typename Sink>
+void offer_triangle_axes(const TrianglePair& t, Sink& search) {
+  const Edges a0(t.p0), a1(t.p1), b(t.q);
+  if (!b.n.isZero(0)) search.offer_both_ways(b.n, b.n);
+  if (!a0.n.isZero(0)) search.offer_both_ways(a0.n, a1.n);
+  auto product = [&](const Vec3& x0, const Vec3& y0, const Vec3& x1, const Vec3& y1) {
+    const Vec3 m0 = x0.cross(y0), m1 = x1.cross(y1);
+    const double l0 = m0.norm(), l1 = m1.norm();
+    if (l0 < kParallel || l1 < kParallel) return;
+    search.offer_both_ways(m0 / l0, m1 / l1);
+  };
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) product(a0.e[i], b.e[j], a1.e[i], b.e[j]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    product(b.n, b.e[i], b.n, b.e[i]);
+    product(a0.n, a0.e[i], a1.n, a1.e[i]);
+  }
+}
+
+template <typename Sink>
+void offer_closest(const TrianglePair& t, Sink& search) {
+  const Vec3 n0 = edge_direction(t.p0, t.q), n1 = edge_direction(t.p1, t.q);
+  if (!n0.isZero(0) && !n1.isZero(0)) search.offer(n0, n1);
+}
+
+bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
+                   double s0, const Placement& from, double s1, const Placement& to, int halvings, Vec3& plane,
+                   bool& overlap) {
+  const TrianglePair pair(a, b, from, to);
+  const Bulge bulge(sweep, reach, s0, s1);
+  if (stays_apart(pair, plane, plane, bulge, sweep.floor, 0)) return true;
+  Search<TrianglePair> search(pair);
+  search.offer(plane, plane);
+  offer_normals(pair, search);
+  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  offer_triangle_axes(pair, search);
+  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  offer_closest(pair, search);
+  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  overlap = search.end() < sweep.floor;
+  if (overlap || search.start() < 0.5 * sweep.floor || halvings == 0) return false;
+  const double s = 0.5 * (s0 + s1);
+  const Placement middle = sweep.at(s);
+  Vec3 half_plane = search.best().n0;
+  bool overlap_inside = false;
+  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, half_plane, overlap_inside) ||
+      !separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, half_plane, overlap_inside)) {
+    return false;
+  }
+  plane = half_plane;
+  return true;
+}
+
+}  // namespace
+
+Placement Sweep::at(double s) const {
+  if (s <= 0) return start;
+  if (s >= 1) return end;
+  return {rotation(s * dr).toRotationMatrix() * start.R, start.t + s * dp};
+}
+
+BoxPair::BoxPair(const PatchNode& a, const Vec3& center_a, const PatchNode& b_node, const Sweep& sweep) {
+  d0 = sweep.start.R * center_a + sweep.start.t - b_node.center_vec();
+  d1 = sweep.end.R * center_a + sweep.end.t - b_node.center_vec();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 u = a.axis_vec(i);
+    a0[i] = sweep.start.R * u;
+    a1[i] = sweep.end.R * u;
+    b[i] = b_node.axis_vec(i);
+    ha[i] = a.half[i];
+    hb[i] = b_node.half[i];
+  }
+}
+
+double BoxPair::start(const Vec3& n) const {
+  double s = n.dot(d0);
+  for (int i = 0; i < 3; ++i) s -= ha[i] * std::abs(n.dot(a0[i])) + hb[i] * std::abs(n.dot(b[i]));
+  return s;
+}
+
+double BoxPair::end(const Vec3& n) const {
+  double s = n.dot(d1);
+  for (int i = 0; i < 3; ++i) s -= ha[i] * std::abs(n.dot(a1[i])) + hb[i] * std::abs(n.dot(b[i]));
+  return s;
+}
+
+double BoxPair::mixed(const Vec3& n0, const Vec3& n1) const {
+  double s = n0.dot(d1) + n1.dot(d0);
+  for (int i = 0; i < 3; ++i) {
+    s -= ha[i] * std::abs(n0.dot(a1[i]) + n1.dot(a0[i])) + hb[i] * (std::abs(n0.dot(b[i])) + std::abs(n1.dot(b[i])));
+  }
+  return s;
+}
+
+namespace {
+double least(const Vec3& n, const std::array<Vec3, 3>& p) {
+  return std::min(std::min(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
+}
+double largest(const Vec3& n, const std::array<Vec3, 3>& p) {
+  return std::max(std::max(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
+}
+}  // namespace
+
+TrianglePair::TrianglePair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Placement& from,
+                           const Placement& to)
+    : q(b) {
+  for (int i = 0; i < 3; ++i) {
+    p0[i] = from.R * a[i] + from.t;
+    p1[i] = to.R * a[i] + to.t;
+  }
+}
+
+double TrianglePair::start(const Vec3& n) const {
+  return least(n, p0) - largest(n, q);
+}
+double TrianglePair::end(const Vec3& n) const {
+  return least(n, p1) - largest(n, q);
+}
+double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
+  double s = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) s = std::min(s, n0.dot(p1[i]) + n1.dot(p0[i]));
+  return s - largest(n0, q) - largest(n1, q);
+}
+
+bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
+  const Bulge bulge(sweep, reach, 0, 1);
+  if (stays_apart(pair, plane, plane, bulge, sweep.floor, spare)) return true;
+  const BoxAxes at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
+  const BoxAxes at_end(pair.d1, pair.a1, pair.ha, pair.b, pair.hb);
+  int first = 0, last = 0, together = 0;
+  auto both = [&](int k) {
+    return at_start.sign[k] == at_end.sign[k] ? std::min(at_start.sep[k], at_end.sep[k])
+                                              : -std::numeric_limits<double>::infinity();
+  };
+  for (int k = 1; k < 15; ++k) {
+    if (at_start.sep[k] > at_start.sep[first]) first = k;
+    if (at_end.sep[k] > at_end.sep[last]) last = k;
+    if (both(k) > both(together)) together = k;
+  }
+  // The theorem is complete: where no axis separates at an end, no plane does.
+  if (at_start.sep[first] < 0 || at_end.sep[last] < 0) return false;
+  auto try_pair = [&](int i, int j) {
+    const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
+    const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
+    if (!stays_apart(pair, n0, n1, bulge, sweep.floor, spare)) return false;
+    plane = n1;
+    return true;
+  };
+  if (both(together) > 0 && try_pair(together, together)) return true;
+  if (try_pair(first, last)) return true;
+  Search<BoxPair> search(pair);
+  search.offer(pair.d0.normalized(), pair.d1.normalized());
+  search.offer((pair.b[2] * at_end.sign[2] + pair.a0[2] * at_end.sign[5]).normalized(),
+               (pair.b[2] * at_end.sign[2] + pair.a1[2] * at_end.sign[5]).normalized());
+  return accept(search, pair, bulge, sweep.floor, spare, plane);
+}
+
+bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
+                        Vec3& plane, TriangleBlock& block) {
+  block = {};
+  if (separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, plane, block.overlap_at_end)) {
+    return true;
+  }
+  const TrianglePair pair(a, b, sweep.start, sweep.end);
+  LeastLimiting axis(pair, 0.5 * sweep.floor);
+  offer_triangle_axes(pair, axis);
+  offer_closest(pair, axis);
+  block.normal = axis.normal();
+  block.gap = axis.gap();
+  return false;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+
+#include "narrowphase/patch_tree.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// Where A stands relative to B: the point r (A's axes, relative to A's center of mass) is at R r + t (B's axes,
+/// relative to the origin of B's tree).
+struct Placement {
+  Mat3 R;
+  Vec3 t;
+};
+
+/// A rigid motion of A past B, s in [0, 1]. Two paths are meant at once: the center of mass moving linearly, and the
+/// origin of A's file frame moving linearly (as a reader of a recording interpolates), both turning at a constant rate.
+struct Sweep {
+  Placement start, end;
+  Vec3 dp = Vec3::Zero();      ///< of the center of mass, m
+  Vec3 dr = Vec3::Zero();      ///< rotation vector, rad
+  double theta2 = 0;           ///< |dr|²
+  Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
+  double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
+  double floor = 0;            ///< separations below are rounding, m
+
+  Placement at(double s) const;
+};
+
+/// A plane that moves: unit normals (B's axes, from B to A) at the start and the end of a motion.
+struct MovingPlane {
+  Vec3 n0, n1;
+};
+
+/// A box of A at the two ends of a motion and a box of B, ready for separation.
+struct BoxPair {
+  Vec3 d0, d1;                   ///< from B's center to A's
+  std::array<Vec3, 3> a0, a1;    ///< A's axes
+  std::array<Vec3, 3> b;         ///< B's axes
+  std::array<double, 3> ha, hb;  ///< half extents
+
+  /// `center_a` is A's box center relative to the center of mass.
+  BoxPair(const PatchNode& a, const Vec3& center_a, const PatchNode& b_node, const Sweep& sweep);
+
+  double start(const Vec3& n) const;
+  double end(const Vec3& n) const;
+  /// Twice the mixed term of the gap: least of n0·x1 + n1·x0 over A less both supports of B.
+  double mixed(const Vec3& n0, const Vec3& n1) const;
+};
+
+/// A triangle of A at the two ends of a motion and a triangle of B.
+struct TrianglePair {
+  std::array<Vec3, 3> p0, p1;  ///< A's corners
+  std::array<Vec3, 3> q;       ///< B's corners
+
+  TrianglePair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Placement& from, const Placement& to);
+
+  double start(const Vec3& n) const;
+  double end(const Vec3& n) const;
+  double mixed(const Vec3& n0, const Vec3& n1) const;
+};
+
+/// Looks for a plane that keeps the boxes apart all along the motion. `reach` is the largest distance of a point of A's
+/// node from the center of mass (m). `spare` (m) asks for that much more at both ends. `plane` comes in as the last
+/// known normal and goes out as the normal at the end of the motion.
+bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane);
+
+/// What separate_triangles found where it failed.
+struct TriangleBlock {
+  bool overlap_at_end = false;  ///< no separating axis at the end pose
+  Vec3 normal = Vec3::Zero();   ///< the axis at the start that limits the motion least
+  double gap = 0;               ///< separation along it at the start, m
+};
+
+/// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
+/// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between.
+bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
+                        Vec3& plane, TriangleBlock& block);
+
+}  // namespace tegotae

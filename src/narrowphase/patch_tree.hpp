@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "tegotae/mesh/triangle_mesh.hpp"
+
+namespace tegotae {
+
+/// Most triangles in a leaf of a PatchTree.
+inline constexpr std::uint32_t kPatchLeaf = 4;
+
+/// A convex piece of space around some triangles: { origin + center + Σ tᵢ half[i] axis[i], |tᵢ| ≤ 1 }, where `origin`
+/// is PatchTree::origin() and all lengths are in m. The axes are unit vectors up to rounding; the set above, taken with
+/// the stored numbers, holds every triangle of the node.
+struct PatchNode {
+  std::array<float, 3> center;
+  std::array<std::array<float, 3>, 3> axis;
+  std::array<float, 3> half;  ///< longest first: half[2] is half the thickness
+  std::uint32_t first;  ///< inner node: first child (the second follows it); leaf: first place in PatchTree::order()
+  std::uint32_t count;  ///< triangles of a leaf, 0 for an inner node
+
+  bool leaf() const { return count > 0; }
+  Vec3 center_vec() const { return {double{center[0]}, double{center[1]}, double{center[2]}}; }
+  Vec3 axis_vec(int i) const { return {double{axis[i][0]}, double{axis[i][1]}, double{axis[i][2]}}; }
+};
+
+/// Immutable hierarchy of flat patches over a triangle surface, in the mesh's file frame. Works for any surface: open,
+/// non-manifold, triangle soup, degenerate and repeated faces.
+///
+/// Built from the top: a node is cut where the two halves, each measured in its own frame, have the least
+/// area-weighted `thickness + 3e-4 · diameter` (a patch of a curved wall is then as wide as its sagitta allows and as
+/// long as the wall is straight). Candidates are binned positions along the box axes and binned normals, so that the
+/// two sides of a sheet part early.
+class PatchTree {
+ public:
+  /// Builds the hierarchy; about 1 µs a triangle. A mesh without triangles throws Error.
+  explicit PatchTree(std::shared_ptr<const TriangleMesh> mesh);
+
+  const TriangleMesh& mesh() const { return *mesh_; }
+  const std::vector<PatchNode>& nodes() const { return nodes_; }      ///< [0] is the root
+  const std::vector<std::uint32_t>& order() const { return order_; }  ///< faces, leaf after leaf
+  const Vec3& origin() const { return origin_; }                      ///< m, file frame
+  /// Largest distance of a triangle from `origin()`, m.
+  double radius() const { return radius_; }
+  std::size_t bytes() const;  ///< memory of the hierarchy without the mesh
+
+  /// Corner `k` of `face`, m, file frame.
+  const Vec3& corner(std::uint32_t face, int k) const { return mesh_->vertices[mesh_->triangles[face][k]]; }
+
+ private:
+  std::shared_ptr<const TriangleMesh> mesh_;
+  std::vector<PatchNode> nodes_;
+  std::vector<std::uint32_t> order_;
+  Vec3 origin_ = Vec3::Zero();
+  double radius_ = 0;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,264 @@
+// The certificate against sampled poses: never certified where triangles meet, certified where there is room.
+#include "alloc_guard.hpp"
+#include "catch.hpp"
+#include "narrowphase/patch_front.hpp"
+#include "patch_oracle.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+struct Scene {
+  const char* name;
+  MeshPtr a, b;
+  Vec3 center;
+  Pose start;
+  double move, turn;  ///< m, rad
+};
+
+std::vector<Scene> scenes() {
+  std::mt19937 rng(5);
+  return {
+      {"knots", knot(0.05, 0.006, 800), knot(0.05, 0.006, 900), Vec3(0.01, 0, 0.005),
+       Pose{rotation(Vec3(0.3, 0.2, 0.1)), Vec3(0.13, 0, 0)}, 0.01, 0.3},
+      {"peg in hole", peg(0.0098, 0.04, 600), hole(0.01, 0.04, 700), Vec3(0, 0, 0.02),
+       Pose{Quat::Identity(), Vec3(0, 0, -0.02)}, 0.0005, 0.01},
+      {"soups", soup(rng, 150, 0.05, 0.01), soup(rng, 150, 0.05, 0.01), Vec3::Zero(),
+       Pose{Quat::Identity(), Vec3(0.11, 0, 0)}, 0.01, 0.5},
+      {"box on a plate", box({0.02, 0.015, 0.01}), box({0.1, 0.1, 0.001}), Vec3::Zero(),
+       Pose{Quat::Identity(), Vec3(0, 0, 0.02)}, 0.01, 0.3},
+      {"offset file frame", box({0.02, 0.015, 0.01}), knot(0.05, 0.006, 800), Vec3(0.15, 0.1, 0),
+       Pose{Quat::Identity(), Vec3(-0.04, -0.1, 0.04)}, 0.01, 0.3},
+  };
+}
+
+/// Every pair of triangles is under exactly one pair of the front.
+void require_cover(const PatchFront& front, const PatchTree& a, const PatchTree& b) {
+  auto faces = [](const PatchTree& t, std::uint32_t node) {
+    std::vector<std::uint32_t> out, stack{node};
+    while (!stack.empty()) {
+      const PatchNode& n = t.nodes()[stack.back()];
+      stack.pop_back();
+      if (n.leaf()) {
+        out.insert(out.end(), t.order().begin() + n.first, t.order().begin() + n.first + n.count);
+      } else {
+        stack.push_back(n.first);
+        stack.push_back(n.first + 1);
+      }
+    }
+    return out;
+  };
+  const std::size_t na = a.order().size(), nb = b.order().size();
+  std::vector<std::uint8_t> count(na * nb, 0);
+  front.for_each_pair([&](std::uint32_t i, std::uint32_t j, bool single) {
+    if (single) {
+      ++count[i * nb + j];
+      return;
+    }
+    const auto fb = faces(b, j);
+    for (std::uint32_t f : faces(a, i)) {
+      for (std::uint32_t g : fb) ++count[f * nb + g];
+    }
+  });
+  REQUIRE(std::all_of(count.begin(), count.end(), [](std::uint8_t n) { return n == 1; }));
+}
+
+}  // namespace
+
+TEST_CASE("a certified motion has no intersecting pose", "[patch]") {
+  for (const Scene& scene : scenes()) {
+    CAPTURE(scene.name);
+    const PatchTree a(scene.a), b(scene.b);
+    const Oracle oracle(scene.a, scene.b);
+    PatchFront front;
+    front.attach(a, scene.center, b);
+    std::mt19937 rng(17);
+    Pose X = scene.start;
+    REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+    int certified = 0, blocked = 0;
+    for (int i = 0; i < 100; ++i) {
+      const double size = std::pow(10.0, uniform(rng, -3, 0));
+      Displacement d{random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)};
+      d.dp -= 0.5 * size * scene.move * (X * scene.center).normalized();  // back to B
+
+      const CertifyReport report = front.certify(X, d);
+      if (report.status == CertifyStatus::certified) {
+        ++certified;
+        REQUIRE(oracle.hits(X, scene.center, d, i % 4 == 0 ? 32 : 8) == 0);
+        X = displaced(X, scene.center, d);
+      } else {
+        ++blocked;
+      }
+      if (i % 30 == 0) require_cover(front, a, b);
+    }
+    require_cover(front, a, b);
+    INFO(certified << " certified, " << blocked << " not");
+    CHECK(certified >= 30);
+    CHECK(blocked >= 5);
+  }
+}
+
+TEST_CASE("a motion with room around it is certified", "[patch]") {
+  // Four halvings of the time leave sixteen pieces, and what is farther apart than a piece can carry it has a plane
+  // that stands still: an eighth of the motion is twice that.
+  for (const Scene& scene : scenes()) {
+    CAPTURE(scene.name);
+    const PatchTree a(scene.a), b(scene.b);
+    const Oracle oracle(scene.a, scene.b);
+    double reach = 0;
+    for (const Vec3& v : scene.a->vertices) reach = std::max(reach, (v - scene.center).norm());
+    PatchFront front;
+    front.attach(a, scene.center, b);
+    std::mt19937 rng(23);
+    const double room = oracle.distance(scene.start);
+    int asked = 0;
+    for (int i = 0; i < 80; ++i) {
+      const double size = 4 * room * std::pow(10.0, uniform(rng, -2, 0));
+      const Displacement d{random_in_ball(rng, size), random_in_ball(rng, size / reach)};
+      const double motion = d.dp.norm() + (reach + scene.center.norm()) * d.dr.norm();
+      if (oracle.path_distance(scene.start, scene.center, d, 16) < motion / 8) continue;
+      ++asked;
+      const CertifyReport report = front.certify(scene.start, d, {1000000});
+      REQUIRE(report.status == CertifyStatus::certified);
+    }
+    CHECK(asked >= 20);
+  }
+}
+
+TEST_CASE("blocking pairs separate the start and stand in the way", "[patch]") {
+  const Scene scene = scenes()[3];
+  const PatchTree a(scene.a), b(scene.b);
+  PatchFront front;
+  front.attach(a, scene.center, b);
+  // 9 mm above the plate, 20 mm down.
+  const Displacement d{Vec3(0, 0, -0.02), Vec3::Zero()};
+  const CertifyReport report = front.certify(scene.start, d);
+  REQUIRE(report.status == CertifyStatus::blocked);
+  REQUIRE(!front.blocking().empty());
+  for (const BlockingPair& p : front.blocking()) {
+    double low = 1, high = -1;
+    for (int k = 0; k < 3; ++k) {
+      low = std::min(low, p.n_BA.dot(scene.start * a.corner(p.face_a, k)));
+      high = std::max(high, p.n_BA.dot(b.corner(p.face_b, k)));
+    }
+    REQUIRE(p.n_BA.norm() == Approx(1));
+    REQUIRE(p.gap > 0);
+    REQUIRE(low - high == Approx(p.gap).margin(1e-12));
+    REQUIRE(p.n_BA.dot(p.point_A) - high == Approx(p.point_gap).margin(1e-12));
+    REQUIRE(p.point_gap >= p.gap - 1e-12);
+    // The motion carries the point past the plane.
+    REQUIRE(p.point_gap + p.n_BA.dot(d.dp) < 0);
+  }
+}
+
+TEST_CASE("calls cut short leave a front that covers everything", "[patch]") {
+  std::mt19937 rng(31);
+  for (const Scene& scene : scenes()) {
+    CAPTURE(scene.name);
+    const PatchTree a(scene.a), b(scene.b);
+    const Oracle oracle(scene.a, scene.b);
+    PatchFront front(FrontCapacity{3000, 8});
+    front.attach(a, scene.center, b);
+    int certified = 0;
+    for (int i = 0; i < 120; ++i) {
+      const double size = std::pow(10.0, uniform(rng, -4, 0));
+      const Displacement d{random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)};
+      const CertifyReport report = front.certify(scene.start, d, {static_cast<int>(uniform(rng, 1, 400))});
+      if (report.status != CertifyStatus::certified) continue;
+      ++certified;
+      if (certified % 8 == 0) REQUIRE(oracle.hits(scene.start, scene.center, d, 16) == 0);
+    }
+    REQUIRE(certified > 10);
+    require_cover(front, a, b);
+  }
+}
+
+TEST_CASE("seeds of a flat face on a plate are its corners", "[patch]") {
+  const double gap = 5e-6;
+  const Vec3 h(0.02, 0.015, 0.01);
+  const PatchTree a(box(h)), b(box({0.1, 0.1, 0.001}));
+  PatchFront front;
+  front.attach(a, Vec3::Zero(), b);
+  const Pose X{rotation(Vec3(0, 0, 0.3)), Vec3(0.01, 0.02, h.z() + 0.001 + gap)};
+  REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+  std::array<ContactSeed, 32> seeds;
+  const int n = front.contact_seeds(X, 5e-5, seeds.data(), 32);
+  REQUIRE(n <= 8);
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 corner = X * Vec3(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(), -h.z());
+    int near = 0;
+    for (int k = 0; k < n; ++k) {
+      if ((seeds[k].place - corner).norm() > 1e-4) continue;
+      ++near;
+      // The faces meet at that corner and lie in the facing planes.
+      double nearest = 1;
+      for (int c = 0; c < 3; ++c) nearest = std::min(nearest, (X * a.corner(seeds[k].face_a, c) - corner).norm());
+      REQUIRE(nearest < 1e-9);
+      for (int c = 0; c < 3; ++c) REQUIRE(b.corner(seeds[k].face_b, c).z() == Approx(0.001));
+      REQUIRE(seeds[k].n_BA.z() > 0.99);
+    }
+    REQUIRE(near >= 1);
+  }
+  // Out of reach, and with little room for the answer.
+  REQUIRE(front.contact_seeds({Quat::Identity(), Vec3(0, 0, 0.1)}, 5e-5, seeds.data(), 32) == 0);
+  REQUIRE(front.contact_seeds(X, 5e-5, seeds.data(), 2) == 2);
+}
+
+TEST_CASE("seeds find every near place of a peg in its hole", "[patch]") {
+  const double r = 0.0099, R = 0.01, l = 0.04;
+  const MeshPtr pm = peg(r, l, 3000), hm = hole(R, l, 3000);
+  const PatchTree a(pm), b(hm);
+  PatchFront front;
+  front.attach(a, Vec3(0, 0, l / 2), b);
+  // Tilted so that the tip is near on one side and the mouth on the other (two-sided support).
+  const double side = 0.00009, depth = 0.03;
+  const Vec3 axis = Vec3(-2 * side, 0, depth).normalized();
+  const Pose X{Quat::FromTwoVectors(Vec3::UnitZ(), axis), Vec3(side, 0, -depth)};
+  REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+  std::array<ContactSeed, 64> seeds;
+  const int n = front.contact_seeds(X, 4e-5, seeds.data(), 64);
+  bool tip = false, mouth = false;
+  for (int k = 0; k < n; ++k) {
+    const Vec3& p = seeds[k].place;
+    tip = tip || (p.x() > 0.008 && p.z() < -depth + 0.002 && seeds[k].n_BA.x() < -0.5);
+    mouth = mouth || (p.x() < -0.008 && p.z() > -0.002 && seeds[k].n_BA.x() > 0.5);
+  }
+  REQUIRE(tip);
+  REQUIRE(mouth);
+  REQUIRE(n <= 64);
+}
+
+TEST_CASE("a certificate allocates nothing", "[patch]") {
+  const Scene scene = scenes()[1];
+  const PatchTree a(scene.a), b(scene.b);
+  PatchFront front;
+  std::mt19937 rng(41);
+  std::array<ContactSeed, 64> seeds;
+  const AllocGuard guard;
+  front.attach(a, scene.center, b);
+  for (int i = 0; i < 300; ++i) {
+    const double size = std::pow(10.0, uniform(rng, -4, 0.5));
+    front.certify(scene.start, {random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)});
+    front.contact_seeds(scene.start, 3e-4, seeds.data(), 64);
+  }
+  const auto allocations = guard.count();
+  REQUIRE(allocations == 0);
+}
+
+TEST_CASE("the same calls give the same answers and the same front", "[patch]") {
+  const Scene scene = scenes()[0];
+  const PatchTree a(scene.a), b(scene.b);
+  auto run = [&] {
+    PatchFront front;
+    front.attach(a, scene.center, b);
+    std::mt19937 rng(43);
+    std::vector<int> log;
+    for (int i = 0; i < 100; ++i) {
+      const CertifyReport r =
+          front.certify(scene.start, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+      log.insert(log.end(), {static_cast<int>(r.status), r.pairs, r.searches, r.splits, r.merges});
+    }
+    return log;
+  };
+  REQUIRE(run() == run());
+}
