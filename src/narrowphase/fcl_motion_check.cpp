@@ -21,9 +21,13 @@ FclMotionCheck::FclMotionCheck(const TriangleMesh& held, const Vec3& center, dou
       back_off_(back_off),
       narrow_(held, fixed) {}
 
-void FclMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t) noexcept { near_ = &near; }
+void FclMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t) noexcept {
+  near_ = &near;
+}
 
-double FclMotionCheck::longest_motion() const { return kLongestShare * radius_; }
+double FclMotionCheck::longest_motion() const {
+  return kLongestShare * radius_;
+}
 
 MotionAnswer FclMotionCheck::check(const Pose& X, const Displacement& d, double clearance,
                                    std::vector<FacePair>& blocking) noexcept {

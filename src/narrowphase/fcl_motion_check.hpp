@@ -9,8 +9,8 @@ namespace tegotae {
 /// passed), and an intersection is backed off from.
 class FclMotionCheck final : public MotionCheck {
  public:
-  /// `fixed` and `poses` by part number; `radius` of A about its center of mass `center` (m, file frame), `back_off` the
-  /// paper's l_0 (m).
+  /// `fixed` and `poses` by part number; `radius` of A about its center of mass `center` (m, file frame), `back_off`
+  /// the paper's l_0 (m).
   FclMotionCheck(const TriangleMesh& held, const Vec3& center, double radius,
                  const std::vector<const TriangleMesh*>& fixed, std::vector<Pose> poses, double back_off);
 

@@ -37,7 +37,9 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   front_of_.assign(fixed.size(), kNobody);
 }
 
-double PatchMotionCheck::longest_motion() const { return kLongestShare * radius_; }
+double PatchMotionCheck::longest_motion() const {
+  return kLongestShare * radius_;
+}
 
 std::uint32_t PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   const auto oldest = std::min_element(used_.begin(), used_.end());

@@ -48,8 +48,7 @@ double start_clearance(const Part& held, const std::vector<const Part*>& fixed, 
   double clearance = kGapFloor;
   FacePair nearest{};
   for (std::uint32_t i = 0; i < fixed.size(); ++i)
-    clearance = std::min(clearance,
-                         narrow.distance_below(kGapFloor, i, fixed[i]->pose.inverse() * held.pose, nearest));
+    clearance = std::min(clearance, narrow.distance_below(kGapFloor, i, fixed[i]->pose.inverse() * held.pose, nearest));
   return clearance < kGapFloor ? kStartShare * clearance : clearance;
 }
 

@@ -63,8 +63,8 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
-  double clearance_;          ///< gap that a motion must leave, m
-  bool tracked_ = false;      ///< the contacts are those of X_
+  double clearance_;      ///< gap that a motion must leave, m
+  bool tracked_ = false;  ///< the contacts are those of X_
   std::int64_t deadline_ns_ = 0;
 };
 
