@@ -42,6 +42,10 @@ constexpr double kStartShare = 0.5;
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
+// A piece that promises less than this share of the squared error is rest: where limits change with every piece, the last
+// of the way would be crept along for seconds. While the pen stands still the share grows, like static friction, by its
+// own size every so many ticks up to so many times.
+constexpr double kNoGain = 1e-5, kPatienceTicks = 25, kMostPatience = 20;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
@@ -112,10 +116,12 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
+  still_ticks_ = pen < kRest ? still_ticks_ + 1 : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
   report.candidate_parts = static_cast<int>(near_.size());
+  bool held_back = false;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -130,6 +136,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
+      held_back = length == 0 && !contacts_->limits().empty();
       // A piece shorter than it could be is the resolver's own end.
       if (length < kFullShare * cap) break;
       made += length;
@@ -139,6 +146,8 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   }
   gather(report);
   const double left = size(displacement(X_, Y, center_));
+  // A part that limits hold back a little above their gap is felt like one that rests on them.
+  report.proxy.touching = report.contacts > 0 || (held_back && left > settings_.l_min);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
@@ -163,7 +172,11 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   bool found = false;
   for (int i = 0; i < kMostResolves && !found; ++i) {
     if (!resolve(wanted, cap, report, trial)) return 0;
-    if (size(trial.d) < kRest) return 0;
+    if (size(trial.d) < kRest) {
+      // Of a shorter way the programme may take a part where of the longer one it takes nothing.
+      if (!resolver_->takes_whole_error()) trust_ *= 0.5;
+      return 0;
+    }
     found = is_free(trial, report);
     if (found) break;
     if (late()) return 0;
@@ -185,8 +198,9 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  Vec6 motion = wanted;
-  if (!contacts_->limits().empty() && !solve(wanted, report, motion)) return false;
+  const double far = size(metric_.unwhiten(wanted));
+  Vec6 motion = resolver_->takes_whole_error() || far <= cap ? wanted : Vec6((cap / far) * wanted);
+  if (!contacts_->limits().empty() && !solve(Vec6(motion), report, motion)) return false;
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
   if (length > cap) {
@@ -243,6 +257,8 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   const Vec6 step = metric_.whiten(trial.d);
   const double promised = error.squaredNorm() - (error - step).squaredNorm();
   if (promised <= 0) return true;  // a step that only opens gaps
+  const double patience = std::min(kMostPatience, 1 + still_ticks_ / kPatienceTicks);
+  if (promised < kNoGain * patience * error.squaredNorm()) return false;
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
@@ -259,7 +275,6 @@ void ContactLoop::gather(TickReport& report) const {
   report.limits = static_cast<int>(contacts_->limits().size());
   report.overflow = contacts_->overflow() > 0 || check_->overflow();
   report.cut |= late();
-  report.proxy.touching = report.contacts > 0;
 }
 
 }  // namespace tegotae

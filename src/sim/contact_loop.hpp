@@ -63,6 +63,7 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
+  int still_ticks_ = 0;       ///< since the pen last moved
   double clearance_;      ///< gap that a motion must leave, m
   bool tracked_ = false;  ///< the contacts are those of X_
   std::int64_t deadline_ns_ = 0;

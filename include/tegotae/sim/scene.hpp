@@ -22,7 +22,7 @@ struct Part {
 struct ContactSettings {
   double l_min;  ///< gap (m) that contacts keep; at most half the radial clearance of the tightest fit
   double l_0;    ///< back-off length (m) after an intersection
-  std::string resolver = "lp";
+  std::string resolver = "qp";  ///< "qp": least constraint; "lp": the paper's linear programme
   std::string narrowphase = "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
   /// Time (s) that a tick of HapticLoop::step may take; what is not done by then is left for the next tick. Infinite:
   /// bounded by work alone, so that the same pen gives the same motion bit for bit on any machine.
