@@ -29,10 +29,16 @@ constexpr int kMostResolves = 6;
 constexpr int kMostHalvings = 4;
 // Pairs are followed while they are nearer than twice this share of the part's radius.
 constexpr double kReachShare = 0.02;
-// Share of l_min by which a gap that is too small recovers in a piece.
-constexpr double kRecovery = 0.2;
+// Share of the kept gap by which one that is too small recovers in a piece.
+constexpr double kRecovery = 0.4;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
 constexpr double kKeepShare = 0.5;
+// Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
+// factor where there is room for more.
+constexpr int kAdaptTicks = 8;
+constexpr double kKeepGrowth = 1.1;
+// Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
+constexpr double kLeastKeep = 2e-6;
 // No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
 // count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
 constexpr double kGapFloor = 1.1e-6;
@@ -100,6 +106,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   piece_cap_ = check_->longest_motion();
   reach_ = settings_.l_min + 2 * kReachShare * radius_;
   trust_ = piece_cap_;
+  most_keep_ = keep_ = kKeepShare * settings_.l_min;
+  least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
   X_ = last_Y_ = held->pose;
   blocking_.reserve(kMostBlocking);
 }
@@ -130,6 +138,8 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     tracked_ = false;
   } else {
     check_->begin(near_, deadline_ns_);
+    track();
+    adapt_keep();
     trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
@@ -147,7 +157,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   gather(report);
   const double left = size(displacement(X_, Y, center_));
   // A part that limits hold back a little above their gap is felt like one that rests on them.
-  report.proxy.touching = report.contacts > 0 || (held_back && left > settings_.l_min);
+  report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
@@ -161,6 +171,21 @@ bool ContactLoop::late() const {
 void ContactLoop::track() {
   if (!tracked_) contacts_->track(X_, reach_);
   tracked_ = true;
+}
+
+void ContactLoop::adapt_keep() {
+  // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
+  // when a motion exists that leaves twice as much everywhere.
+  const auto& limits = contacts_->limits();
+  if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
+  metric_.set_orientation(X_.q);
+  rows_.clear();
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    rows_.push_row(metric_.row(limits[i]));
+    bounds_[i] = 2 * keep_ - limits[i].gap;
+  }
+  const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
+  keep_ = std::clamp(room ? kKeepGrowth * keep_ : 0.5 * keep_, least_keep_, most_keep_);
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
@@ -217,14 +242,13 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   const auto& limits = contacts_->limits();
-  const double keep = kKeepShare * settings_.l_min;
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
   // an answer, because standing still is one.
-  for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
+  for (const double recovery : {kRecovery * keep_, 0.0}) {
     for (std::size_t i = 0; i < limits.size(); ++i)
-      bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
+      bounds_[i] = std::min(keep_, limits[i].gap + recovery) - limits[i].gap;
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
     report.iterations += r.iterations;
@@ -269,7 +293,7 @@ void ContactLoop::gather(TickReport& report) const {
   report.contacts = 0;
   report.gap = std::numeric_limits<double>::infinity();
   for (const Contact& c : contacts_->limits()) {
-    report.contacts += c.gap <= settings_.l_min ? 1 : 0;
+    report.contacts += c.gap <= keep_ / kKeepShare ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(contacts_->limits().size());
