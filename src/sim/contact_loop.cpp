@@ -31,6 +31,8 @@ constexpr int kMostHalvings = 4;
 constexpr double kReachShare = 0.02;
 // Share of the kept gap by which one that is too small recovers in a piece.
 constexpr double kRecovery = 0.4;
+// Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
+constexpr double kRecoverBelow = 0.8;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
 constexpr double kKeepShare = 0.5;
 // Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
@@ -48,10 +50,10 @@ constexpr double kStartShare = 0.5;
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
-// A piece that promises less than this share of the squared error is rest: where limits change with every piece, the last
-// of the way would be crept along for seconds. While the pen stands still the share grows, like static friction, by its
-// own size every so many ticks up to so many times.
-constexpr double kNoGain = 1e-5, kPatienceTicks = 25, kMostPatience = 20;
+// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
+// so many: like static friction, it ends the creep that is left where limits change with every piece.
+constexpr double kStiction = 1e-6;
+constexpr int kMostStillTicks = 250;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
@@ -247,8 +249,11 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
   // an answer, because standing still is one.
   for (const double recovery : {kRecovery * keep_, 0.0}) {
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      bounds_[i] = std::min(keep_, limits[i].gap + recovery) - limits[i].gap;
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double gap = limits[i].gap;
+      const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
+      bounds_[i] = std::min(keep_, gap + lost) - gap;
+    }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
     report.iterations += r.iterations;
@@ -281,12 +286,10 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   const Vec6 step = metric_.whiten(trial.d);
   const double promised = error.squaredNorm() - (error - step).squaredNorm();
   if (promised <= 0) return true;  // a step that only opens gaps
-  const double patience = std::min(kMostPatience, 1 + still_ticks_ / kPatienceTicks);
-  if (promised < kNoGain * patience * error.squaredNorm()) return false;
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
-  return made > 0;
+  return made > kStiction * std::min(still_ticks_, kMostStillTicks) * error.squaredNorm();
 }
 
 void ContactLoop::gather(TickReport& report) const {

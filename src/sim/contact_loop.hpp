@@ -65,8 +65,8 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
-  int still_ticks_ = 0;       ///< since the pen last moved
-  double keep_;  ///< gap that contacts keep, m, between the next two
+  int still_ticks_ = 0;  ///< since the pen last moved
+  double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
   double clearance_;      ///< gap that a motion must leave, m

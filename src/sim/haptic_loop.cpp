@@ -12,8 +12,8 @@
 namespace tegotae {
 namespace {
 
-// What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down to
-// the lower one by itself where a fit has no more room.
+// What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down
+// to the lower one by itself where a fit has no more room.
 constexpr double kLMinShare = 8e-4, kLeastLMin = 4e-6, kMostLMin = 2e-5;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
