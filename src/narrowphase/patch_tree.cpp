@@ -14,6 +14,11 @@ namespace {
 constexpr std::uint32_t kNoCluster = 0xffffffffu;
 /// Weight of the diameter against the thickness of a patch (design.md 4b): decides only where surfaces are flat.
 constexpr double kDiameterWeight = 3e-4;
+/// Mean normal of a patch, relative to its area, above which it is nearly flat (normals within some 15°).
+constexpr float kNearlyFlat = 0.98f;
+/// Patches of more faces lie along their largest variance; smaller ones, whose outlines meet the other part's, along
+/// their outline.
+constexpr std::uint32_t kOutlineFaces = 1024;
 /// Relative enlargement of boxes: covers rounding of the fit (double) and of the stored half extents.
 constexpr double kBoxSlack = 1e-6;
 /// Rounding of the single-precision copies of the vertices, relative to the mesh's radius (half a step is 2^-25).
@@ -290,8 +295,8 @@ void drop_inner(std::vector<Point2>& points) {
 }
 
 /// Direction of a side of the enclosing rectangle of least area: it lies along an edge of the hull (Freeman and
-/// Shapira, 1975). Reorders and drops points.
-Point2 narrowest(std::vector<Point2>& points) {
+/// Shapira, 1975). Reorders and drops points; `hull` is scratch.
+Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
   constexpr std::size_t kWorthFiltering = 24;
   // The long edges are the straight sides of a patch; the short ones of a round outline do not matter.
   constexpr std::size_t kLongestEdges = 8;
@@ -299,7 +304,7 @@ Point2 narrowest(std::vector<Point2>& points) {
   std::sort(points.begin(), points.end(),
             [](const Point2& a, const Point2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   // Monotone chain (Andrew, 1979), lower and upper part one after the other.
-  std::vector<Point2> hull(2 * points.size());
+  hull.resize(2 * points.size());
   std::size_t n = 0;
   auto add = [&](const Point2& p, std::size_t least) {
     while (n >= least && turn(hull[n - 2], hull[n - 1], p) <= 0) --n;
@@ -403,25 +408,38 @@ class Layout {
     const Moments& m = clusters_.moments(cluster);
     Vec3f mean = Vec3f::Zero();
     for (std::uint32_t i = begin; i < end; ++i) mean += items_[i].area * items_[i].normal;
-    Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-    eigen.computeDirect(m.covariance());
-    Mat3 frame = eigen.eigenvectors().rowwise().reverse();  // largest variance first
-    if (!frame.allFinite() || std::abs(std::abs(frame.determinant()) - 1) > 1e-3) frame = Mat3::Identity();
-    Vec3 normal = frame.col(2);
-    const float length = mean.norm();
-    // The mean normal gives the thinner box where the outline is ragged; it says nothing where normals cancel.
-    if (length > 0.5f * static_cast<float>(m.w)) {
-      const Vec3 other = (mean / length).cast<double>().normalized();
-      if (thickness(begin, end, other) < thickness(begin, end, normal)) normal = other;
+    const float length = mean.norm(), area = static_cast<float>(m.w);
+    Vec3 normal = length > 0 ? Vec3((mean / length).cast<double>().normalized()) : Vec3(Vec3::UnitZ());
+    // The least variance gives the thinner box where a patch is bent; the mean normal where its outline is ragged, and
+    // it is all that a nearly flat patch needs. It says nothing where normals cancel.
+    if (length < kNearlyFlat * area) {
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+      eigen.computeDirect(m.covariance());
+      const Vec3 least = eigen.eigenvectors().col(0);
+      const bool usable = least.allFinite() && std::abs(least.norm() - 1) < 1e-3;
+      if (usable && (length < 0.5f * area || thickness(begin, end, least) < thickness(begin, end, normal))) {
+        normal = least.normalized();
+      }
     }
-    Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    Vec3 v = normal.cross(u);
-    points_.clear();
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (const Vec3f& c : items_[i].v) points_.push_back({c.cast<double>().dot(u), c.cast<double>().dot(v)});
+    Mat3 frame;
+    if (end - begin <= kOutlineFaces) {
+      const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+      const Vec3 v = normal.cross(u);
+      points_.clear();
+      for (std::uint32_t i = begin; i < end; ++i) {
+        for (const Vec3f& c : items_[i].v) points_.push_back({c.cast<double>().dot(u), c.cast<double>().dot(v)});
+      }
+      const auto [x, y] = narrowest(points_, hull_);
+      frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
+    } else {
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+      eigen.computeDirect(m.covariance());
+      const Vec3 longest = eigen.eigenvectors().col(2);
+      Vec3 across = normal.cross(longest);
+      if (!(across.norm() > 0.1)) across = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+      across.normalize();
+      frame << across.cross(normal), across, normal;
     }
-    const auto [x, y] = narrowest(points_);
-    frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
     set_box(begin, end, frame, nodes_[node]);
   }
 
@@ -471,7 +489,7 @@ class Layout {
   std::vector<PatchNode>& nodes_;
   std::vector<std::uint32_t>& order_;
   std::vector<Item> items_;
-  std::vector<Point2> points_;
+  std::vector<Point2> points_, hull_;
 };
 
 }  // namespace
