@@ -71,9 +71,9 @@ void ContactSet::track(const Pose& X, double reach) {
   pairs_.assign(next_.begin(), next_.end());
 }
 
-int ContactSet::seed(const std::vector<TrianglePair>& triangles, const Pose& X_near) {
+int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near) {
   int fresh = 0;
-  for (const TrianglePair& t : triangles) {
+  for (const FacePair& t : triangles) {
     if (static_cast<int>(next_.size()) >= capacity_) {
       ++overflow_;
       break;
@@ -96,10 +96,10 @@ int ContactSet::seed(const std::vector<TrianglePair>& triangles, const Pose& X_n
   return fresh;
 }
 
-int ContactSet::cut(const std::vector<TrianglePair>& triangles, const Displacement& d) {
+int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d) {
   int added = 0;
   const Vec3 c = X_ * center_;
-  for (const TrianglePair& t : triangles) {
+  for (const FacePair& t : triangles) {
     const FixedSurface& B = fixed_[t.part];
     std::array<Vec3, 3> a, b, motion;
     for (int k = 0; k < 3; ++k) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "feature/tracker.hpp"
-#include "narrowphase/triangle_pair.hpp"
+#include "narrowphase/face_pair.hpp"
 #include "tegotae/contact/contact.hpp"
 
 namespace tegotae {
@@ -26,10 +26,10 @@ class ContactSet {
   void track(const Pose& X, double reach);
   /// Starts pairs from triangle pairs: nearest features at `X_near` (close to the contact), followed to their minimum
   /// at the pose of the last track(). Returns how many pairs within reach were not known yet.
-  int seed(const std::vector<TrianglePair>& triangles, const Pose& X_near);
+  int seed(const std::vector<FacePair>& triangles, const Pose& X_near);
   /// Adds limits for this tick only: for each triangle pair (free at the last track()) the separating axis that limits
   /// the displacement `d` least. Returns how many were added.
-  int cut(const std::vector<TrianglePair>& triangles, const Displacement& d);
+  int cut(const std::vector<FacePair>& triangles, const Displacement& d);
 
   const std::vector<Contact>& limits() const { return limits_; }
   /// Limits that were dropped since the last track() because the capacity was used up.

@@ -65,7 +65,7 @@ FclNarrowPhase::FclNarrowPhase(const TriangleMesh& held, const std::vector<const
 
 FclNarrowPhase::~FclNarrowPhase() = default;
 
-int FclNarrowPhase::intersections(std::uint32_t part, const Pose& X_BA, int most, std::vector<TrianglePair>& pairs) {
+int FclNarrowPhase::intersections(std::uint32_t part, const Pose& X_BA, int most, std::vector<FacePair>& pairs) {
   if (state_->collide(part, X_BA, most) == 0) return 0;
   const int n = std::min(most, static_cast<int>(state_->result.numContacts()));
   for (int i = 0; i < n; ++i) {
@@ -75,7 +75,7 @@ int FclNarrowPhase::intersections(std::uint32_t part, const Pose& X_BA, int most
   return n;
 }
 
-double FclNarrowPhase::distance_below(double bound, std::uint32_t part, const Pose& X_BA, TrianglePair& nearest) {
+double FclNarrowPhase::distance_below(double bound, std::uint32_t part, const Pose& X_BA, FacePair& nearest) {
   const fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
   result.min_distance = bound;  // the traversal leaves out whatever is farther than the best so far

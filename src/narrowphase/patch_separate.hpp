@@ -23,7 +23,7 @@ struct Sweep {
   double theta2 = 0;           ///< |dr|²
   Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
   double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
-  double floor = 0;            ///< separations below are rounding, m
+  double floor = 0;            ///< separations below do not count: clearance, at least the rounding, m
 
   Placement at(double s) const;
 };

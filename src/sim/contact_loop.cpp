@@ -5,19 +5,18 @@
 #include <limits>
 #include <map>
 
+#include "narrowphase/fcl_motion_check.hpp"
+#include "narrowphase/patch_motion_check.hpp"
 #include "sim/start_check.hpp"
-#include "tegotae/core/constants.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
 
 // Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
 constexpr int kMostLimits = 4096;
-// Intersecting triangle pairs asked for at a trial pose: what they miss shows at the next trial.
-constexpr int kMostHits = 256;
-// Near other parts a piece carries no point farther than this share of the part's radius, so that the poses checked lie
-// close together.
-constexpr double kPieceShare = 0.02;
+// Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
+constexpr int kMostBlocking = 256;
 // Pieces in one tick; a pen faster than that leaves X behind for a while.
 constexpr int kMostPieces = 16;
 // How much faster than the pen X may follow.
@@ -28,8 +27,8 @@ constexpr double kFullShare = 0.99;
 constexpr int kMostResolves = 6;
 // Halvings of a piece that still intersects.
 constexpr int kMostHalvings = 4;
-// Doublings of the back-off length.
-constexpr int kMostBackOffs = 4;
+// Pairs are followed while they are nearer than twice this share of the part's radius.
+constexpr double kReachShare = 0.02;
 // Share of l_min by which a gap that is too small recovers in a piece.
 constexpr double kRecovery = 0.2;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
@@ -37,13 +36,28 @@ constexpr double kKeepShare = 0.5;
 // No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
 // count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
 constexpr double kGapFloor = 1.1e-6;
+// Of a start gap below the floor, what motions must leave.
+constexpr double kStartShare = 0.5;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
+double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
+  double clearance = kGapFloor;
+  FacePair nearest{};
+  for (std::uint32_t i = 0; i < fixed.size(); ++i)
+    clearance = std::min(clearance, narrow.distance_below(kGapFloor, i, fixed[i]->pose.inverse() * held.pose, nearest));
+  return clearance < kGapFloor ? kStartShare * clearance : clearance;
+}
+
 }  // namespace
+
+const std::vector<std::string>& narrowphase_names() {
+  static const std::vector<std::string> names{"patch", "fcl"};
+  return names;
+}
 
 ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
     : settings_(settings),
@@ -57,27 +71,33 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
   std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
   std::vector<FixedSurface> fixed_surfaces;
-  std::vector<const TriangleMesh*> meshes;
+  std::vector<const TriangleMesh*> plain_meshes;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+  std::vector<Pose> poses;
   for (const Part* p : fixed) {
     auto& surface = surfaces[p->mesh.get()];
     if (!surface) surface = std::make_shared<Surface>(p->mesh);
     fixed_surfaces.push_back({surface, p->pose});
-    fixed_poses_.push_back(p->pose);
+    poses.push_back(p->pose);
     spheres_.add(bounding_sphere(*p->mesh), p->pose);
-    meshes.push_back(p->mesh.get());
+    meshes.push_back(p->mesh);
+    plain_meshes.push_back(p->mesh.get());
   }
-  narrow_ = std::make_unique<FclNarrowPhase>(*held->mesh, meshes);
-  check_start(*held, fixed, *narrow_);
-  held_ = std::make_shared<Surface>(held->mesh);
-  contacts_ = std::make_unique<ContactSet>(held_, std::move(fixed_surfaces), center_, kMostLimits);
+  FclNarrowPhase narrow(*held->mesh, plain_meshes);
+  check_start(*held, fixed, narrow);
   radius_ = radius_about(*held->mesh, center_);
-  piece_cap_ = kPieceShare * radius_;
-  reach_ = settings_.l_min + 2 * piece_cap_;
+  clearance_ = start_clearance(*held, fixed, narrow);
+  if (settings_.narrowphase == "fcl")
+    check_ = std::make_unique<FclMotionCheck>(*held->mesh, center_, radius_, plain_meshes, poses, settings_.l_0);
+  else
+    check_ = std::make_unique<PatchMotionCheck>(held->mesh, center_, radius_, meshes, poses);
+  contacts_ = std::make_unique<ContactSet>(std::make_shared<Surface>(held->mesh), std::move(fixed_surfaces), center_,
+                                           kMostLimits);
+  piece_cap_ = check_->longest_motion();
+  reach_ = settings_.l_min + 2 * kReachShare * radius_;
   trust_ = piece_cap_;
   X_ = last_Y_ = held->pose;
-  hits_.reserve(kMostHits);
-  spheres_.query(X_ * center_, radius_, kGapFloor, near_);
-  floor_ = floor_at(X_);
+  blocking_.reserve(kMostBlocking);
 }
 
 void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
@@ -85,31 +105,37 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
-  report.overflow = false;
+  report.cut = false;
+  deadline_ns_ = std::isfinite(settings_.tick_budget)
+                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
+                     : std::numeric_limits<std::int64_t>::max();
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  spheres_.query(X_ * center_, radius_, wanted + reach_, near_);
+  // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
+  const double travel = std::max(piece_cap_, kCatchUp * pen);
+  spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   if (near_.empty()) {
-    X_ = Y;
+    X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
+    if (wanted <= travel) X_ = Y;
     report.pieces.push_back(X_);
     contacts_->track(X_, 0);
+    tracked_ = false;
   } else {
+    check_->begin(near_, deadline_ns_);
     trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
-    // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks. A piece shorter
-    // than it could be is the resolver's own end.
-    const double travel = std::max(piece_cap_, kCatchUp * pen);
     double made = 0;
-    for (int i = 0; i < kMostPieces && made < travel; ++i) {
+    for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
+      // A piece shorter than it could be is the resolver's own end.
       if (length < kFullShare * cap) break;
       made += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
-    contacts_->track(X_, reach_);
+    track();
   }
   gather(report);
   const double left = size(displacement(X_, Y, center_));
@@ -119,27 +145,42 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
 }
 
+bool ContactLoop::late() const {
+  return deadline_ns_ != std::numeric_limits<std::int64_t>::max() && monotonic_ns() >= deadline_ns_;
+}
+
+void ContactLoop::track() {
+  if (!tracked_) contacts_->track(X_, reach_);
+  tracked_ = true;
+}
+
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
-  contacts_->track(X_, reach_);
+  track();
   const Displacement error = displacement(X_, Y, center_);
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
-  bool is_free = false;
-  for (int i = 0; i < kMostResolves; ++i) {
+  bool found = false;
+  for (int i = 0; i < kMostResolves && !found; ++i) {
     if (!resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) return 0;
-    is_free = !find_hits(trial.X);
-    if (is_free) break;
-    if (contacts_->seed(hits_, back_off(trial.d)) == 0 && contacts_->cut(hits_, trial.d) == 0) break;
+    found = is_free(trial, report);
+    if (found) break;
+    if (late()) return 0;
+    if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_)) == 0 &&
+        contacts_->cut(blocking_, trial.d) == 0)
+      break;
   }
-  if (!is_free) {
-    trust_ *= 0.5;
-    if (!shorten(trial)) return 0;
+  if (!found) {
+    trust_ = 0.5 * std::min(trust_, size(trial.d));
+    if (!shorten(trial, report)) return 0;
   }
   if (!worth_it(wanted, trial, Y)) return 0;
   X_ = trial.X;
-  if (floor_ < kGapFloor) floor_ = floor_at(X_);
+  tracked_ = false;
+  // Parts that started nearer than the floor keep it once they have come apart.
+  if (clearance_ < kGapFloor && check_->check(X_, Displacement{}, kGapFloor, blocking_) == MotionAnswer::free)
+    clearance_ = kGapFloor;
   return size(trial.d);
 }
 
@@ -180,51 +221,18 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   return false;
 }
 
-bool ContactLoop::find_hits(const Pose& X) {
-  hits_.clear();
-  for (const std::uint32_t part : near_)
-    narrow_->intersections(part, fixed_poses_[part].inverse() * X, kMostHits - static_cast<int>(hits_.size()), hits_);
-  if (!hits_.empty()) return true;
-  TrianglePair nearest{};
-  for (const std::uint32_t part : near_)
-    if (narrow_->distance_below(floor_, part, fixed_poses_[part].inverse() * X, nearest) < floor_)
-      hits_.push_back(nearest);
-  return !hits_.empty();
+bool ContactLoop::is_free(const Trial& trial, TickReport& report) {
+  blocking_.clear();
+  const MotionAnswer answer = check_->check(X_, trial.d, clearance_, blocking_);
+  report.cut |= answer == MotionAnswer::unknown;
+  return answer == MotionAnswer::free;
 }
 
-double ContactLoop::floor_at(const Pose& X) {
-  double floor = kGapFloor;
-  TrianglePair nearest{};
-  for (const std::uint32_t part : near_)
-    floor = narrow_->distance_below(floor, part, fixed_poses_[part].inverse() * X, nearest);
-  return floor;
-}
-
-Pose ContactLoop::back_off(const Displacement& d) {
-  // The paper moves A back by l_0 against the velocity of the vertices of its intersecting faces; here along its own
-  // path, as far as takes the fastest of those vertices back by l_0, and again by twice as much while it still
-  // intersects, never further than to the last free pose.
-  const Vec3 c = X_ * center_;
-  double fastest = 0;
-  for (const TrianglePair& t : hits_)
-    for (const std::uint32_t v : held_->mesh->triangles[t.a])
-      fastest = std::max(fastest, (d.dp + d.dr.cross(X_ * held_->mesh->vertices[v] - c)).norm());
-  double back = settings_.l_0;
-  for (int i = 0; i < kMostBackOffs && back < fastest; ++i, back *= 2) {
-    const Pose X = displaced(X_, center_, (1 - back / fastest) * d);
-    const bool hit = std::any_of(near_.begin(), near_.end(), [&](std::uint32_t part) {
-      return narrow_->intersects(part, fixed_poses_[part].inverse() * X);
-    });
-    if (!hit) return X;
-  }
-  return X_;
-}
-
-bool ContactLoop::shorten(Trial& trial) {
-  for (int i = 0; i < kMostHalvings; ++i) {
+bool ContactLoop::shorten(Trial& trial, TickReport& report) {
+  for (int i = 0; i < kMostHalvings && !late(); ++i) {
     trial.d = 0.5 * trial.d;
     trial.X = displaced(X_, center_, trial.d);
-    if (!find_hits(trial.X)) return true;
+    if (is_free(trial, report)) return true;
   }
   return false;
 }
@@ -249,7 +257,8 @@ void ContactLoop::gather(TickReport& report) const {
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(contacts_->limits().size());
-  report.overflow = contacts_->overflow() > 0;
+  report.overflow = contacts_->overflow() > 0 || check_->overflow();
+  report.cut |= late();
   report.proxy.touching = report.contacts > 0;
 }
 

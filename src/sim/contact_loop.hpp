@@ -5,7 +5,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "contact/contact_set.hpp"
-#include "narrowphase/fcl_narrow_phase.hpp"
+#include "narrowphase/motion_check.hpp"
 #include "resolve/metric.hpp"
 #include "resolve/resolver.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -35,14 +35,13 @@ class ContactLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One programme over the limits: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
-  /// Lists the triangle pairs that intersect at `X` or are nearer than the gap floor; false when there are none.
-  bool find_hits(const Pose& X);
-  /// The smaller of the gap floor and the distance at the free pose `X`.
-  double floor_at(const Pose& X);
-  Pose back_off(const Displacement& d);
-  bool shorten(Trial& trial);
+  /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
+  bool is_free(const Trial& trial, TickReport& report);
+  bool shorten(Trial& trial, TickReport& report);
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
+  bool late() const;
+  void track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
@@ -52,21 +51,24 @@ class ContactLoop {
   double radius_;     ///< of the held part about its center of mass
   double piece_cap_;  ///< longest piece near other parts, m
   double reach_;      ///< pairs farther apart are not followed, m
-  std::vector<Pose> fixed_poses_;
   BoundingSpheres spheres_;
-  std::unique_ptr<FclNarrowPhase> narrow_;
+  std::unique_ptr<MotionCheck> check_;
   std::unique_ptr<ContactSet> contacts_;
   Metric metric_;
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;
   std::vector<std::uint32_t> near_;
-  std::vector<TrianglePair> hits_;
-  std::shared_ptr<const Surface> held_;
+  std::vector<FacePair> blocking_;
   Pose X_;
   Pose last_Y_;
   double trust_;
-  double floor_;  ///< gap below which a pose does not count as free, m
+  double clearance_;      ///< gap that a motion must leave, m
+  bool tracked_ = false;  ///< the contacts are those of X_
+  std::int64_t deadline_ns_ = 0;
 };
+
+/// Names that ContactSettings::narrowphase knows.
+const std::vector<std::string>& narrowphase_names();
 
 }  // namespace tegotae

@@ -1,5 +1,6 @@
 #include "tegotae/sim/haptic_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +27,10 @@ ContactSettings completed(ContactSettings s) {
   check("l_min", s.l_min);
   check("l_0", s.l_0);
   check("density", s.density);
+  if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
+  const auto& names = narrowphase_names();
+  if (std::find(names.begin(), names.end(), s.narrowphase) == names.end())
+    throw Error("unknown narrowphase \"" + s.narrowphase + "\"; known are patch, fcl");
   return s;
 }
 

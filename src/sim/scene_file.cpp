@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "resolve/resolver.hpp"
+#include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
@@ -88,16 +89,22 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene
   if (held.empty()) top.fail("part", "no part is held; give one of them held = true");
 }
 
+std::string one_of(const TomlTable& t, const char* key, const std::string& otherwise,
+                   const std::vector<std::string>& known) {
+  const std::string value = t.text(key, otherwise);
+  if (std::find(known.begin(), known.end(), value) != known.end()) return value;
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  t.fail(key, "unknown " + std::string(key) + " " + value + " (known: " + list + ")");
+}
+
 void read_contact(const TomlTable& t, ContactSettings& s) {
   s.l_min = t.positive("l_min", s.l_min);
   s.l_0 = t.positive("l_0", s.l_0);
   s.density = t.positive("density", s.density);
-  s.resolver = t.text("resolver", s.resolver);
-  const std::vector<std::string>& known = resolver_names();
-  if (std::find(known.begin(), known.end(), s.resolver) != known.end()) return;
-  std::string list;
-  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-  t.fail("resolver", "unknown resolver " + s.resolver + " (known: " + list + ")");
+  s.tick_budget = t.positive("tick_budget", s.tick_budget);
+  s.resolver = one_of(t, "resolver", s.resolver, resolver_names());
+  s.narrowphase = one_of(t, "narrowphase", s.narrowphase, narrowphase_names());
 }
 
 void read_coupling(const TomlTable& t, CouplingSettings& s) {
@@ -129,7 +136,8 @@ SceneFile load_scene(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "density"}), scene.contact);
+  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density"}),
+               scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);
   const TomlTable device = top.table("device", {"type", "hand", "script"});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "broadphase/bounding_spheres.hpp"
@@ -31,7 +32,12 @@ const Part& held_part(const Scene& scene) {
   return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
 }
 
-HapticLoop make_loop(const SceneFile& file) try { return HapticLoop(file.scene); } catch (const Error& e) {
+HapticLoop make_loop(const SceneFile& file, bool real_time) try {
+  Scene scene = file.scene;
+  // A budget in seconds would let the load of the machine decide what a run in virtual time does.
+  if (!real_time) scene.contact.tick_budget = std::numeric_limits<double>::infinity();
+  return HapticLoop(scene);
+} catch (const Error& e) {
   throw Error(file.path + ": " + e.what());
 }
 
@@ -51,7 +57,7 @@ class Session {
   Session(const SceneFile& file, const RunSettings& settings)
       : file_(file),
         settings_(settings),
-        loop_(make_loop(file)),
+        loop_(make_loop(file, settings.real_time)),
         device_(with_clock(file.device, settings.real_time), file.script, loop_.center()),
         channel_(Channel::create()),
         servo_(device_, channel_),

@@ -19,7 +19,7 @@ bool inside(const Part& inner, const Part& outer) {
 }  // namespace
 
 void check_start(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
-  std::vector<TrianglePair> pairs;
+  std::vector<FacePair> pairs;
   for (std::uint32_t i = 0; i < fixed.size(); ++i) {
     const Part& other = *fixed[i];
     const std::string names = "\"" + held.name + "\" and \"" + other.name + "\"";

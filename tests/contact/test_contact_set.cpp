@@ -11,8 +11,8 @@ std::shared_ptr<const Surface> surface(TriangleMesh mesh) {
   return std::make_shared<Surface>(shared(std::move(mesh)));
 }
 
-std::vector<TrianglePair> all_pairs(const Surface& a, const Surface& b) {
-  std::vector<TrianglePair> pairs;
+std::vector<FacePair> all_pairs(const Surface& a, const Surface& b) {
+  std::vector<FacePair> pairs;
   for (std::uint32_t i = 0; i < a.mesh->triangles.size(); ++i)
     for (std::uint32_t j = 0; j < b.mesh->triangles.size(); ++j) pairs.push_back({0, i, j});
   return pairs;

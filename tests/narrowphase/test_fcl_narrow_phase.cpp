@@ -47,17 +47,17 @@ TEST_CASE("the intersecting pairs are those of brute force, for every part", "[n
     for (std::uint32_t a = 0; a < held.triangles.size(); ++a)
       for (std::uint32_t b = 0; b < other.triangles.size(); ++b)
         if (intersect(triangle(held, a, X), triangle(other, b, Pose{}))) expected.insert({a, b});
-    std::vector<TrianglePair> pairs;
+    std::vector<FacePair> pairs;
     const int count = narrow.intersections(part, X, 100000, pairs);
     REQUIRE(count == static_cast<int>(pairs.size()));
-    for (const TrianglePair& p : pairs) {
+    for (const FacePair& p : pairs) {
       REQUIRE(p.part == part);
       found.insert({p.a, p.b});
     }
     REQUIRE(found == expected);
     REQUIRE(narrow.intersects(part, X) == !expected.empty());
     (expected.empty() ? free : hits)++;
-    std::vector<TrianglePair> few;
+    std::vector<FacePair> few;
     if (expected.size() > 3) REQUIRE(narrow.intersections(part, X, 3, few) == 3);
   }
   REQUIRE(hits > 50);
