@@ -107,6 +107,7 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
   check_refused(run_program("tegotae", "run --frobnicate " + scene), {"frobnicate"});
   check_refused(run_program("tegotae", "run --seconds -1 " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --seconds nan " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --seconds 1e300 " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --seconds soon " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --fast --resolver magic " + scene), {"magic"});
   check_refused(run_program("tegotae", "run --fast --record " + (folder / "none/rec.csv") + " " + scene),
