@@ -69,11 +69,11 @@ std::string on_a_terminal(const std::string& program, const std::vector<std::str
 }
 
 // Two-sided contact, told from the geometry alone: the tip is so far below the rim that both chamfers are passed, and
-// moved by 10 um either way along the horizontal direction of its tilt the peg hits the hole, which it does not at the
+// moved by 25 um either way along the horizontal direction of its tilt the peg hits the hole, which it does not at the
 // pose itself. Upright it would have 0.1 mm (0.99) or 0.6 mm (0.94) to each side; so it touches walls that face each
 // other, and with normals that are level but for the tilt, n_i . n_j < -0.5.
 bool between_two_walls(const FclOracle& oracle, const Pose& X) {
-  constexpr double kNudge = 1e-5;  // m; more than twice the gap that contacts keep
+  constexpr double kNudge = 2.5e-5;  // m; more than twice the widest gap that contacts keep
   const Vec3 axis = X.q * Vec3::UnitZ();
   const Vec3 side = Vec3(axis.x(), axis.y(), 0).normalized();
   const auto hits = [&](double step) { return !oracle.intersecting({X.q, X.p + step * side}).empty(); };
