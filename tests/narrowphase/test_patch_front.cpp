@@ -28,7 +28,7 @@ std::vector<Scene> scenes() {
       {"box on a plate", box({0.02, 0.015, 0.01}), box({0.1, 0.1, 0.001}), Vec3::Zero(),
        Pose{Quat::Identity(), Vec3(0, 0, 0.02)}, 0.01, 0.3},
       {"offset file frame", box({0.02, 0.015, 0.01}), knot(0.05, 0.006, 800), Vec3(0.15, 0.1, 0),
-       Pose{Quat::Identity(), Vec3(-0.12, -0.1, 0.04)}, 0.01, 0.3},
+       Pose{Quat::Identity(), Vec3(-0.08, 0, 0)}, 0.01, 0.3},
   };
 }
 
