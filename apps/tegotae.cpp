@@ -39,6 +39,8 @@ int main(int argc, char** argv) {
       ->type_name("NAME");
   measure->add_flag("--quick", bench_options.quick, "A short look: one round of the pen, small programmes");
   measure->add_flag("--budgets", bench_options.budgets, "Also with tick budgets of 0.1 and 0.3 ms");
+  measure->add_option("--resolver", bench_options.resolver, "Contact resolver (the library's default unless told)")
+      ->type_name("NAME");
   measure->add_flag("--json", bench_options.json, "Print the figures as one line of JSON");
   measure->add_option("--markdown", bench_options.markdown, "Also replace the generated part of this file")
       ->type_name("FILE");

@@ -59,10 +59,12 @@ BudgetFigures measure_budget(const BenchScene& scene, double budget) {
 SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const Progress& progress) {
   const int jams = options.quick ? kQuickJams : kJams;
   progress.say(name + ": building");
-  const BenchScene scene = make_scene(name, jams);
+  BenchScene scene = make_scene(name, jams);
+  if (!options.resolver.empty()) scene.scene.contact.resolver = options.resolver;
   SceneFigures f;
   f.scene = name;
   f.targets = scene.targets;
+  f.depth = scene.depth;
   f.held_triangles = scene.held_triangles;
   f.fixed_triangles = scene.fixed_triangles;
   f.build = measure_build(scene.scene);

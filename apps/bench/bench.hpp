@@ -10,6 +10,7 @@ struct BenchOptions {
   bool quick = false;               ///< one round, few poses: for tests
   bool budgets = false;             ///< also with other tick budgets
   bool json = false;
+  std::string resolver;  ///< empty: the library's default
   std::string markdown;  ///< file whose generated part is to be replaced; empty: none
   std::string command;   ///< as typed, for the file
 };

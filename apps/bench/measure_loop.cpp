@@ -41,7 +41,7 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
         for (const Pose& X : r.pieces) trace.committed.add(X);
         trace.checked += static_cast<std::int64_t>(r.pieces.size());
       }
-      if (r.contacts == 0) continue;
+      if (r.contacts == 0 && !r.cut) continue;
       wall.push_back(wall1 - wall0);
       cpu.push_back(cpu1 - cpu0);
       f.contacts += r.contacts;

@@ -11,7 +11,8 @@
 
 namespace tegotae::bench {
 
-/// A closed-loop run along the scene's way. Times and counts are of the ticks in contact.
+/// A closed-loop run along the scene's way. Times and counts are of the ticks in contact; one that was cut counts as in
+/// contact, or a loop that freezes near a contact would look fast.
 struct LoopFigures {
   Percentiles tick_us{};      ///< wall clock
   Percentiles tick_cpu_us{};  ///< CPU time of the loop's thread

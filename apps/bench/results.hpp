@@ -28,6 +28,7 @@ struct BudgetFigures {
 struct SceneFigures {
   std::string scene;
   Targets targets{};
+  double depth = 0;  ///< that a peg is to reach, m; 0: no peg
   std::size_t held_triangles = 0;
   std::size_t fixed_triangles = 0;
   LoopFigures hand;  ///< at hand speed: what the targets are about

@@ -90,6 +90,7 @@ BenchScene make_peg_scene(const PegCase& c, int jams) {
   add_part(bench, "hole", shared(shapes::block_with_hole(block)), {}, false);
   add_part(bench, "peg", shared(shapes::peg(peg)), way.front(), true);
   bench.tip = tip;
+  bench.depth = depth;
   bench.overlap = c.overlap;
   bench.targets = c.targets;
   bench.jam_poses = peg_jams(peg, block, c.overlap, jams);

@@ -28,6 +28,7 @@ struct BenchScene {
   std::function<void(int round, std::vector<Pose>& way)> add_round;
   /// Pegs: a point whose deepest z says how far they went in (file frame, m).
   std::optional<Vec3> tip;
+  double depth = 0;  ///< pegs: of the hole, m
   /// Deepest overlap at which FCL is asked, m.
   double overlap = 1e-4;
   /// Pegs: poses of the held part with a two-sided overlap of 0 to `overlap`. Others are taken from the run.

@@ -15,6 +15,8 @@ constexpr double kGlpkRatio = 25;
 // Hierarchies: µs and bytes a triangle.
 constexpr double kMostBuildUs = 2, kMostBytes = 160;
 constexpr double kMostGrowth = 3;
+// How near (m) a peg comes to the bottom of its hole when it is pressed on it.
+constexpr double kArrived = 1e-4;
 
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
@@ -53,6 +55,8 @@ std::string targets_table(const Results& r) {
     if (!(s.hand.tick_us.p999 <= s.targets.p999_us)) missed += "p99.9 ";
     if (s.targets.fcl_ratio > 0 && !(ratio >= s.targets.fcl_ratio)) missed += "ratio ";
     if (s.intersecting > 0) missed += "free ";
+    // A peg that stayed outside was not measured in its jams.
+    if (s.depth > 0 && !(s.hand.depth >= s.depth - kArrived)) missed += "bottom ";
     text +=
         format("| `%s` | %s / %s | %s (%s) | %s (%s) | %s / %s | %s × (%s) | ", s.scene.c_str(),
                count(s.held_triangles).c_str(), count(s.fixed_triangles).c_str(), number(s.hand.tick_us.p50).c_str(),
