@@ -168,7 +168,11 @@ void ContactSet::add_reflex_limits(const Pair& pair, const FeaturePair& at) {
     const Vec3 foot = corner - height * n;
     const ClosestPoints c =
         closest_points({1, {foot}}, {3, {s.mesh->vertices[t[0]], s.mesh->vertices[t[1]], s.mesh->vertices[t[2]]}});
-    if (c.squared_distance > reach_ * reach_) continue;
+    // Only across that very edge: past another one the plane of the face may run through free space.
+    const auto& edges = s.topology.face_edges[other];
+    const auto k = static_cast<unsigned>(std::find(edges.begin(), edges.end(), e) - edges.begin());
+    const unsigned shared_edge = (1u << k) | (1u << (k + 1) % 3);
+    if (c.squared_distance > reach_ * reach_ || (c.mask_b != 7 && c.mask_b != shared_edge)) continue;
     const Vec3 n_W = corner_of_a ? Vec3(B.X_WB.q * n) : Vec3(-(X_.q * n));
     const Vec3 on_a_W = corner_of_a ? Vec3(B.X_WB * corner) : Vec3(X_ * foot);
     add({n_W, on_a_W - X_ * center_, height, pair.part, pair.age});

@@ -9,8 +9,12 @@ namespace tegotae {
 namespace {
 
 constexpr std::uint32_t kNoPair = 0xffffffffu;
-/// Children of a pair of leaves: all their triangle pairs.
+/// Most children of a pair: all triangle pairs of two leaves.
 constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
+/// A leaf is taken apart for a patch on the other side of less than this part of its second extent: without it, a
+/// coarse mesh against a fine one is refined on the fine side only, down to its faces; with 1, leaves come apart too
+/// often.
+constexpr float kLeafWorth = 0.5f;
 /// Separations below this times the size of the scene are rounding (double precision, some dozens of operations on
 /// coordinates of that size, and a pose that was composed anew).
 constexpr double kFloor = 1e-12;
@@ -62,7 +66,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   pool_used_ = 1;
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, {0, 0, 0}};
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}};
   enter(0);
 }
 
@@ -169,7 +173,7 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     if (!spend()) return Outcome::out_of_work;
     const PairNode& p = pool_[id];
     Vec3 n = plane(id);
-    if (p.faces) {
+    if (faces(p)) {
       const auto a = face_a(p.a), b = face_b(p.b);
       const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
       TriangleBlock block;
@@ -182,8 +186,8 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
         return Outcome::blocked;
       continue;
     }
-    const PatchNode& a = a_->nodes()[p.a];
-    const PatchNode& b = b_->nodes()[p.b];
+    PatchNode scratch_a, scratch_b;
+    const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
     const BoxPair boxes(a, node_center(a), b, sweep_);
     if (separate_boxes(boxes, sweep_, node_reach(a), 0, n)) {
       set_plane(id, n);
@@ -231,10 +235,14 @@ std::uint32_t PatchFront::allocate(std::uint32_t children) {
 
 bool PatchFront::split(std::uint32_t id) {
   const PairNode p = pool_[id];
-  const PatchNode& a = a_->nodes()[p.a];
-  const PatchNode& b = b_->nodes()[p.b];
-  const bool fan = a.leaf() && b.leaf();
-  const std::uint32_t children = fan ? a.count * b.count : 2;
+  PatchNode scratch_a, scratch_b;
+  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
+  // The side with the larger second extent: a long strip is as good as a short one while it is narrow.
+  const bool ends = a.leaf() && b.leaf();
+  auto worth = [](const PatchNode& n) { return n.leaf() ? kLeafWorth : 1.0f; };
+  const bool split_a = !p.face_a && (p.face_b || worth(a) * a.half[1] > worth(b) * b.half[1]);
+  const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
+  const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
   if (boxes_.count + triangles_.count + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
       stack_.size() + children > stack_.capacity()) {
     return false;
@@ -247,17 +255,17 @@ bool PatchFront::split(std::uint32_t id) {
   parent.child = child;
   parent.children = static_cast<std::uint16_t>(children);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
-  // The node with the larger second extent: a long strip is as good as a short one while it is narrow.
-  const bool split_a = !a.leaf() && (b.leaf() || a.half[1] > b.half[1]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, fan, parent.normal};
-    if (fan) {
-      c.a = a_->order()[a.first + k / b.count];
-      c.b = b_->order()[b.first + k % b.count];
-    } else if (split_a) {
-      c.a = a.first + k;
-    } else {
-      c.b = b.first + k;
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal};
+    if ((ends || split_a) && !p.face_a) {
+      const std::uint32_t place = a.first + (ends ? k / of_b : k);
+      c.face_a = a.leaf();
+      c.a = a.leaf() ? a_->order()[place] : place;
+    }
+    if ((ends || !split_a) && !p.face_b) {
+      const std::uint32_t place = b.first + (ends ? k % of_b : k);
+      c.face_b = b.leaf();
+      c.b = b.leaf() ? b_->order()[place] : place;
     }
     pool_[child + k] = c;
     enter(child + k);
@@ -308,8 +316,8 @@ bool PatchFront::all_in_front(std::uint32_t id) const {
 
 bool PatchFront::try_raise(std::uint32_t id) {
   const PairNode& p = pool_[id];
-  const PatchNode& a = a_->nodes()[p.a];
-  const PatchNode& b = b_->nodes()[p.b];
+  PatchNode scratch_a, scratch_b;
+  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
   const double reach = node_reach(a);
   // With some gap to spare, or the next motion splits it again.
   const double spare = kRaiseSpare * (sweep_.dp.norm() + reach * std::sqrt(sweep_.theta2));
@@ -325,7 +333,7 @@ void PatchFront::enter(std::uint32_t id) {
   Group& g = group(p);
   p.slot = g.count++;
   g.owner[p.slot] = id;
-  if (p.faces) {
+  if (faces(p)) {
     const auto a = face_a(p.a);
     double reach2 = 0;
     for (int k = 0; k < 3; ++k) {
@@ -334,7 +342,8 @@ void PatchFront::enter(std::uint32_t id) {
     }
     g.lanes.at(p.slot, kTriReach) = round_up(std::sqrt(reach2));
   } else {
-    const PatchNode& a = a_->nodes()[p.a];
+    PatchNode scratch;
+    const PatchNode& a = box_a(p, scratch);
     const Vec3 c = node_center(a);
     for (int i = 0; i < 3; ++i) {
       g.lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
@@ -363,10 +372,11 @@ void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
     rounded[k] = g.lanes.at(p.slot, kBoxNormal + k);
   }
   double support = -std::numeric_limits<double>::infinity();
-  if (p.faces) {
+  if (faces(p)) {
     for (const Vec3& v : face_b(p.b)) support = std::max(support, rounded.dot(v));
   } else {
-    const PatchNode& b = b_->nodes()[p.b];
+    PatchNode scratch;
+    const PatchNode& b = box_b(p, scratch);
     support = rounded.dot(b.center_vec());
     for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
   }
@@ -375,7 +385,7 @@ void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
 
 Vec3 PatchFront::plane(std::uint32_t id) const {
   const PairNode& p = pool_[id];
-  const LaneBlocks& lanes = (p.faces ? triangles_ : boxes_).lanes;
+  const LaneBlocks& lanes = (faces(p) ? triangles_ : boxes_).lanes;
   return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
 }
 

@@ -54,8 +54,8 @@ struct BlockingPair {
 struct ContactSeed {
   std::uint32_t face_a, face_b;
   double distance;  ///< of the points of the two faces that are nearest to `place`, m: at least that of the faces
-  Vec3 n_BA;   ///< of the plane between the patches, B's file frame
-  Vec3 place;  ///< on that plane, where the faces were looked for, m, B's file frame
+  Vec3 n_BA;        ///< of the plane between the patches, B's file frame
+  Vec3 place;       ///< on that plane, where the faces were looked for, m, B's file frame
 };
 
 /// The path certificate of one pair of parts (mutable scratch; the trees are shared): keeps a front of node pairs that
@@ -92,12 +92,14 @@ class PatchFront {
 
   int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
 
-  /// Calls f(a, b, faces) for every pair of the front: nodes of the trees, or faces.
+  /// Calls f(a, a_is_face, b, b_is_face) for every pair of the front: nodes of the trees, or faces.
   template <typename F>
   void for_each_pair(F f) const {
-    for (std::uint32_t i = 0; i < boxes_.count; ++i) f(pool_[boxes_.owner[i]].a, pool_[boxes_.owner[i]].b, false);
-    for (std::uint32_t i = 0; i < triangles_.count; ++i) {
-      f(pool_[triangles_.owner[i]].a, pool_[triangles_.owner[i]].b, true);
+    for (const Group* g : {&boxes_, &triangles_}) {
+      for (std::uint32_t i = 0; i < g->count; ++i) {
+        const PairNode& p = pool_[g->owner[i]];
+        f(p.a, p.face_a, p.b, p.face_b);
+      }
     }
   }
 
@@ -109,7 +111,7 @@ class PatchFront {
     std::uint32_t child;          ///< first of `children` in a row
     std::uint32_t slot;           ///< in its group, while in the front
     std::uint16_t children;       ///< 0: in the front
-    bool faces;                   ///< a and b are faces
+    bool face_a, face_b;          ///< which of a and b are faces
     std::array<float, 3> normal;  ///< last plane, kept here while split
   };
   /// The pairs of the front of one kind, dense.
@@ -144,8 +146,16 @@ class PatchFront {
   void leave(std::uint32_t id);
   void set_plane(std::uint32_t id, const Vec3& n);
   Vec3 plane(std::uint32_t id) const;
-  Group& group(const PairNode& p) { return p.faces ? triangles_ : boxes_; }
+  static bool faces(const PairNode& p) { return p.face_a && p.face_b; }
+  Group& group(const PairNode& p) { return faces(p) ? triangles_ : boxes_; }
 
+  /// The boxes of a pair that is not of two faces; a face's is written to `scratch`.
+  const PatchNode& box_a(const PairNode& p, PatchNode& scratch) const {
+    return p.face_a ? scratch = a_->face_box(p.a) : a_->nodes()[p.a];
+  }
+  const PatchNode& box_b(const PairNode& p, PatchNode& scratch) const {
+    return p.face_b ? scratch = b_->face_box(p.b) : b_->nodes()[p.b];
+  }
   Vec3 node_center(const PatchNode& n) const { return n.center_vec() + offset_a_; }
   double node_reach(const PatchNode& n) const;
   std::array<Vec3, 3> face_a(std::uint32_t f) const;

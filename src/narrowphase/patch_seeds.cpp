@@ -159,7 +159,9 @@ int PatchFront::contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, 
       near_.push_back({static_cast<float>(far_side), g->owner[i]});
     }
   }
-  auto nearer = [](const Near& a, const Near& b) { return a.far_side != b.far_side ? a.far_side < b.far_side : a.id < b.id; };
+  auto nearer = [](const Near& a, const Near& b) {
+    return a.far_side != b.far_side ? a.far_side < b.far_side : a.id < b.id;
+  };
   const std::size_t looked = std::min(near_.size(), static_cast<std::size_t>(capacity) * kPatchesPerSeed);
   std::partial_sort(near_.begin(), near_.begin() + looked, near_.end(), nearer);
   const double spacing = kPlaceSpacing * node_reach(a_->nodes()[0]), spacing2 = spacing * spacing;
@@ -189,7 +191,7 @@ int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3
   const auto e = across(n);
   Polygon a, b;
   double height;  // of B's support along n
-  if (p.faces) {
+  if (faces(p)) {
     std::array<Vec3, 3> fa = face_a(p.a);
     const std::array<Vec3, 3> fb = face_b(p.b);
     for (Vec3& x : fa) x = sweep_.start.R * x + sweep_.start.t;
@@ -197,7 +199,8 @@ int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3
     b = outline(fb, e);
     height = std::max({n.dot(fb[0]), n.dot(fb[1]), n.dot(fb[2])});
   } else {
-    const PatchNode &na = a_->nodes()[p.a], &nb = b_->nodes()[p.b];
+    PatchNode scratch_a, scratch_b;
+    const PatchNode &na = box_a(p, scratch_a), &nb = box_b(p, scratch_b);
     std::array<Vec3, 3> ha, hb;
     height = n.dot(nb.center_vec());
     for (int i = 0; i < 3; ++i) {
@@ -219,22 +222,21 @@ int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3
 /// How far the surfaces of a pair may stand back behind the sides of their boxes that face the plane.
 double PatchFront::facing_thickness(std::uint32_t id) const {
   const PairNode& p = pool_[id];
-  if (p.faces) return 0;
+  if (faces(p)) return 0;
   const Vec3 n = plane(id);
   auto thickness = [](const PatchNode& node, double aligned) {
     return std::abs(aligned) > kFacing ? 2 * double{node.half[2]} : 0.0;
   };
-  const PatchNode &a = a_->nodes()[p.a], &b = b_->nodes()[p.b];
+  PatchNode scratch_a, scratch_b;
+  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
   return thickness(a, n.dot(sweep_.start.R * a.axis_vec(2))) + thickness(b, n.dot(b.axis_vec(2)));
 }
 
 ContactSeed PatchFront::seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const {
   const Vec3 in_a = sweep_.start.R.transpose() * (place - sweep_.start.t);
   ContactSeed seed{p.a, p.b, 0, n, place + b_->origin()};
-  if (!p.faces) {
-    seed.face_a = face_near(*a_, p.a, in_a - offset_a_);
-    seed.face_b = face_near(*b_, p.b, place);
-  }
+  if (!p.face_a) seed.face_a = face_near(*a_, p.a, in_a - offset_a_);
+  if (!p.face_b) seed.face_b = face_near(*b_, p.b, place);
   const Vec3 on_a = sweep_.start.R * nearest_point(face_a(seed.face_a), in_a) + sweep_.start.t;
   seed.distance = (on_a - nearest_point(face_b(seed.face_b), place)).norm();
   return seed;

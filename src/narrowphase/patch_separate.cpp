@@ -95,44 +95,21 @@ bool accept(const Search<Pair>& search, const Pair& pair, const Bulge& bulge, do
   return false;
 }
 
-/// Separation of two boxes along the 15 axes of the separating-axis theorem (Gottschalk, Lin, Manocha, "OBBTree",
-/// 1996), negative signs folded in: sep[i] along sign[i] · axis i. Edge products that are nearly parallel get −inf.
-struct BoxAxes {
-  std::array<double, 15> sep;
-  std::array<double, 15> sign;
+/// Separation of two boxes along the normals of their faces, negative signs folded in: sep[i] along sign[i] · axis i,
+/// B's axes first.
+struct BoxFaces {
+  std::array<double, 6> sep;
+  std::array<double, 6> sign;
 
-  BoxAxes(const Vec3& d, const std::array<Vec3, 3>& a, const std::array<double, 3>& ha, const std::array<Vec3, 3>& b,
-          const std::array<double, 3>& hb) {
-    double c[3][3], m[3][3], db[3], da[3];
+  BoxFaces(const Vec3& d, const std::array<Vec3, 3>& a, const std::array<double, 3>& ha, const std::array<Vec3, 3>& b,
+           const std::array<double, 3>& hb) {
+    std::array<std::array<double, 3>, 3> m;
     for (int i = 0; i < 3; ++i) {
-      db[i] = d.dot(b[i]);
-      da[i] = d.dot(a[i]);
-      for (int j = 0; j < 3; ++j) {
-        c[i][j] = b[i].dot(a[j]);
-        m[i][j] = std::abs(c[i][j]);
-      }
+      for (int j = 0; j < 3; ++j) m[i][j] = std::abs(b[i].dot(a[j]));
     }
     for (int i = 0; i < 3; ++i) {
-      set(i, db[i], hb[i] + ha[0] * m[i][0] + ha[1] * m[i][1] + ha[2] * m[i][2]);
-      set(3 + i, da[i], ha[i] + hb[0] * m[0][i] + hb[1] * m[1][i] + hb[2] * m[2][i]);
-    }
-    for (int i = 0; i < 3; ++i) {
-      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-      for (int j = 0; j < 3; ++j) {
-        const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-        const double length2 = 1 - c[i][j] * c[i][j];
-        const int k = 6 + 3 * i + j;
-        if (length2 < kParallel) {
-          sep[k] = -std::numeric_limits<double>::infinity();
-          sign[k] = 1;
-          continue;
-        }
-        // b_i × a_j has the coordinates (0, −c[i2][j], c[i1][j]) along (b_i, b_i1, b_i2).
-        const double along = db[i2] * c[i1][j] - db[i1] * c[i2][j];
-        const double span = ha[j1] * m[i][j2] + ha[j2] * m[i][j1] + hb[i1] * m[i2][j] + hb[i2] * m[i1][j];
-        set(k, along, span);
-        sep[k] /= std::sqrt(length2);
-      }
+      set(i, d.dot(b[i]), hb[i] + ha[0] * m[i][0] + ha[1] * m[i][1] + ha[2] * m[i][2]);
+      set(3 + i, d.dot(a[i]), ha[i] + hb[0] * m[0][i] + hb[1] * m[1][i] + hb[2] * m[2][i]);
     }
   }
 
@@ -143,10 +120,8 @@ struct BoxAxes {
   }
 };
 
-Vec3 box_axis(int k, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  if (k < 3) return b[k];
-  if (k < 6) return a[k - 3];
-  return b[(k - 6) / 3].cross(a[(k - 6) % 3]).normalized();
+const Vec3& box_axis(int k, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return k < 3 ? b[k] : a[k - 3];
 }
 
 /// Closest points of the segments p + s u and q + t v, s, t in [0, 1]; returns the vector from the second to the first
@@ -369,20 +344,20 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
   const Bulge bulge(sweep, reach, 0, 1);
   if (stays_apart(pair, plane, plane, bulge, sweep.floor, spare)) return true;
-  const BoxAxes at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
-  const BoxAxes at_end(pair.d1, pair.a1, pair.ha, pair.b, pair.hb);
-  int first = 0, last = 0, together = 0;
-  auto both = [&](int k) {
-    return at_start.sign[k] == at_end.sign[k] ? std::min(at_start.sep[k], at_end.sep[k])
-                                              : -std::numeric_limits<double>::infinity();
-  };
-  for (int k = 1; k < 15; ++k) {
+  const BoxFaces at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
+  int first = 0;
+  for (int k = 1; k < 6; ++k) {
     if (at_start.sep[k] > at_start.sep[first]) first = k;
-    if (at_end.sep[k] > at_end.sep[last]) last = k;
-    if (both(k) > both(together)) together = k;
   }
-  // The theorem is complete: where no axis separates at an end, no plane does.
-  if (at_start.sep[first] < 0 || at_end.sep[last] < 0) return false;
+  if (!(at_start.sep[first] > 0)) return false;
+  const BoxFaces at_end(pair.d1, pair.a1, pair.ha, pair.b, pair.hb);
+  int last = 0, together = -1;
+  double both = 0;
+  for (int k = 0; k < 6; ++k) {
+    if (at_end.sep[k] > at_end.sep[last]) last = k;
+    const double s = std::min(at_start.sep[k], at_end.sep[k]);
+    if (at_start.sign[k] == at_end.sign[k] && s > both) both = s, together = k;
+  }
   auto try_pair = [&](int i, int j) {
     const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
     const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
@@ -390,13 +365,7 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
     plane = n1;
     return true;
   };
-  if (both(together) > 0 && try_pair(together, together)) return true;
-  if (try_pair(first, last)) return true;
-  Search<BoxPair> search(pair);
-  search.offer(pair.d0.normalized(), pair.d1.normalized());
-  search.offer((pair.b[2] * at_end.sign[2] + pair.a0[2] * at_end.sign[5]).normalized(),
-               (pair.b[2] * at_end.sign[2] + pair.a1[2] * at_end.sign[5]).normalized());
-  return accept(search, pair, bulge, sweep.floor, spare, plane);
+  return (together >= 0 && try_pair(together, together)) || (at_end.sep[last] > 0 && try_pair(first, last));
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,

@@ -18,6 +18,8 @@ constexpr double kDiameterWeight = 3e-4;
 constexpr double kBoxSlack = 1e-6;
 /// Rounding of the single-precision copies of the vertices, relative to the mesh's radius (half a step is 2^-25).
 constexpr double kCopySlack = 1.0 / (1 << 24);
+/// Faces thinner than this part of their longest edge have no plane to speak of.
+constexpr double kFlatFace = 1e-9;
 /// A round of merging that joins less than one cluster in so many goes on with pairs that are best for one side only.
 constexpr std::size_t kSlowRound = 12;
 
@@ -504,6 +506,46 @@ PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move
   const Clustering clusters(*mesh_, items);
   Layout(clusters, items, radius_, nodes_, order_);
   nodes_.shrink_to_fit();
+}
+
+PatchNode PatchTree::face_box(std::uint32_t face) const {
+  std::array<Vec3, 3> v;
+  for (int k = 0; k < 3; ++k) v[k] = corner(face, k) - origin_;
+  // The rectangle along the longest edge has the least area.
+  std::array<Vec3, 3> axis{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 e = v[(k + 1) % 3] - v[k];
+    if (e.squaredNorm() > axis[0].squaredNorm()) axis[0] = e;
+  }
+  const double longest = axis[0].norm();
+  axis[0] = longest > 0 ? Vec3(axis[0] / longest) : Vec3(Vec3::UnitX());
+  axis[2] = (v[1] - v[0]).cross(v[2] - v[0]);
+  if (!(axis[2].norm() > kFlatFace * longest * longest)) {
+    axis[2] = axis[0].cross(std::abs(axis[0].x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+  }
+  axis[1] = axis[2].cross(axis[0]).normalized();
+  axis[2] = axis[0].cross(axis[1]);
+  PatchNode out;
+  Vec3 middle = Vec3::Zero();
+  std::array<double, 3> half;
+  for (int i = 0; i < 3; ++i) {
+    const double a = axis[i].dot(v[0]), b = axis[i].dot(v[1]), c = axis[i].dot(v[2]);
+    const double lo = std::min({a, b, c}), hi = std::max({a, b, c});
+    half[i] = 0.5 * (hi - lo);
+    middle += 0.5 * (lo + hi) * axis[i];
+  }
+  for (int i = 0; i < 3; ++i) out.center[i] = static_cast<float>(middle[i]);
+  // Coefficients along the axes as stored differ from these by the rounding of the center and, since those axes are
+  // orthonormal up to 2e-7 only, by that part of the extent.
+  double grow = kBoxSlack * longest;
+  grow += (middle - out.center_vec()).norm() * (1 + kBoxSlack);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) out.axis[i][k] = static_cast<float>(axis[i][k]);
+    out.half[i] = std::nextafter(static_cast<float>(half[i] + grow), std::numeric_limits<float>::infinity());
+  }
+  out.first = face;
+  out.count = 1;
+  return out;
 }
 
 std::size_t PatchTree::bytes() const {

@@ -11,7 +11,7 @@
 namespace tegotae {
 
 /// Most triangles in a leaf of a PatchTree.
-inline constexpr std::uint32_t kPatchLeaf = 4;
+inline constexpr std::uint32_t kPatchLeaf = 2;
 
 /// A convex piece of space around some triangles: { origin + center + Σ tᵢ half[i] axis[i], |tᵢ| ≤ 1 }, where `origin`
 /// is PatchTree::origin() and all lengths are in m. The axes are unit vectors up to rounding; the set above, taken with
@@ -46,6 +46,8 @@ class PatchTree {
   const Vec3& origin() const { return origin_; }                      ///< m, file frame
   /// Largest distance of a triangle from `origin()`, m.
   double radius() const { return radius_; }
+  /// The box of one face, as if it were a leaf of its own.
+  PatchNode face_box(std::uint32_t face) const;
   std::size_t bytes() const;  ///< memory of the hierarchy without the mesh
 
   /// Corner `k` of `face`, m, file frame.

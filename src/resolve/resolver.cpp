@@ -41,6 +41,10 @@ class LpResolver final : public Resolver {
     return out;
   }
 
+  /// Forces of least sum that push a far target out of every limit need not lead nearer to it at all: the part would
+  /// hang in the air.
+  bool takes_whole_error() const override { return false; }
+
  private:
   LpSolver solver_;
   std::vector<double> d_;
@@ -59,6 +63,8 @@ class QpResolver final : public Resolver {
     if (r.status == LpStatus::optimal) out.motion = r.z;
     return out;
   }
+
+  bool takes_whole_error() const override { return true; }
 
  private:
   LeastDistanceSolver solver_;

@@ -29,10 +29,18 @@ constexpr int kMostResolves = 6;
 constexpr int kMostHalvings = 4;
 // Pairs are followed while they are nearer than twice this share of the part's radius.
 constexpr double kReachShare = 0.02;
-// Share of l_min by which a gap that is too small recovers in a piece.
-constexpr double kRecovery = 0.2;
+// Share of the kept gap by which one that is too small recovers in a piece.
+constexpr double kRecovery = 0.4;
+// Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
+constexpr double kRecoverBelow = 0.8;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
 constexpr double kKeepShare = 0.5;
+// Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
+// factor where there is room for more.
+constexpr int kAdaptTicks = 8;
+constexpr double kKeepGrowth = 1.1;
+// Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
+constexpr double kLeastKeep = 2e-6;
 // No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
 // count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
 constexpr double kGapFloor = 1.1e-6;
@@ -42,6 +50,10 @@ constexpr double kStartShare = 0.5;
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
+// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
+// so many: like static friction, it ends the creep that is left where limits change with every piece.
+constexpr double kStiction = 1e-6;
+constexpr int kMostStillTicks = 250;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
@@ -96,6 +108,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   piece_cap_ = check_->longest_motion();
   reach_ = settings_.l_min + 2 * kReachShare * radius_;
   trust_ = piece_cap_;
+  most_keep_ = keep_ = kKeepShare * settings_.l_min;
+  least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
   X_ = last_Y_ = held->pose;
   blocking_.reserve(kMostBlocking);
 }
@@ -112,10 +126,12 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
+  still_ticks_ = pen < kRest ? still_ticks_ + 1 : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
   report.candidate_parts = static_cast<int>(near_.size());
+  bool held_back = false;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -124,12 +140,15 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     tracked_ = false;
   } else {
     check_->begin(near_, deadline_ns_);
+    track();
+    adapt_keep();
     trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
+      held_back = length == 0 && !contacts_->limits().empty();
       // A piece shorter than it could be is the resolver's own end.
       if (length < kFullShare * cap) break;
       made += length;
@@ -139,6 +158,8 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   }
   gather(report);
   const double left = size(displacement(X_, Y, center_));
+  // A part that limits hold back a little above their gap is felt like one that rests on them.
+  report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
@@ -154,6 +175,21 @@ void ContactLoop::track() {
   tracked_ = true;
 }
 
+void ContactLoop::adapt_keep() {
+  // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
+  // when a motion exists that leaves twice as much everywhere.
+  const auto& limits = contacts_->limits();
+  if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
+  metric_.set_orientation(X_.q);
+  rows_.clear();
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    rows_.push_row(metric_.row(limits[i]));
+    bounds_[i] = 2 * keep_ - limits[i].gap;
+  }
+  const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
+  keep_ = std::clamp(room ? kKeepGrowth * keep_ : 0.5 * keep_, least_keep_, most_keep_);
+}
+
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
   track();
@@ -163,7 +199,11 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   bool found = false;
   for (int i = 0; i < kMostResolves && !found; ++i) {
     if (!resolve(wanted, cap, report, trial)) return 0;
-    if (size(trial.d) < kRest) return 0;
+    if (size(trial.d) < kRest) {
+      // Of a shorter way the programme may take a part where of the longer one it takes nothing.
+      if (!resolver_->takes_whole_error()) trust_ *= 0.5;
+      return 0;
+    }
     found = is_free(trial, report);
     if (found) break;
     if (late()) return 0;
@@ -185,8 +225,9 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  Vec6 motion = wanted;
-  if (!contacts_->limits().empty() && !solve(wanted, report, motion)) return false;
+  const double far = size(metric_.unwhiten(wanted));
+  Vec6 motion = resolver_->takes_whole_error() || far <= cap ? wanted : Vec6((cap / far) * wanted);
+  if (!contacts_->limits().empty() && !solve(Vec6(motion), report, motion)) return false;
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
   if (length > cap) {
@@ -203,14 +244,16 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   const auto& limits = contacts_->limits();
-  const double keep = kKeepShare * settings_.l_min;
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
   // an answer, because standing still is one.
-  for (const double recovery : {kRecovery * settings_.l_min, 0.0}) {
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      bounds_[i] = std::min(keep, limits[i].gap + recovery) - limits[i].gap;
+  for (const double recovery : {kRecovery * keep_, 0.0}) {
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double gap = limits[i].gap;
+      const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
+      bounds_[i] = std::min(keep_, gap + lost) - gap;
+    }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
     report.iterations += r.iterations;
@@ -246,20 +289,19 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
-  return made > 0;
+  return made > kStiction * std::min(still_ticks_, kMostStillTicks) * error.squaredNorm();
 }
 
 void ContactLoop::gather(TickReport& report) const {
   report.contacts = 0;
   report.gap = std::numeric_limits<double>::infinity();
   for (const Contact& c : contacts_->limits()) {
-    report.contacts += c.gap <= settings_.l_min ? 1 : 0;
+    report.contacts += c.gap <= keep_ / kKeepShare ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(contacts_->limits().size());
   report.overflow = contacts_->overflow() > 0 || check_->overflow();
   report.cut |= late();
-  report.proxy.touching = report.contacts > 0;
 }
 
 }  // namespace tegotae

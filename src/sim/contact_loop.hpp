@@ -41,6 +41,8 @@ class ContactLoop {
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;
+  /// Fits the gap that contacts keep to the room that the part has.
+  void adapt_keep();
   void track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
@@ -63,6 +65,10 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
+  int still_ticks_ = 0;  ///< since the pen last moved
+  double keep_;          ///< gap that contacts keep, m, between the next two
+  double least_keep_, most_keep_;
+  int ticks_ = 0;
   double clearance_;      ///< gap that a motion must leave, m
   bool tracked_ = false;  ///< the contacts are those of X_
   std::int64_t deadline_ns_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "broadphase/bounding_spheres.hpp"
 #include "sim/contact_loop.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -11,18 +12,18 @@
 namespace tegotae {
 namespace {
 
-// Keeps half of it (2 µm) in contact: under half the 5 µm radial clearance of a close fit, over the 1 µm below which
-// other collision libraries count triangles as touching.
-constexpr double kDefaultLMin = 4e-6;
+// What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down
+// to the lower one by itself where a fit has no more room.
+constexpr double kLMinShare = 8e-4, kLeastLMin = 4e-6, kMostLMin = 2e-5;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
 
-ContactSettings completed(ContactSettings s) {
+ContactSettings completed(ContactSettings s, double radius) {
   const auto check = [](const char* name, double value) {
     if (!(std::isfinite(value) && value > 0))
       throw Error(std::string("contact.") + name + " must be a positive number, not " + std::to_string(value));
   };
-  if (std::isnan(s.l_min)) s.l_min = kDefaultLMin;
+  if (std::isnan(s.l_min)) s.l_min = std::clamp(kLMinShare * radius, kLeastLMin, kMostLMin);
   if (std::isnan(s.l_0)) s.l_0 = kDefaultL0 * s.l_min;
   check("l_min", s.l_min);
   check("l_0", s.l_0);
@@ -58,7 +59,7 @@ struct HapticLoop::State {
   TickReport report;
 
   explicit State(const Scene& scene)
-      : settings(completed(scene.contact)),
+      : settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
         mass(mass_properties(*held_part(scene).mesh, tegotae::report(*held_part(scene).mesh).closed, settings.density)),
         loop(scene, settings, mass) {
     report.pieces.assign(1, loop.pose());

@@ -34,7 +34,8 @@ std::vector<Scene> scenes() {
 
 /// Every pair of triangles is under exactly one pair of the front.
 void require_cover(const PatchFront& front, const PatchTree& a, const PatchTree& b) {
-  auto faces = [](const PatchTree& t, std::uint32_t node) {
+  auto faces = [](const PatchTree& t, std::uint32_t node, bool is_face) {
+    if (is_face) return std::vector<std::uint32_t>{node};
     std::vector<std::uint32_t> out, stack{node};
     while (!stack.empty()) {
       const PatchNode& n = t.nodes()[stack.back()];
@@ -50,13 +51,9 @@ void require_cover(const PatchFront& front, const PatchTree& a, const PatchTree&
   };
   const std::size_t na = a.order().size(), nb = b.order().size();
   std::vector<std::uint8_t> count(na * nb, 0);
-  front.for_each_pair([&](std::uint32_t i, std::uint32_t j, bool single) {
-    if (single) {
-      ++count[i * nb + j];
-      return;
-    }
-    const auto fb = faces(b, j);
-    for (std::uint32_t f : faces(a, i)) {
+  front.for_each_pair([&](std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
+    const auto fb = faces(b, j, face_j);
+    for (std::uint32_t f : faces(a, i, face_i)) {
       for (std::uint32_t g : fb) ++count[f * nb + g];
     }
   });

@@ -37,8 +37,9 @@ void check(const MeshPtr& mesh) {
     for (std::uint32_t i = 0; i < n.count; ++i) {
       const std::uint32_t f = tree.order()[n.first + i];
       ++seen[f];
-      for (std::uint32_t k : o.above) {
-        const PatchNode& m = tree.nodes()[k];
+      std::vector<PatchNode> boxes{tree.face_box(f)};
+      for (std::uint32_t k : o.above) boxes.push_back(tree.nodes()[k]);
+      for (const PatchNode& m : boxes) {
         Mat3 axes;
         axes << m.axis_vec(0), m.axis_vec(1), m.axis_vec(2);
         for (int c = 0; c < 3; ++c) {
