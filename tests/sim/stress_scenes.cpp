@@ -73,7 +73,7 @@ StressScene wedged_stars(unsigned seed) {
   for (int k = 0; k < 3; ++k) {
     const double angle = 2 * M_PI * k / 3;
     add(s, "fixed" + std::to_string(k), shared(random_star_body(rng, 14, 0.03)),
-        {rotation(3 * random_direction(rng)), {0.045 * std::cos(angle), 0.045 * std::sin(angle), 0}}, false);
+        {rotation(3 * random_direction(rng)), {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0}}, false);
   }
   add(s, "held", shared(random_star_body(rng, 14, 0.02)), at(0, 0, 0.07), true);
   s.envelope = {{0.02, 0.02, 0.04}, 1.0, {0, 0, -0.06}};
