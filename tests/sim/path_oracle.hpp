@@ -24,12 +24,14 @@ inline double travel(const Pose& from, const Pose& to, const Vec3& center, doubl
   return (to * center - from * center).norm() + reach * from.q.angularDistance(to.q);
 }
 
-/// Calls `f` with `parts` - 1 poses inside the way from `from` to `to` on each of its two readings.
+/// Calls `f` with `parts` - 1 poses inside the way from `from` to `to`, the two readings in turn.
 template <typename F>
-void for_poses_between(const Pose& from, const Pose& to, const Vec3& center, int parts, F f) {
-  for (int i = 1; i < parts; ++i)
-    for (const PathKind kind : {PathKind::center, PathKind::origin})
-      f(pose_between(from, to, center, static_cast<double>(i) / parts, kind));
+void for_poses_between(const Pose& from, const Pose& to, const Vec3& center, int parts, PathKind first, F f) {
+  for (int i = 1; i < parts; ++i) {
+    const bool even = i % 2 == 0;
+    const PathKind kind = even == (first == PathKind::center) ? PathKind::origin : PathKind::center;
+    f(pose_between(from, to, center, static_cast<double>(i) / parts, kind));
+  }
 }
 
 }  // namespace tegotae::test

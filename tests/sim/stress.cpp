@@ -1,5 +1,5 @@
 // Random pens over many scenes; every committed piece and poses inside it are asked of FCL. Exit code 0: none
-// intersects and no programme was infeasible or stalled; 1: some; 2: wrong use. See `stress --help`.
+// intersects, and no tick hid that it was late; 1: some; 2: wrong use. See `stress --help`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,6 @@ void print(const std::string& name, const StressResult& r, const LatencyHistogra
       (long long)r.intersecting, 100.0 * (double)r.touching / (double)std::max<std::int64_t>(1, r.ticks),
       (long long)r.cut, (long long)r.overflow, (long long)r.infeasible, (long long)r.stalled,
       (long long)r.late_unreported, us.p50, us.p99, us.p999, us.max, r.seconds_loop, r.seconds_check);
-  std::fflush(stdout);
 }
 
 }  // namespace
@@ -43,11 +42,12 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"lp", "qp", "both"}))
       ->capture_default_str();
   app.add_option("--ticks", options.ticks, "Of a script, 1 ms each")->capture_default_str();
-  app.add_option("--between", options.between, "Poses asked inside a piece, on each reading of its path")
+  app.add_option("--between", options.between, "Poses asked inside a piece, on the two readings of its path in turn")
       ->capture_default_str();
   app.add_option("--budget", options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
   app.add_option("--record", options.record, "Folder for a scene file and a recording of each script");
   CLI11_PARSE(app, argc, argv);
+  setlinebuf(stdout);
   try {
     if (scenes.empty()) scenes = stress_scene_names();
     std::map<std::string, std::pair<StressResult, LatencyHistogram>> results;
@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
       if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());
       if (one.infeasible + one.stalled > 0)
         std::printf("UNSOLVED: %s seed %u resolver %s\n", name.c_str(), seed + i, options.resolver.c_str());
+      if (i % 100 == 99) std::printf("%d scripts\n", i + 1);
       sum.add(one);
       all.add(one);
     }
@@ -71,7 +72,7 @@ int main(int argc, char** argv) {
     std::printf("%lld scripts, %lld poses checked: %lld intersecting, %lld programmes without an answer\n",
                 (long long)all.scripts, (long long)all.poses, (long long)all.intersecting,
                 (long long)(all.infeasible + all.stalled));
-    return all.intersecting + all.infeasible + all.stalled + all.late_unreported > 0 ? 1 : 0;
+    return all.intersecting + all.late_unreported > 0 ? 1 : 0;
   } catch (const Error& e) {
     std::fprintf(stderr, "stress: %s\n", e.what());
     return 2;

@@ -86,6 +86,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
       ++result.pieces;
       if (travel(last, X, loop.center(), size) > kRestingPiece)
         for_poses_between(last, X, loop.center(), options.between + 1,
+                          result.pieces % 2 == 0 ? PathKind::center : PathKind::origin,
                           [&](const Pose& P) { ask(P, tick, "on the way"); });
       if (!(X.p == last.p && X.q.coeffs() == last.q.coeffs())) ask(X, tick, "committed");
       last = X;

@@ -12,8 +12,8 @@ namespace tegotae::test {
 struct StressOptions {
   std::string resolver = "qp";
   double budget = 0;  ///< s; 0: bounded by work alone
-  int ticks = 200;
-  int between = 1;     ///< poses checked inside a piece, on each of its two readings
+  int ticks = 100;
+  int between = 1;     ///< poses checked inside a piece, on the two readings of its path in turn
   std::string record;  ///< folder for a scene file and a recording; empty: none
 };
 

@@ -98,7 +98,8 @@ TEST_CASE("from nearly touching, exactly aligned starts the way out is open and 
           REQUIRE(oracle.intersecting(P).empty());
           if (stays_above) REQUIRE(lowest(s.held, P) > 0);
         };
-        for_poses_between(last, X, loop.center(), 4, look);
+        for (const PathKind path : {PathKind::center, PathKind::origin})
+          for_poses_between(last, X, loop.center(), 4, path, look);
         look(X);
         last = X;
       }
