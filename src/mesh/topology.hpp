@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// How the two faces of an edge meet, seen from outside.
 enum class EdgeKind : std::uint8_t {
-  convex,       ///< they bend away from the viewer
+  convex,       ///< they bend away from the viewer, or are folded onto each other
   flat,         ///< coplanar within kFlatAngle
   concave,      ///< they bend towards the viewer
   boundary,     ///< one face only

@@ -122,7 +122,8 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_.end.t = end * center_ - b_->origin();
   const double size = sweep_.start.t.norm() + sweep_.end.t.norm() + a_->radius() + offset_a_.norm() + b_->radius() +
                       b_->origin().norm() + center_.norm();
-  sweep_.floor = kFloor * size;
+  sweep_.floor = std::max(kFloor * size, clearance_);
+  sweep_.start_floor = sweep_.floor - 0.5 * kFloor * size;
   motion_ = std::max(kMotionFades * motion_, d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm());
 }
 

@@ -70,6 +70,9 @@ class PatchFront {
   /// use. The next call of certify builds the front (a few hundred µs in a tight fit).
   void attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept;
 
+  /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.
+  void set_clearance(double clearance) noexcept { clearance_ = clearance; }
+
   /// Is the motion s -> displaced(X_BA, center_A, s·d), s in [0, 1], of A past the resting B free of intersecting
   /// triangles, and likewise the one between the same two poses whose file-frame origin moves linearly? `X_BA` is A's
   /// file frame in B's, `d` is expressed in B's axes. The start need not be certified before. Never says certified
@@ -159,6 +162,7 @@ class PatchFront {
   std::array<Vec3, 3> face_b(std::uint32_t f) const;
 
   FrontCapacity capacity_;
+  double clearance_ = 0;
   const PatchTree* a_ = nullptr;
   const PatchTree* b_ = nullptr;
   Vec3 center_ = Vec3::Zero();    ///< A's center of mass, file frame

@@ -40,14 +40,13 @@ struct Bulge {
 };
 
 template <typename Pair>
-bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, double floor, double spare) {
-  // Half the floor is enough at the start: what the last motion left there was at least the floor, up to rounding.
+bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep, double spare) {
   const double share = bulge.share(n0, n1);
-  const double alpha = pair.start(n0) - share * bulge.at_start - spare - 0.5 * floor;
+  const double alpha = pair.start(n0) - share * bulge.at_start - spare - sweep.start_floor;
   if (!(alpha >= 0)) return false;
-  const double beta = pair.end(n1) - share * bulge.at_end - spare - floor;
+  const double beta = pair.end(n1) - share * bulge.at_end - spare - sweep.floor;
   if (!(beta >= 0)) return false;
-  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - floor;
+  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - sweep.floor;
   return gamma + std::sqrt(alpha * beta) >= 0;
 }
 
@@ -80,10 +79,10 @@ class Search {
   const MovingPlane& best() const { return best_; }
 
   /// Tries the direction that is best for both ends at once, then the best of each.
-  bool accept(const Bulge& bulge, double floor, Vec3& plane) const {
+  bool accept(const Bulge& bulge, const Sweep& sweep, Vec3& plane) const {
     if (start_ < 0 || end_ < 0) return false;
     for (const MovingPlane& p : {together_, best_}) {
-      if (!stays_apart(pair_, p.n0, p.n1, bulge, floor, 0)) continue;
+      if (!stays_apart(pair_, p.n0, p.n1, bulge, sweep, 0)) continue;
       plane = p.n1;
       return true;
     }
@@ -268,20 +267,20 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
                    bool& overlap) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
-  if (stays_apart(pair, plane, plane, bulge, sweep.floor, 0)) return true;
+  if (stays_apart(pair, plane, plane, bulge, sweep, 0)) return true;
   Search search(pair);
   search.offer(plane, plane);
   offer_normals(pair, search);
-  if (search.accept(bulge, sweep.floor, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
   offer_triangle_axes(pair, search);
-  if (search.accept(bulge, sweep.floor, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
   // The axes are complete, but for triangles without a plane.
   overlap = search.end() < 0 && !degenerate(a) && !degenerate(b);
   if (overlap) return false;
   offer_closest(pair, search);
-  if (search.accept(bulge, sweep.floor, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
   overlap = search.end() < sweep.floor;
-  if (overlap || search.start() < 0.5 * sweep.floor || halvings == 0) return false;
+  if (overlap || search.start() < sweep.start_floor || halvings == 0) return false;
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
   Vec3 half_plane = search.best().n0;
@@ -367,7 +366,7 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 
 bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
   const Bulge bulge(sweep, reach, 0, 1);
-  if (stays_apart(pair, plane, plane, bulge, sweep.floor, spare)) return true;
+  if (stays_apart(pair, plane, plane, bulge, sweep, spare)) return true;
   const BoxFaces at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
   int first = 0;
   for (int k = 1; k < 6; ++k) {
@@ -385,7 +384,7 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
   auto try_pair = [&](int i, int j) {
     const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
     const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
-    if (!stays_apart(pair, n0, n1, bulge, sweep.floor, spare)) return false;
+    if (!stays_apart(pair, n0, n1, bulge, sweep, spare)) return false;
     plane = n1;
     return true;
   };
@@ -399,7 +398,7 @@ bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
     return true;
   }
   const TrianglePair pair(a, b, sweep.start, sweep.end);
-  LeastLimiting axis(pair, 0.5 * sweep.floor);
+  LeastLimiting axis(pair, sweep.start_floor);
   offer_triangle_axes(pair, axis);
   offer_closest(pair, axis);
   block.normal = axis.normal();

@@ -12,12 +12,13 @@ struct MassProperties {
   bool from_volume = false;     ///< false: the stated fallback was used
 };
 
-/// Mass, center and inertia; the inertia is positive definite for any mesh with an extent. A closed mesh with a volume:
-/// the exact volume integral at `density` (kg/m³), as a sum over tetrahedra (Tonon, "Explicit exact formulas for the
-/// 3-D tetrahedron inertia tensor", 2004); a mesh turned inside out counts as its mirror, with the absolute volume. Any
-/// other mesh: its bounding box,
-/// solid, at the same density (a box with no thickness in a direction gets 1 % of its largest side there), centered on
-/// the area centroid of the surface clamped to the box.
+/// Mass, center and inertia; the inertia is positive definite for any mesh with an extent.
+///
+/// A closed mesh with a volume: the exact volume integral at `density` (kg/m³), as a sum over tetrahedra (Tonon,
+/// "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2004). A mesh turned inside out, of negative
+/// volume, counts as if its faces were turned back. Any other mesh: its bounding box, solid, at the same density (a box
+/// with no thickness in a direction gets 1 % of its largest side there), centered on the area centroid of the surface
+/// clamped to the box.
 MassProperties mass_properties(const TriangleMesh& mesh, bool closed, double density = 1000.0);
 
 }  // namespace tegotae

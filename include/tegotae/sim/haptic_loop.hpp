@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "tegotae/coupling/coupling.hpp"
+#include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
-
-/// How the resolver's programme of a tick ended.
-enum class ResolveStatus : std::uint8_t { not_needed, solved, infeasible, stalled };
 
 /// What one tick of the contact loop did.
 struct TickReport {
@@ -23,8 +21,9 @@ struct TickReport {
   int resolves = 0;          ///< programmes solved
   int iterations = 0;        ///< pivots of all programmes
   ResolveStatus status = ResolveStatus::not_needed;
-  double fraction = 1;       ///< part of the wanted motion made, in [0, 1]
-  bool overflow = false;     ///< a capacity was exceeded; the motion is still free
+  double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
+  bool cut = false;          ///< time or work ran out before the wanted motion was decided
+  bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 
 /// The contact loop: follows the pen with the held part so that no two parts ever intersect.
@@ -43,7 +42,7 @@ class HapticLoop {
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   const TickReport& report() const;
-  const Vec3& center() const;             ///< center of mass of the held part, m, file frame
+  const Vec3& center() const;              ///< center of mass of the held part, m, file frame
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
 
  private:

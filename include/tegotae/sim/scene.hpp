@@ -20,9 +20,14 @@ struct Part {
 
 /// Settings of the contact loop. A NaN stands for "from the scene": HapticLoop::contact() tells what was chosen.
 struct ContactSettings {
-  double l_min;  ///< gap (m) that contacts keep; at most half the radial clearance of the tightest fit
+  double l_min;  ///< contact below this gap (m), half of it is kept; a set value should be at most half the radial
+                 ///< clearance of the closest fit, NaN lets the loop adapt it (4 to 20 µm) to the room it finds
   double l_0;    ///< back-off length (m) after an intersection
-  std::string resolver = "lp";
+  std::string resolver = "qp";  ///< "qp": least constraint; "lp": the paper's linear programme
+  std::string narrowphase = "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
+  /// Time (s) that a tick of HapticLoop::step may take; what is not done by then is left for the next tick. Infinite:
+  /// bounded by work alone, so that the same pen gives the same motion bit for bit on any machine.
+  double tick_budget = 0.8e-3;
   double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation
   ContactSettings();
 };

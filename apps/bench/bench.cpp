@@ -1,0 +1,118 @@
+#include "bench/bench.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <set>
+
+#include "bench/results.hpp"
+#include "narrowphase/patch_tree.hpp"
+#include "run_options.hpp"
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae::bench {
+namespace {
+
+// Rounds of the pen: ten thousand ticks and more, so that p99.9 is not one tick alone. The fast pen needs more of them.
+constexpr int kRounds = 3, kFastRounds = 12;
+constexpr int kJams = 200, kQuickJams = 20;
+// Other budgets than the default one, s.
+constexpr double kBudgets[] = {0.1e-3, 0.3e-3};
+
+/// One line on the terminal, replaced as the work goes on.
+class Progress {
+ public:
+  void say(const std::string& what) const {
+    if (shown_) std::fprintf(stderr, "\r\033[K%s", what.c_str());
+  }
+  ~Progress() { say(""); }
+
+ private:
+  const bool shown_ = isatty(STDERR_FILENO) != 0;
+};
+
+BuildFigures measure_build(const Scene& scene) {
+  std::set<const TriangleMesh*> seen;
+  double us = 0, bytes = 0, triangles = 0;
+  for (const Part& part : scene.parts) {
+    if (!seen.insert(part.mesh.get()).second) continue;
+    const std::int64_t start = thread_cpu_ns();
+    const PatchTree tree(part.mesh);
+    us += 1e-3 * static_cast<double>(thread_cpu_ns() - start);
+    bytes += static_cast<double>(tree.bytes());
+    triangles += static_cast<double>(part.mesh->triangles.size());
+  }
+  return {us / triangles, bytes / triangles};
+}
+
+BudgetFigures measure_budget(const BenchScene& scene, double budget) {
+  Scene other = scene.scene;
+  other.contact.tick_budget = budget;
+  HapticLoop loop(other);
+  LoopTrace trace;
+  BudgetFigures f{budget, measure_loop(scene, loop, kHandSpeed, kRounds, trace), trace.checked, 0};
+  f.intersecting = trace.committed.count_intersecting(scene.scene);
+  return f;
+}
+
+SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const Progress& progress) {
+  const int jams = options.quick ? kQuickJams : kJams;
+  progress.say(name + ": building");
+  BenchScene scene = make_scene(name, jams);
+  if (!options.resolver.empty()) scene.scene.contact.resolver = options.resolver;
+  SceneFigures f;
+  f.scene = name;
+  f.targets = scene.targets;
+  f.depth = scene.depth;
+  f.held_triangles = scene.held_triangles;
+  f.fixed_triangles = scene.fixed_triangles;
+  f.build = measure_build(scene.scene);
+  LoopTrace trace;
+  Vec3 center;
+  {
+    HapticLoop loop(scene.scene);
+    center = loop.center();
+    progress.say(name + ": at hand speed");
+    f.hand = measure_loop(scene, loop, kHandSpeed, options.quick ? 1 : kRounds, trace);
+    progress.say(name + ": fast");
+    f.fast = measure_loop(scene, loop, kFastSpeed, options.quick ? 1 : kFastRounds, trace);
+  }
+  progress.say(name + ": FCL");
+  f.fcl = measure_fcl(scene, center, trace, jams);
+  progress.say(name + ": checking");
+  f.checked = trace.checked;
+  f.intersecting = trace.committed.count_intersecting(scene.scene);
+  if (!options.budgets) return f;
+  for (const double budget : kBudgets) {
+    progress.say(name + ": budgets");
+    f.budgets.push_back(measure_budget(scene, budget));
+  }
+  f.budgets.push_back({scene.scene.contact.tick_budget, f.hand, f.checked, f.intersecting});
+  return f;
+}
+
+}  // namespace
+
+int run_bench(const BenchOptions& options) {
+  const std::int64_t start = monotonic_ns();
+  Results results;
+  bool free = true;
+  {
+    const Progress progress;
+    for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) {
+      results.rows.push_back(measure_scene(name, options, progress));
+      const SceneFigures& row = results.rows.back();
+      free = free && row.intersecting == 0;
+      for (const BudgetFigures& b : row.budgets) free = free && b.intersecting == 0;
+    }
+    progress.say("linear programmes");
+    results.lp = measure_lp(options.quick);
+  }
+  results.seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);
+  if (!options.markdown.empty()) update_markdown(options.markdown, options.command, results);
+  std::cout << (options.json ? json_line(results) : tables(results)) << std::endl;
+  return free ? apps::kDone : apps::kRunFailed;
+}
+
+}  // namespace tegotae::bench

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tegotae::bench {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;  ///< empty: all
+  bool quick = false;               ///< one round, few poses: for tests
+  bool budgets = false;             ///< also with other tick budgets
+  bool json = false;
+  std::string resolver;  ///< empty: the library's default
+  std::string markdown;  ///< file whose generated part is to be replaced; empty: none
+  std::string command;   ///< as typed, for the file
+};
+
+/// Measures and reports on stdout. Returns the exit code: kRunFailed when a committed pose intersects.
+int run_bench(const BenchOptions& options);
+
+}  // namespace tegotae::bench

@@ -1,0 +1,82 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/results.hpp"
+
+namespace tegotae::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json to_json(const Percentiles& p) {
+  return {{"p50", number(p.p50)}, {"p99", number(p.p99)}, {"p999", number(p.p999)}, {"max", number(p.max)}};
+}
+
+void add(const LoopFigures& f, Json& j) {
+  j["tick_us"] = to_json(f.tick_us);
+  j["tick_cpu_us"] = to_json(f.tick_cpu_us);
+  j["contacts"] = f.contacts;
+  j["contacts_max"] = f.contacts_max;
+  j["limits"] = f.limits;
+  j["resolves"] = f.resolves;
+  j["near_parts"] = f.candidate_parts;
+  j["cut"] = f.cut;
+  j["overflow"] = f.overflow;
+  j["ticks"] = f.ticks;
+  j["ticks_in_contact"] = f.in_contact;
+  j["depth_m"] = number(f.depth);
+  j["fifo"] = f.fifo;
+}
+
+Json to_json(const SceneFigures& s) {
+  Json j;
+  j["scene"] = s.scene;
+  j["triangles"] = {s.held_triangles, s.fixed_triangles};
+  add(s.hand, j);
+  j["fcl_us"] = {{"p50", number(s.fcl.us.p50)}, {"p99", number(s.fcl.us.p99)}};
+  j["fcl_poses"] = s.fcl.poses;
+  j["fcl_overlapping"] = s.fcl.overlap;
+  j["fcl_pairs"] = s.fcl.pairs;
+  add(s.fast, j["fast"]);
+  j["build_us_per_triangle"] = s.build.us_per_triangle;
+  j["bytes_per_triangle"] = s.build.bytes_per_triangle;
+  j["checked"] = s.checked;
+  j["intersecting"] = s.intersecting;
+  for (const BudgetFigures& b : s.budgets) {
+    Json row;
+    row["budget_us"] = 1e6 * b.budget;
+    add(b.loop, row);
+    row["checked"] = b.checked;
+    row["intersecting"] = b.intersecting;
+    j["budgets"].push_back(row);
+  }
+  return j;
+}
+
+Json to_json(const LpTimes& t) {
+  return {{"us", number(t.us)}, {"qp_us", number(t.qp_us)}, {"glpk_us", number(t.glpk_us)}, {"pivots", t.iterations},
+          {"gap", t.gap},       {"failed", t.failed}};
+}
+
+}  // namespace
+
+std::string json_line(const Results& results) {
+  Json j;
+  j["rows"] = Json::array();
+  for (const SceneFigures& s : results.rows) j["rows"].push_back(to_json(s));
+  j["lp"] = Json::array();
+  for (const LpFigures& f : results.lp) {
+    Json row = {{"n", f.n}};
+    row.update(to_json(f.peg));
+    row["ball"] = to_json(f.ball);
+    j["lp"].push_back(row);
+  }
+  j["seconds"] = results.seconds;
+  return j.dump();
+}
+
+}  // namespace tegotae::bench

@@ -1,0 +1,166 @@
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "bench/results.hpp"
+
+namespace tegotae::bench {
+namespace {
+
+// Of a tick's budget, for what ends after the last look at the clock (issue of the figures: budget + 0.1 ms), µs.
+constexpr double kBudgetSlack = 100;
+// The paper-sized programmes are to beat GLPK by this much at this many contacts.
+constexpr int kGlpkRows = 64;
+constexpr double kGlpkRatio = 25;
+// Hierarchies: µs and bytes a triangle.
+constexpr double kMostBuildUs = 2, kMostBytes = 160;
+constexpr double kMostGrowth = 3;
+// How near (m) a peg comes to the bottom of its hole when it is pressed on it.
+constexpr double kArrived = 1e-4;
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+std::string format(const char* pattern, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+std::string number(double x) {
+  if (!std::isfinite(x)) return "–";
+  return format(std::abs(x) < 10 ? "%.2g" : "%.0f", x);
+}
+
+std::string count(std::size_t n) {
+  if (n < 10000) return std::to_string(n);
+  return n < 950000 ? format("%.0f k", 1e-3 * static_cast<double>(n)) : format("%.1f M", 1e-6 * static_cast<double>(n));
+}
+
+std::string verdict(bool met) {
+  return met ? "met" : "**missed**";
+}
+
+std::string targets_table(const Results& r) {
+  std::string text =
+      "| scene | triangles | median (target), µs | p99.9 (target), µs | FCL median / p99, µs | faster than FCL "
+      "(target) | "
+      "verdict |\n|---|---|---|---|---|---|---|\n";
+  for (const SceneFigures& s : r.rows) {
+    const double ratio = s.fcl.us.p50 / s.hand.tick_us.p50;
+    std::string missed;
+    if (!(s.hand.tick_us.p50 <= s.targets.p50_us)) missed += "median ";
+    if (!(s.hand.tick_us.p999 <= s.targets.p999_us)) missed += "p99.9 ";
+    if (s.targets.fcl_ratio > 0 && !(ratio >= s.targets.fcl_ratio)) missed += "ratio ";
+    if (s.intersecting > 0) missed += "free ";
+    // A peg that stayed outside was not measured in its jams.
+    if (s.depth > 0 && !(s.hand.depth >= s.depth - kArrived)) missed += "bottom ";
+    text +=
+        format("| `%s` | %s / %s | %s (%s) | %s (%s) | %s / %s | %s × (%s) | ", s.scene.c_str(),
+               count(s.held_triangles).c_str(), count(s.fixed_triangles).c_str(), number(s.hand.tick_us.p50).c_str(),
+               number(s.targets.p50_us).c_str(), number(s.hand.tick_us.p999).c_str(), number(s.targets.p999_us).c_str(),
+               number(s.fcl.us.p50).c_str(), number(s.fcl.us.p99).c_str(), number(ratio).c_str(),
+               s.targets.fcl_ratio > 0 ? number(s.targets.fcl_ratio).c_str() : "–");
+    text += missed.empty() ? "met |\n" : "**missed:** " + missed + "|\n";
+  }
+  return text;
+}
+
+void add_run(const std::string& scene, const char* speed, const LoopFigures& f, std::string& text) {
+  text +=
+      format("| `%s` | %s | %s / %s / %s / %s | %s / %s / %s / %s | %.0f / %d | %.0f | %.1f | %zu of %zu |",
+             scene.c_str(), speed, number(f.tick_us.p50).c_str(), number(f.tick_us.p99).c_str(),
+             number(f.tick_us.p999).c_str(), number(f.tick_us.max).c_str(), number(f.tick_cpu_us.p50).c_str(),
+             number(f.tick_cpu_us.p99).c_str(), number(f.tick_cpu_us.p999).c_str(), number(f.tick_cpu_us.max).c_str(),
+             f.contacts, f.contacts_max, f.limits, f.resolves, f.cut, f.in_contact);
+  text += std::isfinite(f.depth) ? format(" %.1f |\n", 1e3 * f.depth) : " – |\n";
+}
+
+std::string runs_table(const Results& r) {
+  std::string text =
+      "| scene | pen | wall: median / p99 / p99.9 / max, µs | CPU: the same, µs | contacts mean / max | limits | "
+      "programmes | ticks cut | depth, mm |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (const SceneFigures& s : r.rows) {
+    add_run(s.scene, "hand", s.hand, text);
+    add_run(s.scene, "fast", s.fast, text);
+  }
+  return text;
+}
+
+std::string checks_table(const Results& r) {
+  std::string text =
+      "| scene | hierarchy, µs a triangle (2) | bytes a triangle (160) | verdict | FCL poses that overlap | pairs, "
+      "mean | "
+      "committed poses that intersect |\n|---|---|---|---|---|---|---|\n";
+  for (const SceneFigures& s : r.rows) {
+    const bool met = s.build.us_per_triangle <= kMostBuildUs && s.build.bytes_per_triangle <= kMostBytes;
+    text += format("| `%s` | %.2f | %.0f | %s | %zu of %zu | %.0f | %lld of %lld |\n", s.scene.c_str(),
+                   s.build.us_per_triangle, s.build.bytes_per_triangle, verdict(met).c_str(), s.fcl.overlap,
+                   s.fcl.poses, s.fcl.pairs, static_cast<long long>(s.intersecting), static_cast<long long>(s.checked));
+  }
+  return text;
+}
+
+std::string growth_line(const Results& r) {
+  double first = NAN, last = NAN;
+  for (const SceneFigures& s : r.rows) {
+    if (s.scene == "2k/2k@0.99") first = s.hand.tick_us.p50;
+    if (s.scene == "200k/200k@0.99") last = s.hand.tick_us.p50;
+  }
+  if (!std::isfinite(last / first)) return "";
+  return format("\nGrowth of the median from 2 k to 200 k triangles at 0.99: %.1f × (at most 3): ", last / first) +
+         verdict(last <= kMostGrowth * first) + ".\n";
+}
+
+std::string budget_table(const Results& r) {
+  std::string text;
+  for (const SceneFigures& s : r.rows) {
+    for (const BudgetFigures& b : s.budgets) {
+      const double most = 1e6 * b.budget + kBudgetSlack;
+      text +=
+          format("| `%s` | %.1f | %s | %s | %s | %s | %zu of %zu | %lld of %lld | ", s.scene.c_str(), 1e3 * b.budget,
+                 number(b.loop.tick_us.p999).c_str(), number(b.loop.tick_cpu_us.p999).c_str(), number(most).c_str(),
+                 std::isfinite(b.loop.depth) ? number(1e3 * b.loop.depth).c_str() : "–", b.loop.cut, b.loop.in_contact,
+                 static_cast<long long>(b.intersecting), static_cast<long long>(b.checked));
+      text += verdict(b.loop.tick_us.p999 <= most && b.intersecting == 0) + " |\n";
+    }
+  }
+  if (text.empty()) return text;
+  return "\n### Budgets\n\n| scene | budget, ms | p99.9 wall, µs | p99.9 CPU, µs | at most, µs | depth, mm | ticks cut "
+         "| "
+         "intersecting | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
+         text;
+}
+
+std::string lp_table(const Results& r) {
+  if (r.lp.empty()) return "";
+  std::string text =
+      "\n### Linear programme\n\n| contacts | lp peg / ball (target), µs | pivots | qp peg / ball, µs | GLPK peg / "
+      "ball, "
+      "µs | faster than GLPK | relative duality gap | verdict |\n|---|---|---|---|---|---|---|---|\n";
+  for (const LpFigures& f : r.lp) {
+    const double ratio = f.peg.glpk_us / f.peg.us;
+    const bool met = f.peg.us <= f.target_us && f.peg.failed == 0 && !(f.n == kGlpkRows && ratio < kGlpkRatio);
+    text += format("| %d | %s / %s (%s) | %.1f / %.1f | %s / %s | %s / %s | %s × | %.0e | %s |\n", f.n,
+                   number(f.peg.us).c_str(), number(f.ball.us).c_str(), number(f.target_us).c_str(), f.peg.iterations,
+                   f.ball.iterations, number(f.peg.qp_us).c_str(), number(f.ball.qp_us).c_str(),
+                   number(f.peg.glpk_us).c_str(), number(f.ball.glpk_us).c_str(), number(ratio).c_str(),
+                   std::max(f.peg.gap, f.ball.gap), verdict(met).c_str());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string tables(const Results& r) {
+  std::string text;
+  if (!r.rows.empty())
+    text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
+            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + "\n### Hierarchies and checks\n\n" +
+            checks_table(r);
+  return text + budget_table(r) + lp_table(r);
+}
+
+}  // namespace tegotae::bench

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tegotae::apps {
+
+/// Prints a report on each mesh or scene file. A file that cannot be used is one line on stderr; returns the exit code.
+int check_files(const std::vector<std::string>& files);
+
+}  // namespace tegotae::apps

@@ -1,0 +1,86 @@
+#include "run_options.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+
+#include "progress_line.hpp"
+#include "summary.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae::apps {
+
+namespace {
+
+// The one thing that a signal handler may touch.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int) {
+  interrupted.store(true);
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
+      ->type_name("NAME");
+  app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
+  app.add_option("--record", options.record, "Write every pose and wrench to a CSV file")->type_name("FILE");
+  app.add_flag("--json", options.json, "Print the summary as one line of JSON");
+}
+
+int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION);
+  try {
+    app.parse(argc, argv);
+    return body();
+  } catch (const CLI::Success& e) {  // --help, --version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    std::cerr << app.get_name() << ": " << first_line(e.what()) << " (see --help)\n";
+    return kBadInput;
+  } catch (const Error& e) {
+    std::cerr << app.get_name() << ": " << e.what() << "\n";
+    return kBadInput;
+  } catch (const std::exception& e) {
+    std::cerr << app.get_name() << ": the run failed: " << first_line(e.what()) << "\n";
+    return kRunFailed;
+  }
+}
+
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
+  if (!options.resolver.empty()) file.scene.contact.resolver = options.resolver;
+  RunProgress progress;
+  RunSettings settings;
+  settings.real_time = !options.fast;
+  settings.seconds = options.seconds;
+  settings.record = options.record;
+  settings.progress = &progress;
+  settings.stop = &interrupted;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+
+  RunSummary summary;
+  {
+    const bool show = !options.json && isatty(STDOUT_FILENO) != 0;
+    ProgressLine line(progress, depth_offset, show);
+    summary = run_session(file, settings);
+  }
+  summary.depth_m += depth_offset;
+  if (options.json)
+    std::cout << json_line(summary, file) << std::endl;
+  else
+    std::cout << summary_text(summary, options, goal, interrupted.load()) << std::flush;
+  // A run that was asked to be short is done when its time is over.
+  const bool done = summary.completed || (options.seconds > 0 && !interrupted.load());
+  return done && summary.penetrating == 0 ? kDone : kRunFailed;
+}
+
+}  // namespace tegotae::apps

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "tegotae/sim/session.hpp"
+
+namespace tegotae::apps {
+
+/// Exit codes of every program.
+inline constexpr int kDone = 0;
+inline constexpr int kRunFailed = 1;
+inline constexpr int kBadInput = 2;
+
+/// What the user asked for, common to all programs that run a scene.
+struct RunOptions {
+  std::string resolver;  ///< empty: the scene's
+  bool fast = false;
+  double seconds = 0;  ///< 0: to the end of the script
+  std::string record;
+  bool json = false;
+};
+
+void add_run_options(CLI::App& app, RunOptions& options);
+
+/// Parses the command line, runs `body` and returns the exit code. Bad usage and Errors are one line on stderr and
+/// kBadInput.
+int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+/// Runs the scene with a progress line (on a terminal) and Ctrl-C ending the run with its recording kept, and reports.
+/// `goal` says in a few words what the run is to do; `depth_offset` (m) is added to the depth.
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset = 0);
+
+}  // namespace tegotae::apps

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// A limit on the motion of the held part A: for a small displacement (dp, dr) of its center of mass the gap becomes
+/// gap + n · (dp + dr × r). Taken at a free pose, so the gap is never negative.
+struct Contact {
+  Vec3 n;              ///< n_BA_W: unit normal from the fixed part B to A, world
+  Vec3 r;              ///< from A's center of mass to the contact point on A, m, world
+  double gap;          ///< m
+  std::uint32_t part;  ///< number of the fixed part
+  int age;             ///< ticks this pair of features has been followed
+};
+
+}  // namespace tegotae

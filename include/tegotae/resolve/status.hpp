@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tegotae {
+
+/// How the resolver's programme of a tick ended.
+enum class ResolveStatus : std::uint8_t {
+  not_needed,  ///< nothing limited the motion
+  solved,
+  infeasible,  ///< no motion keeps all gaps; the part stays where it is
+  stalled      ///< the solver gave up for numerical reasons; the part stays where it is
+};
+
+}  // namespace tegotae

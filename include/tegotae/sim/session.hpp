@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "tegotae/servo/servo.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+namespace tegotae {
+
+/// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
+struct RunProgress {
+  std::atomic<double> t{0};         ///< s since the start
+  std::atomic<double> duration{0};  ///< s the run will take
+  std::atomic<double> depth{0};     ///< m, as RunSummary::depth_m
+  std::atomic<int> contacts{0};
+  std::atomic<double> force{0};  ///< N
+};
+
+struct RunSettings {
+  bool real_time = true;  ///< false: virtual time, as fast as it goes and the same on every run
+  double seconds = 0;     ///< how long; 0: to the end of the script and kSettleTime more
+  std::string record;     ///< recording (CSV); empty: none
+  RunProgress* progress = nullptr;
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
+};
+
+/// How a run went.
+struct RunSummary {
+  std::int64_t ticks = 0;  ///< of the contact loop
+  double seconds = 0;      ///< simulated time; in real time also the time it took
+  /// The run went past the end of the script and the held part rests where the script ends: its center within 2 % of
+  /// the way plus the part's radius and what friction and resolution leave of the pen, its rotation within 0.1 rad.
+  bool completed = false;
+  /// How far (m) the held part's center has gone along the straight line from where the script starts to where it ends.
+  double depth_m = 0;
+  int contacts_max = 0;
+  /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
+  /// an evenly spread part is asked.
+  std::int64_t penetrating = 0;
+  LatencySummary tick_us;  ///< time a tick of the contact loop takes
+  ServoStatistics servo;   ///< in virtual time only the number of ticks
+  double force_max_n = 0;  ///< largest rendered force
+  double torque_max_nm = 0;
+  std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
+};
+
+/// Time (s) after the end of the script in which the hand comes to rest.
+inline constexpr double kSettleTime = 0.5;
+
+/// Runs the scene with its device, script, servo and contact loop. In real time the servo has its own thread at 1 kHz
+/// and the contact loop runs in the calling thread. In virtual time everything takes turns in the calling thread: the
+/// same scene, script and build give the same recording byte for byte.
+///
+/// Throws Error when the scene cannot be held (see HapticLoop) or the recording cannot be written.
+RunSummary run_session(const SceneFile& file, const RunSettings& settings);
+
+}  // namespace tegotae

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "feature/tracker.hpp"
+#include "narrowphase/face_pair.hpp"
+#include "tegotae/contact/contact.hpp"
+
+namespace tegotae {
+
+/// A fixed part as contacts see it.
+struct FixedSurface {
+  std::shared_ptr<const Surface> surface;
+  Pose X_WB;
+};
+
+/// The nearest-feature pairs of the held part with the fixed parts, followed from tick to tick, and the limits they put
+/// on its motion. A pair keeps its identity (part and features) and counts its age.
+class ContactSet {
+ public:
+  ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSurface> fixed, const Vec3& center, int capacity);
+
+  /// Follows every pair to its local minimum of distance at `X`, drops those farther than `reach` (m) and duplicates,
+  /// and lists the limits anew.
+  void track(const Pose& X, double reach);
+  /// Starts pairs from triangle pairs: nearest features at `X_near` (close to the contact), followed to their minimum
+  /// at the pose of the last track(). Returns how many pairs within reach were not known yet.
+  int seed(const std::vector<FacePair>& triangles, const Pose& X_near);
+  /// Adds limits for this tick only: for each triangle pair (free at the last track()) the separating axis that limits
+  /// the displacement `d` least. Returns how many were added.
+  int cut(const std::vector<FacePair>& triangles, const Displacement& d);
+
+  const std::vector<Contact>& limits() const { return limits_; }
+  /// Limits that were dropped since the last track() because the capacity was used up.
+  int overflow() const { return overflow_; }
+
+ private:
+  struct Pair {
+    std::uint32_t part;
+    Feature a, b;
+    int age;
+  };
+
+  bool known(std::uint32_t part, Feature a, Feature b) const;
+  void remember(const Pair& pair);
+  /// Drops pairs that other pairs speak for: a corner or edge inside a flat region is no minimum of its own.
+  bool redundant(std::uint32_t part, Feature a, Feature b) const;
+  void add_limits(const Pair& pair, const FeaturePair& at);
+  void add_reflex_limits(const Pair& pair, const FeaturePair& at);
+  void add(const Contact& contact);
+  Vec3 normal_B(std::uint32_t part, const FeaturePair& at) const;
+  std::size_t slot(std::uint32_t part, Feature a, Feature b) const;
+
+  std::shared_ptr<const Surface> held_;
+  std::vector<FixedSurface> fixed_;
+  Vec3 center_;
+  int capacity_;
+  Pose X_;
+  double reach_ = 0;
+  std::vector<Pair> pairs_;
+  std::vector<Pair> next_;
+  std::vector<std::int32_t> table_;  // open addressing into next_ or pairs_, -1 is empty
+  std::vector<Contact> limits_;
+  int overflow_ = 0;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,93 @@
+#include "feature/simplex_distance.hpp"
+
+#include <algorithm>
+
+namespace tegotae {
+namespace {
+
+struct OnSimplex {
+  Vec3 p;
+  unsigned mask;
+};
+
+OnSimplex closest_on_segment(const Vec3& q, const Vec3& a, const Vec3& b, unsigned bit_a, unsigned bit_b) {
+  const Vec3 ab = b - a;
+  const double t = (q - a).dot(ab), len2 = ab.squaredNorm();
+  if (t <= 0) return {a, bit_a};
+  if (t >= len2) return {b, bit_b};
+  return {a + (t / len2) * ab, bit_a | bit_b};
+}
+
+/// Point on triangle by its Voronoi regions: each edge's outer half-plane is tested in the triangle's plane.
+OnSimplex closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& p) {
+  const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
+  const double n2 = n.squaredNorm();
+  OnSimplex best{p[0], 1};
+  double best2 = (q - p[0]).squaredNorm();
+  bool inside = n2 > 0;
+  for (unsigned k = 0; k < 3; ++k) {
+    const unsigned l = (k + 1) % 3;
+    if (n2 > 0 && n.cross(p[l] - p[k]).dot(q - p[k]) > 0) continue;  // strictly on the inner side of this edge
+    inside = false;
+    const OnSimplex s = closest_on_segment(q, p[k], p[l], 1u << k, 1u << l);
+    const double d2 = (q - s.p).squaredNorm();
+    if (d2 < best2) {
+      best = s;
+      best2 = d2;
+    }
+  }
+  if (inside) return {q - ((q - p[0]).dot(n) / n2) * n, 7};
+  return best;
+}
+
+OnSimplex closest_on(const Vec3& q, const Simplex& s) {
+  switch (s.size) {
+    case 1:
+      return {s.p[0], 1};
+    case 2:
+      return closest_on_segment(q, s.p[0], s.p[1], 1, 2);
+    default:
+      return closest_on_triangle(q, s.p);
+  }
+}
+
+int edge_count(int size) {
+  return size == 1 ? 0 : size == 2 ? 1 : 3;
+}
+
+}  // namespace
+
+ClosestPoints closest_points(const Simplex& a, const Simplex& b) {
+  ClosestPoints best{Vec3::Zero(), Vec3::Zero(), 1e300, 1, 1};
+  const auto take = [&best](const Vec3& pa, const Vec3& pb, unsigned ma, unsigned mb) {
+    const double d2 = (pa - pb).squaredNorm();
+    if (d2 < best.squared_distance) best = {pa, pb, d2, ma, mb};
+  };
+  for (unsigned i = 0; i < static_cast<unsigned>(a.size); ++i) {
+    const OnSimplex s = closest_on(a.p[i], b);
+    take(a.p[i], s.p, 1u << i, s.mask);
+  }
+  for (unsigned j = 0; j < static_cast<unsigned>(b.size); ++j) {
+    const OnSimplex s = closest_on(b.p[j], a);
+    take(s.p, b.p[j], s.mask, 1u << j);
+  }
+  // What is left are pairs of points inside two edges.
+  for (int i = 0; i < edge_count(a.size); ++i) {
+    const int i1 = (i + 1) % 3;
+    const Vec3 u = a.p[i1] - a.p[i];
+    const double uu = u.squaredNorm();
+    for (int j = 0; j < edge_count(b.size); ++j) {
+      const int j1 = (j + 1) % 3;
+      const Vec3 v = b.p[j1] - b.p[j], w = a.p[i] - b.p[j];
+      const double vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+      const double det = uu * vv - uv * uv;
+      if (!(det > 0)) continue;  // parallel: an end of one of them is as close
+      const double s = (uv * vw - vv * uw) / det, t = (uu * vw - uv * uw) / det;
+      if (s > 0 && s < 1 && t > 0 && t < 1)
+        take(a.p[i] + s * u, b.p[j] + t * v, (1u << i) | (1u << i1), (1u << j) | (1u << j1));
+    }
+  }
+  return best;
+}
+
+}  // namespace tegotae

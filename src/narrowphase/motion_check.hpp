@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "narrowphase/face_pair.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// What stands between the held part A and a wanted motion.
+enum class MotionAnswer : std::uint8_t {
+  free,     ///< nothing: the motion may be made
+  blocked,  ///< the triangle pairs listed
+  unknown   ///< work or time ran out before anything was found
+};
+
+/// Narrow phase of the contact loop: whether a motion of A keeps clear of the fixed parts. A motion runs from `X` (A's
+/// file frame in the world) by `d` of its center of mass; both in the world.
+class MotionCheck {
+ public:
+  virtual ~MotionCheck() = default;
+
+  /// Fixed parts that matter until the next call; `deadline_ns` of monotonic_ns() bounds the work of the checks.
+  virtual void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept = 0;
+  /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
+  virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
+                             std::vector<FacePair>& blocking) noexcept = 0;
+  /// A pose close to where the blocking pairs of the last check meet, at which their nearest features are looked for.
+  virtual Pose near_contact(const Pose& X, const Displacement& d, const std::vector<FacePair>& blocking) noexcept = 0;
+  /// Longest motion of any point of A that one check should cover, m.
+  virtual double longest_motion() const = 0;
+  /// Fixed parts that were near in the last begin() but could not be taken in: motions are unknown as long.
+  virtual bool overflow() const = 0;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+
+#include "narrowphase/motion_check.hpp"
+#include "narrowphase/patch_front.hpp"
+
+namespace tegotae {
+
+/// The path certificate over the near fixed parts: a motion is free only when its whole path is (see PatchFront). Each
+/// near part has a front of its own, kept from tick to tick as long as the part stays near.
+class PatchMotionCheck final : public MotionCheck {
+ public:
+  /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
+  /// center of mass `center` (m, file frame).
+  PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
+                   const std::vector<std::shared_ptr<const TriangleMesh>>& fixed, std::vector<Pose> poses);
+
+  void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
+  MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
+                     std::vector<FacePair>& blocking) noexcept override;
+  Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
+  double longest_motion() const override;
+  bool overflow() const override { return overflow_; }
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+
+  std::uint32_t take_front(std::uint32_t part) noexcept;
+
+  Vec3 center_;
+  double radius_;
+  std::shared_ptr<const PatchTree> held_;
+  std::vector<std::shared_ptr<const PatchTree>> fixed_;
+  std::vector<Pose> poses_;
+  std::vector<PatchFront> fronts_;
+  std::vector<std::uint32_t> part_of_;   ///< of each front, kNobody while unused
+  std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none
+  std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
+  std::uint64_t now_ = 0;
+  const std::vector<std::uint32_t>* near_ = nullptr;
+  WorkLimit limit_;
+  bool overflow_ = false;
+};
+
+}  // namespace tegotae

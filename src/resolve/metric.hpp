@@ -1,0 +1,40 @@
+#pragma once
+
+#include "tegotae/contact/contact.hpp"
+#include "tegotae/core/pose.hpp"
+#include "tegotae/mesh/mass.hpp"
+
+namespace tegotae {
+
+/// The mass metric of the held part as a length: |whiten(d)|² = dᵀ M d / m (m²), so that a rotation counts by how far
+/// it carries the mass. Whitened coordinates are (dp, k_i × rotation about principal axis i) with the radii of gyration
+/// k.
+class Metric {
+ public:
+  explicit Metric(const MassProperties& mass);
+
+  /// Turns the principal axes along with the part.
+  void set_orientation(const Quat& q_WA) { axes_W_ = q_WA.toRotationMatrix() * axes_; }
+
+  Vec6 whiten(const Displacement& d) const {
+    Vec6 z;
+    z.head<3>() = d.dp;
+    z.tail<3>() = radii_.cwiseProduct(axes_W_.transpose() * d.dr);
+    return z;
+  }
+  Displacement unwhiten(const Vec6& z) const { return {z.head<3>(), axes_W_ * z.tail<3>().cwiseQuotient(radii_)}; }
+  /// The contact's Jacobian [n, r × n] in whitened coordinates: row · whiten(d) = n · (dp + dr × r).
+  Vec6 row(const Contact& c) const {
+    Vec6 g;
+    g.head<3>() = c.n;
+    g.tail<3>() = (axes_W_.transpose() * c.r.cross(c.n)).cwiseQuotient(radii_);
+    return g;
+  }
+
+ private:
+  Mat3 axes_;   ///< principal axes as columns, file frame
+  Vec3 radii_;  ///< radii of gyration, m
+  Mat3 axes_W_;
+};
+
+}  // namespace tegotae

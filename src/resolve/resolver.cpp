@@ -1,0 +1,84 @@
+#include "resolve/resolver.hpp"
+
+#include <algorithm>
+
+#include "lp/least_distance.hpp"
+#include "lp/simplex.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+ResolveStatus status_of(LpStatus s) {
+  switch (s) {
+    case LpStatus::optimal:
+      return ResolveStatus::solved;
+    case LpStatus::infeasible:
+      return ResolveStatus::infeasible;
+    default:
+      return ResolveStatus::stalled;
+  }
+}
+
+/// The paper's programme (equations 5 to 7): contact forces of least sum that push the wanted motion out of every
+/// limit. Taken as it is, it follows a target in a limit cycle: the push may overshoot what the error asks for. So the
+/// motion is scaled to the point on its line that is nearest to the target; the limits hold there too, because they
+/// hold at both ends of the line.
+class LpResolver final : public Resolver {
+ public:
+  explicit LpResolver(int capacity) : solver_(capacity), d_(static_cast<std::size_t>(capacity)) {}
+
+  Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept override {
+    for (int i = 0; i < rows.rows(); ++i) d_[static_cast<std::size_t>(i)] = bounds[i] - rows.row(i).dot(wanted);
+    const LpResult& r = solver_.solve(rows, d_.data());
+    Resolution out;
+    out.status = status_of(r.status);
+    out.iterations = r.iterations;
+    if (r.status != LpStatus::optimal) return out;
+    const Vec6 motion = wanted + r.w;
+    const double length2 = motion.squaredNorm();
+    out.motion = length2 > 0 ? Vec6(std::clamp(wanted.dot(motion) / length2, 0.0, 1.0) * motion) : motion;
+    return out;
+  }
+
+  bool projects() const override { return false; }
+
+ private:
+  LpSolver solver_;
+  std::vector<double> d_;
+};
+
+/// Gauss's least constraint: the allowed motion nearest to the wanted one in the mass metric.
+class QpResolver final : public Resolver {
+ public:
+  explicit QpResolver(int capacity) : solver_(capacity) {}
+
+  Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept override {
+    const QpResult& r = solver_.solve(rows, bounds, wanted);
+    Resolution out;
+    out.status = status_of(r.status);
+    out.iterations = r.iterations;
+    if (r.status == LpStatus::optimal) out.motion = r.z;
+    return out;
+  }
+
+  bool projects() const override { return true; }
+
+ private:
+  LeastDistanceSolver solver_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& resolver_names() {
+  static const std::vector<std::string> names{"lp", "qp"};
+  return names;
+}
+
+std::unique_ptr<Resolver> make_resolver(const std::string& name, int capacity) {
+  if (name == "lp") return std::make_unique<LpResolver>(capacity);
+  if (name == "qp") return std::make_unique<QpResolver>(capacity);
+  throw Error("unknown resolver \"" + name + "\"; known are lp, qp");
+}
+
+}  // namespace tegotae

@@ -1,0 +1,312 @@
+#include "sim/contact_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "narrowphase/fcl_motion_check.hpp"
+#include "narrowphase/patch_motion_check.hpp"
+#include "sim/start_check.hpp"
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae {
+namespace {
+
+// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
+constexpr int kMostLimits = 4096;
+// Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
+constexpr int kMostBlocking = 256;
+// Pieces in one tick; a pen faster than that leaves X behind for a while.
+constexpr int kMostPieces = 16;
+// How much faster than the pen X may follow.
+constexpr double kCatchUp = 2.0;
+// A piece of at least this share of its longest was cut short by that, not by contacts.
+constexpr double kFullShare = 0.99;
+// Programmes solved for one piece before it is shortened instead.
+constexpr int kMostResolves = 6;
+// Halvings of a piece that still intersects.
+constexpr int kMostHalvings = 4;
+// Pairs are followed while they are nearer than twice this share of the part's radius.
+constexpr double kReachShare = 0.02;
+// Share of the kept gap by which one that is too small recovers in a piece.
+constexpr double kRecovery = 0.4;
+// Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
+constexpr double kRecoverBelow = 0.8;
+// Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
+constexpr double kKeepShare = 0.5;
+// Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
+// factor where there is room for more.
+constexpr int kAdaptTicks = 8;
+constexpr double kKeepGrowth = 1.1;
+// Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
+constexpr double kLeastKeep = 2e-6;
+// No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
+// count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
+constexpr double kGapFloor = 1.1e-6;
+// Of a start gap below the floor, what motions must leave.
+constexpr double kStartShare = 0.5;
+// A motion that carries no point farther than this (m) is rest.
+constexpr double kRest = 1e-10;
+// Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
+// more than the second doubles it; it never falls below this many times the pen's motion of the tick.
+// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
+// so many: like static friction, it ends the creep that is left where limits change with every piece.
+constexpr double kStiction = 1e-6;
+constexpr int kMostStillTicks = 250;
+constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
+
+double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
+  double clearance = kGapFloor;
+  FacePair nearest{};
+  for (std::uint32_t i = 0; i < fixed.size(); ++i)
+    clearance = std::min(clearance, narrow.distance_below(kGapFloor, i, fixed[i]->pose.inverse() * held.pose, nearest));
+  return clearance < kGapFloor ? kStartShare * clearance : clearance;
+}
+
+}  // namespace
+
+const std::vector<std::string>& narrowphase_names() {
+  static const std::vector<std::string> names{"patch", "fcl"};
+  return names;
+}
+
+ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
+    : settings_(settings),
+      center_(mass.center),
+      metric_(mass),
+      resolver_(make_resolver(settings.resolver, kMostLimits)),
+      rows_(kMostLimits),
+      bounds_(kMostLimits) {
+  const Part* held = nullptr;
+  std::vector<const Part*> fixed;
+  for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
+  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
+  std::vector<FixedSurface> fixed_surfaces;
+  std::vector<const TriangleMesh*> plain_meshes;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+  std::vector<Pose> poses;
+  for (const Part* p : fixed) {
+    auto& surface = surfaces[p->mesh.get()];
+    if (!surface) surface = std::make_shared<Surface>(p->mesh);
+    fixed_surfaces.push_back({surface, p->pose});
+    poses.push_back(p->pose);
+    spheres_.add(bounding_sphere(*p->mesh), p->pose);
+    meshes.push_back(p->mesh);
+    plain_meshes.push_back(p->mesh.get());
+  }
+  FclNarrowPhase narrow(*held->mesh, plain_meshes);
+  check_start(*held, fixed, narrow);
+  radius_ = radius_about(*held->mesh, center_);
+  clearance_ = start_clearance(*held, fixed, narrow);
+  if (settings_.narrowphase == "fcl")
+    check_ = std::make_unique<FclMotionCheck>(*held->mesh, center_, radius_, plain_meshes, poses, settings_.l_0);
+  else
+    check_ = std::make_unique<PatchMotionCheck>(held->mesh, center_, radius_, meshes, poses);
+  contacts_ = std::make_unique<ContactSet>(std::make_shared<Surface>(held->mesh), std::move(fixed_surfaces), center_,
+                                           kMostLimits);
+  piece_cap_ = check_->longest_motion();
+  reach_ = settings_.l_min + 2 * kReachShare * radius_;
+  trust_ = piece_cap_;
+  most_keep_ = keep_ = kKeepShare * settings_.l_min;
+  least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
+  X_ = last_Y_ = held->pose;
+  blocking_.reserve(kMostBlocking);
+}
+
+void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
+  const Pose X_before = X_;
+  report.pieces.clear();
+  report.resolves = report.iterations = 0;
+  report.status = ResolveStatus::not_needed;
+  report.cut = false;
+  deadline_ns_ = std::isfinite(settings_.tick_budget)
+                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
+                     : std::numeric_limits<std::int64_t>::max();
+  const double wanted = size(displacement(X_, Y, center_));
+  const double pen = size(displacement(last_Y_, Y, center_));
+  last_Y_ = Y;
+  still_ticks_ = pen < kRest ? still_ticks_ + 1 : 0;
+  // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
+  const double travel = std::max(piece_cap_, kCatchUp * pen);
+  spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
+  report.candidate_parts = static_cast<int>(near_.size());
+  bool held_back = false;
+  if (near_.empty()) {
+    X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
+    if (wanted <= travel) X_ = Y;
+    report.pieces.push_back(X_);
+    contacts_->track(X_, 0);
+    tracked_ = false;
+  } else {
+    check_->begin(near_, deadline_ns_);
+    track();
+    adapt_keep();
+    trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    double made = 0;
+    for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
+      const double cap = std::min({trust_, piece_cap_, travel - made});
+      const double length = move_piece(Y, cap, report);
+      if (length > 0) report.pieces.push_back(X_);
+      held_back = length == 0 && !contacts_->limits().empty();
+      // A piece shorter than it could be is the resolver's own end.
+      if (length < kFullShare * cap) break;
+      made += length;
+    }
+    if (report.pieces.empty()) report.pieces.push_back(X_);
+    track();
+  }
+  gather(report);
+  const double left = size(displacement(X_, Y, center_));
+  // A part that limits hold back a little above their gap is felt like one that rests on them.
+  report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
+  report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
+  report.proxy.X = X_;
+  const Displacement moved = displacement(X_before, X_, center_);
+  report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
+}
+
+bool ContactLoop::late() const {
+  return deadline_ns_ != std::numeric_limits<std::int64_t>::max() && monotonic_ns() >= deadline_ns_;
+}
+
+void ContactLoop::track() {
+  if (!tracked_) contacts_->track(X_, reach_);
+  tracked_ = true;
+}
+
+void ContactLoop::adapt_keep() {
+  // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
+  // when a motion exists that leaves twice as much everywhere.
+  const auto& limits = contacts_->limits();
+  if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
+  metric_.set_orientation(X_.q);
+  rows_.clear();
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    rows_.push_row(metric_.row(limits[i]));
+    bounds_[i] = 2 * keep_ - limits[i].gap;
+  }
+  const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
+  keep_ = std::clamp(room ? kKeepGrowth * keep_ : 0.5 * keep_, least_keep_, most_keep_);
+}
+
+double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+  metric_.set_orientation(X_.q);
+  track();
+  const Displacement error = displacement(X_, Y, center_);
+  const Vec6 wanted = metric_.whiten(error);
+  Trial trial;
+  bool found = false;
+  for (int i = 0; i < kMostResolves && !found; ++i) {
+    if (!resolve(wanted, cap, report, trial)) return 0;
+    if (size(trial.d) < kRest) {
+      if (!resolver_->projects()) trust_ *= 0.5;
+      return 0;
+    }
+    found = is_free(trial, report);
+    if (found) break;
+    if (late()) return 0;
+    if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_)) == 0 &&
+        contacts_->cut(blocking_, trial.d) == 0)
+      break;
+  }
+  if (!found) {
+    trust_ = 0.5 * std::min(trust_, size(trial.d));
+    if (!shorten(trial, report)) return 0;
+  }
+  if (!worth_it(wanted, trial, Y)) return 0;
+  X_ = trial.X;
+  tracked_ = false;
+  // Parts that started nearer than the floor keep it once they have come apart.
+  if (clearance_ < kGapFloor && check_->check(X_, Displacement{}, kGapFloor, blocking_) == MotionAnswer::free)
+    clearance_ = kGapFloor;
+  return size(trial.d);
+}
+
+bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
+  Vec6 motion = wanted;
+  if (!contacts_->limits().empty()) {
+    if (!solve(wanted, report, motion)) return false;
+    const double far = size(metric_.unwhiten(wanted));
+    // Of a shorter way a programme that does not project may take a part where of the whole it takes nothing.
+    if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
+        !solve((cap / far) * wanted, report, motion))
+      return false;
+  }
+  trial.d = metric_.unwhiten(motion);
+  const double length = size(trial.d);
+  if (length > cap) {
+    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
+    // would leave nearly nothing of their recovery.
+    const Vec6 scaled = (cap / length) * motion;
+    motion = scaled;
+    if (!contacts_->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    trial.d = metric_.unwhiten(motion);
+  }
+  trial.X = displaced(X_, center_, trial.d);
+  return true;
+}
+
+bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
+  const auto& limits = contacts_->limits();
+  rows_.clear();
+  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
+  // an answer, because standing still is one.
+  for (const double recovery : {kRecovery * keep_, 0.0}) {
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double gap = limits[i].gap;
+      const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
+      bounds_[i] = std::min(keep_, gap + lost) - gap;
+    }
+    const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
+    ++report.resolves;
+    report.iterations += r.iterations;
+    report.status = r.status;
+    motion = r.motion;
+    if (r.status == ResolveStatus::solved) return true;
+  }
+  return false;
+}
+
+bool ContactLoop::is_free(const Trial& trial, TickReport& report) {
+  blocking_.clear();
+  const MotionAnswer answer = check_->check(X_, trial.d, clearance_, blocking_);
+  report.cut |= answer == MotionAnswer::unknown;
+  return answer == MotionAnswer::free;
+}
+
+bool ContactLoop::shorten(Trial& trial, TickReport& report) {
+  for (int i = 0; i < kMostHalvings && !late(); ++i) {
+    trial.d = 0.5 * trial.d;
+    trial.X = displaced(X_, center_, trial.d);
+    if (is_free(trial, report)) return true;
+  }
+  return false;
+}
+
+bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y) {
+  // The programme sees flat limits. Where they curve, the error that it promises to take away does not all go, or even
+  // grows: near the end of the way such steps would swing to and fro for ever.
+  const Vec6 step = metric_.whiten(trial.d);
+  const double promised = error.squaredNorm() - (error - step).squaredNorm();
+  if (promised <= 0) return true;  // a step that only opens gaps
+  const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
+  if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
+  if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
+  return made > kStiction * std::min(still_ticks_, kMostStillTicks) * error.squaredNorm();
+}
+
+void ContactLoop::gather(TickReport& report) const {
+  report.contacts = 0;
+  report.gap = std::numeric_limits<double>::infinity();
+  for (const Contact& c : contacts_->limits()) {
+    report.contacts += c.gap <= keep_ / kKeepShare ? 1 : 0;
+    report.gap = std::min(report.gap, c.gap);
+  }
+  report.limits = static_cast<int>(contacts_->limits().size());
+  report.overflow = contacts_->overflow() > 0 || check_->overflow();
+  report.cut |= late();
+}
+
+}  // namespace tegotae

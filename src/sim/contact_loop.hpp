@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "broadphase/bounding_spheres.hpp"
+#include "contact/contact_set.hpp"
+#include "narrowphase/motion_check.hpp"
+#include "resolve/metric.hpp"
+#include "resolve/resolver.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+
+namespace tegotae {
+
+/// One tick of the contact loop (design: broad phase, intersection, back-off, tracking, contacts, resolver, free
+/// check), over a scene whose parts were checked to be free at the start.
+class ContactLoop {
+ public:
+  ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
+
+  /// See HapticLoop::step.
+  void step(const Pose& Y, double dt, TickReport& report);
+  const Pose& pose() const { return X_; }
+
+ private:
+  /// A displacement together with the pose it leads to.
+  struct Trial {
+    Displacement d;
+    Pose X;
+  };
+
+  /// Moves X towards Y by one free piece no longer than `cap`; returns its length (m), 0 at rest or when blocked.
+  double move_piece(const Pose& Y, double cap, TickReport& report);
+  /// The trial of at most `cap` that the limits allow; false when there is none.
+  bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
+  /// One programme over the limits: an allowed `motion` for `wanted`.
+  bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
+  bool is_free(const Trial& trial, TickReport& report);
+  bool shorten(Trial& trial, TickReport& report);
+  /// Whether the trial brings X nearer to Y; adapts the trust region.
+  bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
+  bool late() const;
+  /// Fits the gap that contacts keep to the room that the part has.
+  void adapt_keep();
+  void track();
+  void gather(TickReport& report) const;
+  /// Bound on how far `d` carries any point of the held part (m).
+  double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
+
+  ContactSettings settings_;
+  Vec3 center_;
+  double radius_;     ///< of the held part about its center of mass
+  double piece_cap_;  ///< longest piece near other parts, m
+  double reach_;      ///< pairs farther apart are not followed, m
+  BoundingSpheres spheres_;
+  std::unique_ptr<MotionCheck> check_;
+  std::unique_ptr<ContactSet> contacts_;
+  Metric metric_;
+  std::unique_ptr<Resolver> resolver_;
+  LowRankMatrix rows_;
+  std::vector<double> bounds_;
+  std::vector<std::uint32_t> near_;
+  std::vector<FacePair> blocking_;
+  Pose X_;
+  Pose last_Y_;
+  double trust_;
+  int still_ticks_ = 0;  ///< since the pen last moved
+  double keep_;          ///< gap that contacts keep, m, between the next two
+  double least_keep_, most_keep_;
+  int ticks_ = 0;
+  double clearance_;      ///< gap that a motion must leave, m
+  bool tracked_ = false;  ///< the contacts are those of X_
+  std::int64_t deadline_ns_ = 0;
+};
+
+/// Names that ContactSettings::narrowphase knows.
+const std::vector<std::string>& narrowphase_names();
+
+}  // namespace tegotae

@@ -1,0 +1,141 @@
+#include "sim/toml_table.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+
+namespace {
+
+const toml::table kEmptyTable;
+
+std::string at(const std::string& file, const toml::source_region& where) {
+  return where.begin ? file + ":" + std::to_string(where.begin.line) : file;
+}
+
+std::string type_name(const toml::node& node) {
+  std::ostringstream s;
+  s << node.type();
+  return s.str();
+}
+
+double as_double(const toml::node& node) {
+  return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+}
+
+std::string shown(double value) {
+  std::ostringstream s;
+  s << value;
+  return s.str();
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw Error(path + ": no such file");
+  if (!std::filesystem::is_regular_file(path)) throw Error(path + ": not a file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(path + ": cannot be read (" + std::strerror(errno) + ")");
+  try {
+    return toml::parse(in, path);
+  } catch (const toml::parse_error& e) {
+    throw Error(at(path, e.source()) + ": not valid TOML: " + std::string(e.description()));
+  }
+}
+
+TomlTable::TomlTable(const toml::table& table, const std::string& file, const std::string& name,
+                     std::initializer_list<const char*> known)
+    : table_(table), file_(file), name_(name) {
+  for (const auto& [key, node] : table_) {
+    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    std::string list;
+    for (const char* k : known) list += (list.empty() ? "" : ", ") + std::string(k);
+    fail(std::string(key.str()), "unknown key (known here: " + list + ")");
+  }
+}
+
+void TomlTable::fail(const std::string& key, const std::string& reason) const {
+  const auto it = table_.find(key);
+  const toml::source_region& where = it == table_.end() ? table_.source() : it->first.source();
+  throw Error(at(file_, where) + ": " + (name_.empty() ? "" : name_ + ".") + key + ": " + reason);
+}
+
+std::string TomlTable::text(const char* key) const {
+  if (!has(key)) fail(key, "missing");
+  return text(key, "");
+}
+
+std::string TomlTable::text(const char* key, const std::string& fallback) const {
+  const toml::node* node = table_.get(key);
+  if (!node) return fallback;
+  if (!node->is_string()) fail(key, "must be a string, not " + type_name(*node));
+  const std::string value = node->as_string()->get();
+  if (value.empty()) fail(key, "must not be empty");
+  return value;
+}
+
+bool TomlTable::flag(const char* key, bool fallback) const {
+  const toml::node* node = table_.get(key);
+  if (!node) return fallback;
+  if (!node->is_boolean()) fail(key, "must be true or false, not " + type_name(*node));
+  return node->as_boolean()->get();
+}
+
+double TomlTable::number(const char* key, double fallback) const {
+  const toml::node* node = table_.get(key);
+  if (!node) return fallback;
+  if (!node->is_number()) fail(key, "must be a number, not " + type_name(*node));
+  const double value = as_double(*node);
+  if (!std::isfinite(value)) fail(key, "must be finite");
+  return value;
+}
+
+double TomlTable::positive(const char* key, double fallback) const {
+  const double value = number(key, fallback);
+  if (has(key) && !(value > 0)) fail(key, "must be greater than zero (it is " + shown(value) + ")");
+  return value;
+}
+
+double TomlTable::at_least_zero(const char* key, double fallback) const {
+  const double value = number(key, fallback);
+  if (value < 0) fail(key, "must not be negative (it is " + shown(value) + ")");
+  return value;
+}
+
+std::vector<double> TomlTable::numbers(const char* key, std::size_t count) const {
+  const toml::node* node = table_.get(key);
+  const toml::array* array = node ? node->as_array() : nullptr;
+  if (!array || array->size() != count) fail(key, "must be a list of " + std::to_string(count) + " numbers");
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    if (!element.is_number()) fail(key, "must be a list of numbers; one is " + type_name(element));
+    values.push_back(as_double(element));
+    if (!std::isfinite(values.back())) fail(key, "must be finite");
+  }
+  return values;
+}
+
+TomlTable TomlTable::table(const char* key, std::initializer_list<const char*> known) const {
+  const toml::node* node = table_.get(key);
+  if (node && !node->is_table()) fail(key, "must be a table, not " + type_name(*node));
+  return TomlTable(node ? *node->as_table() : kEmptyTable, file_, name_.empty() ? key : name_ + "." + key, known);
+}
+
+std::vector<TomlTable> TomlTable::tables(const char* key, std::initializer_list<const char*> known) const {
+  std::vector<TomlTable> all;
+  const toml::node* node = table_.get(key);
+  if (!node) return all;
+  if (!node->is_array_of_tables()) fail(key, std::string("must be written [[") + key + "]]");
+  for (const toml::node& element : *node->as_array())
+    all.emplace_back(*element.as_table(), file_, name_.empty() ? key : name_ + "." + key, known);
+  return all;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,135 @@
+// Every bad input is one line on stderr that names it, exit code 2, and no crash.
+#include <algorithm>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+
+using namespace tegotae::test;
+
+namespace {
+
+void check_refused(const Output& o, const std::vector<std::string>& named) {
+  INFO("stdout: " << o.out);
+  INFO("stderr: " << o.err);
+  CHECK(o.code == 2);
+  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+  for (const std::string& text : named) {
+    INFO("named: " << text);
+    CHECK(o.err.find(text) != std::string::npos);
+  }
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("meshes that cannot be used are refused", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  folder.write("empty.obj", "");
+  folder.write("empty.stl", "");
+  folder.write("no_triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  folder.write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  folder.write("range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+  folder.write("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("huge.obj", "v 0 0 1e30\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("part.step",
+               "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
+  folder.write("text.obj", "this is no mesh\n");
+  folder.write("truncated.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n");
+  // A binary STL that announces 12 triangles and has one.
+  std::string stl(80, ' ');
+  stl += std::string("\x0c\0\0\0", 4) + std::string(50, '\0');
+  folder.write("truncated.stl", stl);
+  for (const std::string mesh : {"missing.obj", "empty.obj", "empty.stl", "no_triangles.obj", "range.obj", "range.off",
+                                 "nan.obj", "huge.obj", "part.step", "text.obj", "truncated.ply", "truncated.stl"}) {
+    INFO(mesh);
+    check_refused(run_program("tegotae", "check " + (folder / mesh)), {mesh});
+    folder.write("bad.toml", replaced(read_text(folder / "scene.toml"), "tet.obj", mesh));
+    check_refused(run_program("tegotae", "run --fast " + (folder / "bad.toml")), {"bad.toml:4: part.mesh: ", mesh});
+  }
+}
+
+TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  folder.write("bad.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.02,1,0,0,0\n1,0,0,oops,1,0,0,0\n");
+  folder.write("back.csv", "t,px,py,pz,qw,qx,qy,qz\n1,0,0,0.02,1,0,0,0\n0,0,0,0.02,1,0,0,0\n");
+  folder.write("zero.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.02,0,0,0,0\n");
+  folder.write("header.csv", "time,x\n0,0\n");
+  folder.write("no_rows.csv", "t,px,py,pz,qw,qx,qy,qz\n");
+  const std::string good = read_text(folder / "scene.toml");
+  struct Case {
+    std::string scene;
+    std::vector<std::string> named;
+  };
+  const Case cases[] = {
+      {good + "[contact]\nlmin = 1\n", {"bad.toml:13: contact.lmin: "}},
+      {good + "[contact]\nl_min = \"small\"\n", {"bad.toml:13: contact.l_min: "}},
+      {good + "[coupling]\nstiffness = -1\n", {"bad.toml:13: coupling.stiffness: "}},
+      {good + "[contact]\nresolver = \"magic\"\n", {"bad.toml:13: contact.resolver: ", "magic"}},
+      {good + "[contact\n", {"bad.toml:12: not valid TOML"}},
+      {replaced(good, "held = true", "held = false"), {"bad.toml:2: part: no part is held"}},
+      {replaced(good, "\"block\"", "\"block\"\nheld = true"), {"bad.toml:", "part.held: "}},
+      {good + "type = \"pen\"\n", {"bad.toml:12: device.type: ", "pen"}},
+      {replaced(good, "path.csv", "none.csv"), {"bad.toml:11: device.script: ", "none.csv"}},
+      {replaced(good, "path.csv", "bad.csv"), {"bad.toml:11: device.script: ", "bad.csv:3"}},
+      {replaced(good, "path.csv", "back.csv"), {"bad.toml:11: device.script: ", "back.csv:3"}},
+      {replaced(good, "path.csv", "zero.csv"), {"bad.toml:11: device.script: ", "zero.csv:2"}},
+      {replaced(good, "path.csv", "header.csv"), {"bad.toml:11: device.script: ", "header.csv:1"}},
+      {replaced(good, "path.csv", "no_rows.csv"), {"bad.toml:11: device.script: ", "no_rows.csv"}},
+      // The two parts in one place: all faces of the one meet those of the other.
+      {replaced(good, "[0, 0, 0.02]", "[0.001, 0.001, 0.001]"),
+       {"bad.toml: ", "block", "peg", "intersect", "triangle pairs"}},
+  };
+  for (const Case& c : cases) {
+    INFO(c.scene);
+    folder.write("bad.toml", c.scene);
+    check_refused(run_program("tegotae", "run --fast " + (folder / "bad.toml")), c.named);
+    check_refused(run_program("tegotae", "check " + (folder / "bad.toml")), c.named);
+  }
+  check_refused(run_program("tegotae", "run --fast " + (folder / "none.toml")), {"none.toml: no such file"});
+}
+
+TEST_CASE("bad usage is refused", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const std::string scene = folder / "scene.toml";
+  check_refused(run_program("tegotae", ""), {"--help"});
+  check_refused(run_program("tegotae", "dance"), {"--help"});
+  check_refused(run_program("tegotae", "run"), {"SCENE"});
+  check_refused(run_program("tegotae", "check"), {"FILE"});
+  check_refused(run_program("tegotae", "run --frobnicate " + scene), {"frobnicate"});
+  check_refused(run_program("tegotae", "run --seconds -1 " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --seconds nan " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --seconds 1e300 " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --seconds soon " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --fast --resolver magic " + scene), {"magic"});
+  check_refused(run_program("tegotae", "run --fast --record " + (folder / "none/rec.csv") + " " + scene),
+                {"none/rec.csv"});
+  check_refused(run_program("tegotae", "run --fast --record " + (folder / "") + " " + scene), {});
+  check_refused(run_program("peg_in_hole", "--ratio 1.2"), {"--ratio"});
+  check_refused(run_program("peg_in_hole", "--ratio 0"), {"--ratio"});
+  check_refused(run_program("peg_in_hole", "--ratio nan"), {"--ratio"});
+  check_refused(run_program("peg_in_hole", "--fast --resolver magic"), {"magic"});
+  check_refused(run_program("peg_in_hole", "--fast --record " + (folder / "none/rec.csv")), {"none/rec.csv"});
+  check_refused(run_program("peg_in_hole", "extra"), {"extra"});
+}
+
+TEST_CASE("help and version are no errors", "[bad_input]") {
+  for (const std::string program : {"tegotae", "peg_in_hole"}) {
+    for (const std::string flag : {"--help", "--version"}) {
+      const Output o = run_program(program, flag);
+      CHECK(o.code == 0);
+      CHECK(o.err == "");
+      CHECK(o.out != "");
+    }
+  }
+  CHECK(run_program("tegotae", "run --help").out.find("--resolver") != std::string::npos);
+}

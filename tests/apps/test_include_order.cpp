@@ -1,0 +1,115 @@
+// The folders include each other only leftwards, and each outside library has one door (docs/architecture.md).
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "catch.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Parts of one rank know the parts of lower ranks only.
+const std::map<std::string, int> kRank = {{"core", 0},    {"mesh", 1},       {"lp", 1},          {"device", 1},
+                                          {"record", 1},  {"broadphase", 2}, {"narrowphase", 3}, {"feature", 4},
+                                          {"contact", 5}, {"resolve", 6},    {"coupling", 7},    {"servo", 8},
+                                          {"sim", 9}};
+
+std::string included(const std::string& line) {
+  static const std::regex pattern(R"(^\s*#\s*include\s*["<]([^">]+)[">].*)");
+  std::smatch m;
+  return std::regex_match(line, m, pattern) ? m[1].str() : "";
+}
+
+// Part that the include path names ("" for what is not the project's).
+std::string part_of(std::string path) {
+  const std::string prefix = "tegotae/";
+  if (path.rfind(prefix, 0) == 0) path = path.substr(prefix.size());
+  const std::string first = path.substr(0, path.find('/'));
+  return kRank.count(first) ? first : "";
+}
+
+bool starts_with(const std::string& s, const std::string& prefix) {
+  return s.rfind(prefix, 0) == 0;
+}
+
+// What is wrong with `line` in the file `file` (relative to the project, with /); empty when nothing is.
+std::string violation(const std::string& file, const std::string& line) {
+  static const std::regex in_part(R"((?:src|include/tegotae)/(\w+)/.*)");
+  const std::string inc = included(line);
+  std::smatch m;
+  if (std::regex_match(file, m, in_part)) {
+    const std::string self = m[1], other = part_of(inc);
+    if (!kRank.count(self)) return "folder " + self + " has no place in the order";
+    if (!other.empty() && other != self && kRank.at(other) >= kRank.at(self)) return self + " may not include " + other;
+  }
+  const bool test = starts_with(file, "tests/");
+  if (!test && (starts_with(inc, "fcl/") || starts_with(inc, "ccd/")) && !starts_with(file, "src/narrowphase/"))
+    return "FCL and libccd belong to src/narrowphase";
+  if (!test && starts_with(inc, "assimp/") && !starts_with(file, "src/mesh/load"))
+    return "assimp belongs to src/mesh/load*";
+  if (starts_with(file, "include/") && starts_with(inc, "toml++")) return "toml++ is private";
+  return "";
+}
+
+std::vector<std::pair<std::string, std::string>> project_lines() {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const fs::path root = fs::path(TEGOTAE_TEST_DATA_DIR).parent_path();
+  for (const char* folder : {"include", "src", "apps"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string ext = entry.path().extension().string();
+      if (ext != ".hpp" && ext != ".cpp" && ext != ".h" && ext != ".c") continue;
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);)
+        lines.emplace_back(fs::relative(entry.path(), root).generic_string(), line);
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("the check sees an arrow to the right", "[include]") {
+  CHECK(violation("src/mesh/a.cpp", "#include \"tegotae/sim/scene.hpp\"") == "mesh may not include sim");
+  CHECK(violation("src/mesh/a.cpp", "#  include <lp/simplex.hpp>") == "mesh may not include lp");
+  CHECK(violation("include/tegotae/core/a.hpp", "#include \"tegotae/mesh/load.hpp\"") == "core may not include mesh");
+  CHECK(violation("src/sim/a.cpp", "#include <fcl/fcl.h>") == "FCL and libccd belong to src/narrowphase");
+  CHECK(violation("apps/a.cpp", "#include <assimp/scene.h>") == "assimp belongs to src/mesh/load*");
+  CHECK(violation("src/view/a.cpp", "int a;") == "folder view has no place in the order");
+  CHECK(violation("src/sim/a.cpp", "#include \"tegotae/core/pose.hpp\"").empty());
+  CHECK(violation("src/narrowphase/a.cpp", "#include <fcl/fcl.h>").empty());
+  CHECK(violation("src/mesh/a.cpp", "// see \"tegotae/sim/scene.hpp\"").empty());
+}
+
+TEST_CASE("includes go only leftwards", "[include]") {
+  const auto lines = project_lines();
+  std::set<std::string> files, shm_files;
+  std::string wrong;
+  for (const auto& [file, line] : lines) {
+    files.insert(file);
+    if (line.find("shm_open(") != std::string::npos) shm_files.insert(file);
+    const std::string v = violation(file, line);
+    if (!v.empty()) wrong += file + ": " + v + "\n";
+  }
+  CHECK(files.size() > 10);
+  CHECK(wrong == "");
+  CHECK(shm_files.size() <= 1);
+  for (const std::string& file : shm_files) CHECK(starts_with(file, "src/device/"));
+}
+
+TEST_CASE("the README's code is the example that is built", "[include]") {
+  const fs::path root = fs::path(TEGOTAE_TEST_DATA_DIR).parent_path();
+  const auto text = [](const fs::path& path) {
+    std::ifstream in(path);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string example = text(root / "apps/examples/first_touch.cpp");
+  REQUIRE(!example.empty());
+  CHECK(text(root / "README.md").find("```cpp\n" + example + "```\n") != std::string::npos);
+}

@@ -1,0 +1,83 @@
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "resolve/metric.hpp"
+#include "resolve/resolver.hpp"
+#include "tegotae/core/error.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+MassProperties random_mass(std::mt19937& rng) {
+  MassProperties m;
+  m.mass = 0.3;
+  const Mat3 U = rotation(3 * random_direction(rng)).toRotationMatrix();
+  m.inertia = U * (Vec3(2e-4, 3e-4, 4e-4) + random_vector(rng, 1e-4)).asDiagonal() * U.transpose();
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("whitened coordinates are the mass metric, and rows keep their meaning in them", "[resolve]") {
+  std::mt19937 rng(51);
+  for (int i = 0; i < 200; ++i) {
+    const MassProperties mass = random_mass(rng);
+    Metric metric(mass);
+    const Quat q = rotation(3 * random_direction(rng));
+    metric.set_orientation(q);
+    const Displacement d{random_vector(rng, 1e-3), random_vector(rng, 1e-2)};
+    const Mat3 I_W = q.toRotationMatrix() * mass.inertia * q.toRotationMatrix().transpose();
+    const double expected = d.dp.squaredNorm() + d.dr.dot(I_W * d.dr) / mass.mass;
+    REQUIRE(metric.whiten(d).squaredNorm() == Approx(expected).epsilon(1e-10));
+    const Displacement back = metric.unwhiten(metric.whiten(d));
+    REQUIRE((back.dp - d.dp).norm() < 1e-15);
+    REQUIRE((back.dr - d.dr).norm() < 1e-14);
+    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, 0, 0};
+    REQUIRE(metric.row(c).dot(metric.whiten(d)) == Approx(c.n.dot(d.dp + d.dr.cross(c.r))).margin(1e-15));
+  }
+}
+
+TEST_CASE("a resolved motion keeps every limit and never goes away from the target", "[resolve]") {
+  const std::string name = GENERATE("lp", "qp");
+  CAPTURE(name);
+  std::mt19937 rng(52);
+  const auto resolver = make_resolver(name, 64);
+  Metric metric(random_mass(rng));
+  metric.set_orientation(Quat::Identity());
+  for (int i = 0; i < 500; ++i) {
+    LowRankMatrix rows(64);
+    std::vector<double> bounds;
+    const int n = 1 + static_cast<int>(rng() % 60);
+    for (int k = 0; k < n; ++k) {
+      rows.push_row(metric.row({random_direction(rng), random_vector(rng, 0.03), 0, 0, 0}));
+      bounds.push_back(-1e-4 * static_cast<double>(rng() % 100) / 100);  // standing still is allowed
+    }
+    const Vec6 wanted = metric.whiten({random_vector(rng, 1e-3), random_vector(rng, 2e-2)});
+    const Resolution r = resolver->resolve(rows, bounds.data(), wanted);
+    REQUIRE(r.status == ResolveStatus::solved);
+    for (int k = 0; k < n; ++k) REQUIRE(rows.row(k).dot(r.motion) >= bounds[k] - 1e-12);
+    REQUIRE((wanted - r.motion).norm() <= wanted.norm() * (1 + 1e-12));
+    // Half or twice the motion is no better when nothing but its own length is free (line search, projection).
+    if (name == "lp") REQUIRE((wanted - r.motion).norm() <= (wanted - 0.9 * r.motion).norm() + 1e-15);
+  }
+}
+
+TEST_CASE("limits that contradict each other are reported, and nothing moves", "[resolve]") {
+  const std::string name = GENERATE("lp", "qp");
+  const auto resolver = make_resolver(name, 8);
+  LowRankMatrix rows(8);
+  Vec6 up = Vec6::Zero();
+  up[2] = 1;
+  rows.push_row(up);
+  rows.push_row(-up);
+  const double bounds[] = {1e-6, 1e-6};
+  const Resolution r = resolver->resolve(rows, bounds, Vec6::Ones());
+  REQUIRE(r.status == ResolveStatus::infeasible);
+  REQUIRE(r.motion.isZero());
+}
+
+TEST_CASE("an unknown resolver is an error that names it", "[resolve]") {
+  REQUIRE_THROWS_AS(make_resolver("magic", 8), Error);
+  for (const std::string& name : resolver_names()) REQUIRE(make_resolver(name, 8) != nullptr);
+}

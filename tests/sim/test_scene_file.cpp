@@ -1,0 +1,247 @@
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "catch.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+using namespace tegotae;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder of its own with a mesh, a script, and scene.toml; gone with the object.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("tegotae_scene_file_" + std::to_string(::getpid()))) {
+    fs::create_directories(path_ / "meshes");
+    write("tet.obj", kTetrahedron);
+    write("meshes/other.obj", kTetrahedron);
+    write("insert.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.1,1,0,0,0\n2,0,0,0.05,1,0,0,0\n");
+  }
+  ~Folder() { fs::remove_all(path_); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  SceneFile load(const std::string& scene) const {
+    write("scene.toml", scene);
+    return load_scene(scene_path());
+  }
+  // The error that the scene gives, without the folder in front; "" when there is none.
+  std::string error(const std::string& scene) const {
+    try {
+      load(scene);
+    } catch (const Error& e) {
+      std::string text = e.what();
+      const std::string prefix = path_.string() + "/";
+      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) text.erase(at, prefix.size());
+      return text;
+    }
+    return "";
+  }
+  std::string scene_path() const { return (path_ / "scene.toml").string(); }
+
+ private:
+  static constexpr const char* kTetrahedron =
+      "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  fs::path path_;
+};
+
+// Lines 1 to 9; what a test adds starts at line 10.
+const std::string kParts = R"(unit = "mm"
+[[part]]
+name = "block"
+mesh = "tet.obj"
+[[part]]
+name = "peg"
+mesh = "tet.obj"
+held = true
+position = [0, 0, 0.1]
+)";
+const std::string kDevice = "[device]\nscript = \"insert.csv\"\n";
+
+bool starts_with(const std::string& text, const std::string& prefix) {
+  return text.rfind(prefix, 0) == 0;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("a scene of parts and a script loads with every default", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(kParts + kDevice);
+  REQUIRE(file.scene.parts.size() == 2);
+  const Part &block = file.scene.parts[0], &peg = file.scene.parts[1];
+  CHECK(block.name == "block");
+  CHECK_FALSE(block.held);
+  CHECK(peg.held);
+  CHECK(peg.pose.p == Vec3(0, 0, 0.1));
+  CHECK(peg.pose.q.coeffs() == Quat::Identity().coeffs());
+  CHECK(peg.mesh == block.mesh);  // one file, one unit: one mesh in memory
+  CHECK(peg.mesh->triangles.size() == 4);
+  CHECK(std::isnan(file.scene.contact.l_min));
+  CHECK(std::isnan(file.scene.contact.l_0));
+  CHECK(file.scene.coupling.stiffness == CouplingSettings().stiffness);
+  CHECK(file.device.hand.stiffness == HandSettings().stiffness);
+  CHECK(file.script.end() == 2);
+  CHECK(file.script.pose(1).p.z() == Approx(0.075));
+}
+
+TEST_CASE("every key of a scene file arrives", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(R"(
+[[part]]
+name = "a"
+mesh = "tet.obj"
+unit = "cm"
+orientation = [2, 0, 0, 2]
+[[part]]
+name = "b"
+mesh = "meshes/../tet.obj"
+unit = "in"
+held = true
+rpy_deg = [90, 0, 90]
+position = [1, 2.5, -3]
+[contact]
+l_min = 1e-6
+l_0 = 2e-6
+resolver = "lp"
+density = 7800
+[coupling]
+stiffness = 1
+damping = 0
+torsional_stiffness = 3
+torsional_damping = 4
+[device]
+type = "simulated"
+script = "insert.csv"
+hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_damping = 14, mass = 15, inertia = 16 }
+)");
+  const Part &a = file.scene.parts[0], &b = file.scene.parts[1];
+  CHECK(a.pose.q.w() == Approx(std::sqrt(0.5)));
+  CHECK(a.pose.q.z() == Approx(std::sqrt(0.5)));
+  // Rz(90°) Rx(90°): y goes to z by roll and stays; z goes to -y by roll and to x by yaw.
+  CHECK((b.pose.q * Vec3::UnitY() - Vec3::UnitZ()).norm() < 1e-15);
+  CHECK((b.pose.q * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-15);
+  CHECK(b.pose.p == Vec3(1, 2.5, -3));
+  double a_max = 0, b_max = 0;
+  for (const Vec3& v : a.mesh->vertices) a_max = std::max(a_max, v.maxCoeff());
+  for (const Vec3& v : b.mesh->vertices) b_max = std::max(b_max, v.maxCoeff());
+  CHECK(a_max == Approx(0.1));
+  CHECK(b_max == Approx(0.254));
+  const ContactSettings& contact = file.scene.contact;
+  CHECK(contact.l_min == 1e-6);
+  CHECK(contact.l_0 == 2e-6);
+  CHECK(contact.resolver == "lp");
+  CHECK(contact.density == 7800);
+  const CouplingSettings& coupling = file.scene.coupling;
+  CHECK(coupling.stiffness == 1);
+  CHECK(coupling.damping == 0);
+  CHECK(coupling.torsional_stiffness == 3);
+  CHECK(coupling.torsional_damping == 4);
+  const HandSettings& hand = file.device.hand;
+  CHECK(hand.stiffness == 11);
+  CHECK(hand.damping == 12);
+  CHECK(hand.torsional_stiffness == 13);
+  CHECK(hand.torsional_damping == 14);
+  CHECK(hand.mass == 15);
+  CHECK(hand.inertia == 16);
+}
+
+TEST_CASE("roll, pitch and yaw turn about the fixed axes in this order", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(replaced(kParts, "position", "rpy_deg = [20, -35, 110]\nposition") + kDevice);
+  const double r = 20 * M_PI / 180, p = -35 * M_PI / 180, y = 110 * M_PI / 180;
+  Mat3 expected;  // the closed form of Rz(y) Ry(p) Rx(r)
+  expected << std::cos(y) * std::cos(p), std::cos(y) * std::sin(p) * std::sin(r) - std::sin(y) * std::cos(r),
+      std::cos(y) * std::sin(p) * std::cos(r) + std::sin(y) * std::sin(r), std::sin(y) * std::cos(p),
+      std::sin(y) * std::sin(p) * std::sin(r) + std::cos(y) * std::cos(r),
+      std::sin(y) * std::sin(p) * std::cos(r) - std::cos(y) * std::sin(r), -std::sin(p), std::cos(p) * std::sin(r),
+      std::cos(p) * std::cos(r);
+  CHECK((file.scene.parts[1].pose.q.toRotationMatrix() - expected).norm() < 1e-14);
+}
+
+TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
+  const Folder folder;
+  folder.write("empty.obj", "");
+  folder.write("bad.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,zero,1,0,0,0\n");
+  struct Case {
+    std::string scene;
+    std::string error;  // how the message starts
+  };
+  const std::string good = kParts + kDevice;
+  REQUIRE(folder.error(good) == "");
+  const Case cases[] = {
+      {"unit = mm\n", "scene.toml:1: not valid TOML"},
+      {good + "[contact]\nl_min = 1\nl_min = 2\n", "scene.toml:14: not valid TOML"},
+      // Unknown keys, at every level.
+      {"units = 1\n" + good, "scene.toml:1: units: unknown key"},
+      {good + "[contacts]\n", "scene.toml:12: contacts: unknown key"},
+      {replaced(good, "held = true", "hold = true"), "scene.toml:8: part.hold: unknown key"},
+      {good + "[contact]\nlmin = 1\n", "scene.toml:13: contact.lmin: unknown key"},
+      {good + "[coupling]\n\nk = 1\n", "scene.toml:14: coupling.k: unknown key"},
+      {good + "port = 1\n", "scene.toml:12: device.port: unknown key"},
+      {good + "hand = { k = 1 }\n", "scene.toml:12: device.hand.k: unknown key"},
+      // Wrong types.
+      {replaced(good, "\"mm\"", "1"), "scene.toml:1: unit: must be a string"},
+      {replaced(good, "\"block\"", "7"), "scene.toml:3: part.name: must be a string"},
+      {replaced(good, "held = true", "held = 1"), "scene.toml:8: part.held: must be true or false"},
+      {replaced(good, "[0, 0, 0.1]", "[0, 0]"), "scene.toml:9: part.position: must be a list of 3 numbers"},
+      {replaced(good, "[0, 0, 0.1]", "[0, 0, \"1\"]"), "scene.toml:9: part.position: must be a list of numbers"},
+      {replaced(good, "[0, 0, 0.1]", "0.1"), "scene.toml:9: part.position: must be a list of 3 numbers"},
+      {"contact = 1\n" + good, "scene.toml:1: contact: must be a table"},
+      {"part = 1\n" + kDevice, "scene.toml:1: part: must be written [[part]]"},
+      {good + "[contact]\nl_min = true\n", "scene.toml:13: contact.l_min: must be a number"},
+      {good + "hand = 3\n", "scene.toml:12: device.hand: must be a table"},
+      // Impossible values.
+      {replaced(good, "\"mm\"", "\"mile\""), "scene.toml:1: unit: "},
+      {replaced(good, "[0, 0, 0.1]", "[0, 0, nan]"), "scene.toml:9: part.position: must be finite"},
+      {replaced(good, "[0, 0, 0.1]", "[0, 0, 0]\norientation = [0, 0, 0, 0]"), "scene.toml:10: part.orientation: "},
+      {replaced(good, "[0, 0, 0.1]", "[0, 0, 0]\norientation = [1, 0, 0, 0]\nrpy_deg = [0, 0, 0]"),
+       "scene.toml:11: part.rpy_deg: "},
+      {good + "[contact]\nl_min = 0\n", "scene.toml:13: contact.l_min: must be greater than zero"},
+      {good + "[contact]\nl_0 = -1e-6\n", "scene.toml:13: contact.l_0: must be greater than zero"},
+      {good + "[contact]\ndensity = inf\n", "scene.toml:13: contact.density: must be finite"},
+      {good + "[contact]\nresolver = \"magic\"\n", "scene.toml:13: contact.resolver: "},
+      {good + "[coupling]\nstiffness = -800\n", "scene.toml:13: coupling.stiffness: must be greater than zero"},
+      {good + "[coupling]\ndamping = -1\n", "scene.toml:13: coupling.damping: must not be negative"},
+      {good + "hand = { mass = -1 }\n", "scene.toml:12: device.hand.mass: must not be negative"},
+      {good + "type = \"phantom\"\n", "scene.toml:12: device.type: unknown device type"},
+      // Parts.
+      {kDevice, "scene.toml:1: part: the scene has no [[part]]"},
+      {replaced(good, "held = true", "held = false"), "scene.toml:2: part: no part is held"},
+      {replaced(good, "\"block\"", "\"block\"\nheld = true"), "scene.toml:9: part.held: part block is held already"},
+      {replaced(good, "\"peg\"", "\"block\""), "scene.toml:6: part.name: another part is named block"},
+      {replaced(good, "name = \"block\"", ""), "scene.toml:2: part.name: missing"},
+      {replaced(good, "mesh = \"tet.obj\"", ""), "scene.toml:2: part.mesh: missing"},
+      // Files.
+      {replaced(good, "tet.obj", "none.obj"), "scene.toml:4: part.mesh: none.obj: no such file"},
+      {replaced(good, "tet.obj", "meshes"), "scene.toml:4: part.mesh: meshes: not a file"},
+      {replaced(good, "tet.obj", "empty.obj"), "scene.toml:4: part.mesh: "},
+      {kParts, "scene.toml: device.script: missing"},
+      {replaced(good, "insert.csv", "none.csv"), "scene.toml:11: device.script: none.csv: no such file"},
+      {replaced(good, "insert.csv", "bad.csv"), "scene.toml:11: device.script: bad.csv:2"},
+  };
+  for (const Case& c : cases) {
+    INFO(c.scene);
+    const std::string error = folder.error(c.scene);
+    INFO("error: " << error);
+    INFO("expected: " << c.error);
+    CHECK(starts_with(error, c.error));
+    CHECK(error.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a scene file that is not there is an error", "[scene_file]") {
+  const Folder folder;
+  CHECK_THROWS_WITH(load_scene(folder.scene_path()), folder.scene_path() + ": no such file");
+  const std::string parent = fs::path(folder.scene_path()).parent_path().string();
+  CHECK_THROWS_WITH(load_scene(parent), parent + ": not a file");
+}
