@@ -4,7 +4,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev
+# zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
+packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev zlib1g-dev
           libcli11-dev libtomlplusplus-dev nlohmann-json3-dev catch2)
 
 fail() { echo "setup: $*" >&2; exit 1; }

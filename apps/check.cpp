@@ -16,8 +16,8 @@ namespace tegotae::apps {
 namespace {
 
 void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
-  std::printf("  %zu triangles, %zu vertices, %zu component%s, %s\n", r.triangles, r.vertices, r.components,
-              r.components == 1 ? "" : "s", r.closed ? "closed" : "not closed");
+  std::printf("  %zu triangle%s, %zu vertices, %zu component%s, %s\n", r.triangles, r.triangles == 1 ? "" : "s",
+              r.vertices, r.components, r.components == 1 ? "" : "s", r.closed ? "closed" : "not closed");
   if (r.boundary_edges + r.non_manifold_edges + r.degenerate_faces + r.duplicate_faces > 0)
     std::printf("  %zu boundary edges, %zu non-manifold edges, %zu degenerate faces, %zu duplicate faces\n",
                 r.boundary_edges, r.non_manifold_edges, r.degenerate_faces, r.duplicate_faces);

@@ -29,7 +29,8 @@ std::string first_line(const std::string& text) {
 }  // namespace
 
 void add_run_options(CLI::App& app, RunOptions& options) {
-  app.add_option("--resolver", options.resolver, "Contact resolver, overrides the scene file")->type_name("NAME");
+  app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
+      ->type_name("NAME");
   app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
   app.add_option("--record", options.record, "Write every pose and wrench to a CSV file")->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");

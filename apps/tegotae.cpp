@@ -11,6 +11,10 @@
 using namespace tegotae;
 using namespace tegotae::apps;
 
+namespace {
+constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app("Haptic rendering of rigid parts that never pass through each other.", "tegotae");
   app.require_subcommand(1);
@@ -23,8 +27,8 @@ int main(int argc, char** argv) {
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
       ->check([](const std::string& text) -> std::string {
         double value = 0;  // CLI::PositiveNumber lets nan pass
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return "";
-        return "must be a positive number";
+        if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kLongestRun) return "";
+        return "must be a positive number, at most a million";
       })
       ->type_name("S");
 

@@ -79,6 +79,8 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near)
       break;
     }
     const FixedSurface& B = fixed_[t.part];
+    // A collapsed face has no features of its own; its corners and edges are those of the faces around.
+    if (held_->topology.face_edges[t.a][0] == kNone || B.surface->topology.face_edges[t.b][0] == kNone) continue;
     const Feature fa{FeatureKind::face, t.a}, fb{FeatureKind::face, t.b};
     const Pose X_BW = B.X_WB.inverse(), near_BA = X_BW * X_near;
     Simplex sa = corners(*held_, fa);

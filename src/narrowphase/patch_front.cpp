@@ -21,6 +21,8 @@ constexpr double kFloor = 1e-12;
 /// Rounding of one gap in single precision: 32 units in the last place of the largest terms (about 20 from turning the
 /// normal and the products, 7 from the sums).
 constexpr double kLaneError = 1.0 / (1 << 19);
+/// A patch faces a plane when its normal is within 26° of the plane's.
+constexpr double kFacing = 0.9;
 /// Searches between two looks at the clock.
 constexpr int kClockStride = 16;
 /// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
@@ -28,8 +30,12 @@ constexpr std::size_t kBlocksPerPair = 2;
 /// More splits than this are undone when the motion turns out to be blocked.
 constexpr std::size_t kKeepSplits = 512;
 
-/// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again.
-constexpr double kRaiseSpare = 0.02;
+/// A tick raises half as many pairs again as it split (or the front grows without end) and this many more; what it
+/// cannot raise is owed, up to a bound, and made up by as many more a tick.
+constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
+/// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
+/// motion of late counts, since a blocked part stands still between two pushes.
+constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9;
 
 float round_up(double x) {
   return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
@@ -52,7 +58,7 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
   near_.reserve(capacity.pairs);
-  places_.reserve(capacity.seeds);
+  seeds_.reserve(capacity.seeds);
 }
 
 void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {
@@ -66,7 +72,9 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   pool_used_ = 1;
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}};
+  debt_ = 0;
+  motion_ = 0;
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}, 0};
   enter(0);
 }
 
@@ -89,13 +97,14 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     }
   }
   report_.splits = static_cast<int>(splits_.size());
+  debt_ = std::min(debt_ + report_.splits + report_.splits / 2 + kRaiseAlways, kMostDebt);
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
     if (splits_.size() > kKeepSplits) roll_back();
   } else if (report_.exhausted) {
     report_.status = CertifyStatus::cut;
   }
-  if (report_.status == CertifyStatus::certified) raise(report_.splits);
+  if (report_.status == CertifyStatus::certified) raise();
   report_.pairs = pairs();
   return report_;
 }
@@ -114,6 +123,8 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   const double size = sweep_.start.t.norm() + sweep_.end.t.norm() + a_->radius() + offset_a_.norm() + b_->radius() +
                       b_->origin().norm() + center_.norm();
   sweep_.floor = std::max(kFloor * size, clearance_);
+  sweep_.start_floor = sweep_.floor - 0.5 * kFloor * size;
+  motion_ = std::max(kMotionFades * motion_, d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm());
 }
 
 LaneSweep PatchFront::lane_sweep() const {
@@ -256,7 +267,7 @@ bool PatchFront::split(std::uint32_t id) {
   parent.children = static_cast<std::uint16_t>(children);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -291,9 +302,8 @@ void PatchFront::roll_back() {
   splits_.clear();
 }
 
-void PatchFront::raise(int splits) {
-  // Half as much again as was split (or the front grows without end), and a little always.
-  const int wanted = splits + splits / 2 + 4;
+void PatchFront::raise() {
+  const int wanted = std::min(debt_, kMostRaises + report_.splits + report_.splits / 2);
   int tries = 2 * wanted;
   // Round robin over both groups, once around at most.
   for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries > 0; --looks) {
@@ -304,6 +314,7 @@ void PatchFront::raise(int splits) {
     --tries;
     if (try_raise(parent)) ++report_.merges;
   }
+  debt_ -= report_.merges;
 }
 
 bool PatchFront::all_in_front(std::uint32_t id) const {
@@ -320,7 +331,7 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
   const double reach = node_reach(a);
   // With some gap to spare, or the next motion splits it again.
-  const double spare = kRaiseSpare * (sweep_.dp.norm() + reach * std::sqrt(sweep_.theta2));
+  const double spare = kRaiseSpare * motion_;
   Vec3 n = plane(p.child);
   if (!separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) return false;
   collapse(id);
@@ -364,7 +375,7 @@ void PatchFront::leave(std::uint32_t id) {
 }
 
 void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
-  const PairNode& p = pool_[id];
+  PairNode& p = pool_[id];
   Group& g = group(p);
   Vec3 rounded;
   for (int k = 0; k < 3; ++k) {
@@ -379,6 +390,10 @@ void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
     const PatchNode& b = box_b(p, scratch);
     support = rounded.dot(b.center_vec());
     for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
+    p.thickness = std::abs(rounded.dot(b.axis_vec(2))) > kFacing ? 2 * b.half[2] : 0.0f;
+    PatchNode scratch_a;
+    const PatchNode& a = box_a(p, scratch_a);
+    if (std::abs(rounded.dot(sweep_.end.R * a.axis_vec(2))) > kFacing) p.thickness += 2 * a.half[2];
   }
   g.lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
 }

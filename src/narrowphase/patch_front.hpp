@@ -14,8 +14,8 @@ namespace tegotae {
 /// Capacities of a PatchFront. Exceeding one never makes a wrong answer: the motion is then not certified.
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
-  std::uint32_t blocking = 64;     ///< blocking triangle pairs that one call reports
-  std::uint32_t seeds = 256;       ///< seeds that one call can give
+  std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
+  std::uint32_t seeds = 512;       ///< places that one call looks at for seeds
 };
 
 /// How much one call may do.
@@ -113,6 +113,7 @@ class PatchFront {
     std::uint16_t children;       ///< 0: in the front
     bool face_a, face_b;          ///< which of a and b are faces
     std::array<float, 3> normal;  ///< last plane, kept here while split
+    float thickness;              ///< how far the surfaces may stand back behind the sides that face the plane, m
   };
   /// The pairs of the front of one kind, dense.
   struct Group {
@@ -132,11 +133,10 @@ class PatchFront {
   bool split(std::uint32_t id);
   void collapse(std::uint32_t id);
   void roll_back();
-  void raise(int splits);
+  void raise();
   bool all_in_front(std::uint32_t id) const;  ///< the children
   bool try_raise(std::uint32_t id);
   int shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const;
-  double facing_thickness(std::uint32_t id) const;
   ContactSeed seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const;
   void report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                     const TriangleBlock& block);
@@ -178,10 +178,12 @@ class PatchFront {
   };
   std::vector<std::uint32_t> failures_, stack_, splits_;
   std::vector<Near> near_;
-  std::vector<Vec3> places_;  ///< of the seeds
+  std::vector<ContactSeed> seeds_;
   std::vector<BlockingPair> blocking_;
   std::unique_ptr<float, void (*)(void*)> margins_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on
+  double motion_ = 0;         ///< longest motion of late, m
+  int debt_ = 0;              ///< pairs to raise, for those that were split
 
   Sweep sweep_;
   WorkLimit limit_;

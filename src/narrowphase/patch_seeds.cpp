@@ -11,10 +11,8 @@ namespace {
 constexpr double kPlaceSpacing = 1.0 / 32;
 /// Cosine between normals that count as alike (14°): the two walls of a groove give their own seeds.
 constexpr double kLikeNormals = 0.97;
-/// Near patches that are looked at, for each seed asked for.
-constexpr int kPatchesPerSeed = 2;
-/// A patch faces a plane when its normal is within 26° of the plane's.
-constexpr double kFacing = 0.9;
+/// Near patches and places that are looked at, for each seed asked for: the nearest of them are given.
+constexpr std::size_t kLooksPerSeed = 2;
 /// Places where the faces are farther apart than this many times the reach give no seed. More than 1: a corner of two
 /// curved patches is farther apart than their nearest points, by up to the thickness of both.
 constexpr double kSeedReach = 4;
@@ -147,7 +145,7 @@ std::uint32_t face_near(const PatchTree& tree, std::uint32_t node, const Vec3& x
 }  // namespace
 
 int PatchFront::contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, int capacity) noexcept {
-  capacity = std::min(capacity, static_cast<int>(places_.capacity()));
+  const std::size_t most = std::min(static_cast<std::size_t>(std::max(capacity, 0)) * kLooksPerSeed, seeds_.capacity());
   set_sweep(X_BA, {});
   const LaneSweep sweep = lane_sweep();
   near_.clear();
@@ -155,36 +153,35 @@ int PatchFront::contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, 
     const float* margin = margins(*g, sweep);
     for (std::uint32_t i = 0; i < g->count; ++i) {
       if (!(margin[i] < static_cast<float>(reach))) continue;
-      const double far_side = margin[i] + facing_thickness(g->owner[i]);
-      near_.push_back({static_cast<float>(far_side), g->owner[i]});
+      near_.push_back({margin[i] + pool_[g->owner[i]].thickness, g->owner[i]});
     }
   }
   auto nearer = [](const Near& a, const Near& b) {
     return a.far_side != b.far_side ? a.far_side < b.far_side : a.id < b.id;
   };
-  const std::size_t looked = std::min(near_.size(), static_cast<std::size_t>(capacity) * kPatchesPerSeed);
+  const std::size_t looked = std::min(near_.size(), most);
   std::partial_sort(near_.begin(), near_.begin() + looked, near_.end(), nearer);
   const double spacing = kPlaceSpacing * node_reach(a_->nodes()[0]), spacing2 = spacing * spacing;
-  places_.clear();
-  int count = 0;
-  for (std::size_t i = 0; i < looked && count < capacity; ++i) {
+  seeds_.clear();
+  for (std::size_t i = 0; i < looked; ++i) {
     const PairNode& p = pool_[near_[i].id];
     const Vec3 n = plane(near_[i].id);
     std::array<Vec3, 8> corners;
     const int found = shared_corners(p, n, corners);
-    for (int k = 0; k < found && count < capacity; ++k) {
-      bool taken = false;
-      for (int j = 0; j < count && !taken; ++j) {
-        taken = (places_[j] - corners[k]).squaredNorm() < spacing2 && out[j].n_BA.dot(n) > kLikeNormals;
-      }
+    for (int k = 0; k < found && seeds_.size() < most; ++k) {
+      const Vec3 place = corners[k] + b_->origin();
+      const bool taken = std::any_of(seeds_.begin(), seeds_.end(), [&](const ContactSeed& s) {
+        return (s.place - place).squaredNorm() < spacing2 && s.n_BA.dot(n) > kLikeNormals;
+      });
       if (taken) continue;
-      out[count] = seed_at(p, n, corners[k]);
-      if (out[count].distance > kSeedReach * reach) continue;
-      places_.push_back(corners[k]);
-      ++count;
+      const ContactSeed seed = seed_at(p, n, corners[k]);
+      if (seed.distance < kSeedReach * reach) seeds_.push_back(seed);
     }
   }
-  return count;
+  const std::size_t count = std::min(seeds_.size(), static_cast<std::size_t>(std::max(capacity, 0)));
+  std::partial_sort_copy(seeds_.begin(), seeds_.end(), out, out + count,
+                         [](const ContactSeed& a, const ContactSeed& b) { return a.distance < b.distance; });
+  return static_cast<int>(count);
 }
 
 int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const {
@@ -217,19 +214,6 @@ int PatchFront::shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3
   }
   for (int k = 0; k < shared.n; ++k) corners[k] = shared.p[k].x() * e[0] + shared.p[k].y() * e[1] + height * n;
   return shared.n;
-}
-
-/// How far the surfaces of a pair may stand back behind the sides of their boxes that face the plane.
-double PatchFront::facing_thickness(std::uint32_t id) const {
-  const PairNode& p = pool_[id];
-  if (faces(p)) return 0;
-  const Vec3 n = plane(id);
-  auto thickness = [](const PatchNode& node, double aligned) {
-    return std::abs(aligned) > kFacing ? 2 * double{node.half[2]} : 0.0;
-  };
-  PatchNode scratch_a, scratch_b;
-  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-  return thickness(a, n.dot(sweep_.start.R * a.axis_vec(2))) + thickness(b, n.dot(b.axis_vec(2)));
 }
 
 ContactSeed PatchFront::seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const {

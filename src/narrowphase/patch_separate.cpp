@@ -40,60 +40,69 @@ struct Bulge {
 };
 
 template <typename Pair>
-bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, double floor, double spare) {
-  // Half the floor is enough at the start: what the last motion left there was at least the floor, up to rounding.
+bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep, double spare) {
   const double share = bulge.share(n0, n1);
-  const double alpha = pair.start(n0) - share * bulge.at_start - spare - 0.5 * floor;
+  const double alpha = pair.start(n0) - share * bulge.at_start - spare - sweep.start_floor;
   if (!(alpha >= 0)) return false;
-  const double beta = pair.end(n1) - share * bulge.at_end - spare - floor;
+  const double beta = pair.end(n1) - share * bulge.at_end - spare - sweep.floor;
   if (!(beta >= 0)) return false;
-  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - floor;
+  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - sweep.floor;
   return gamma + std::sqrt(alpha * beta) >= 0;
 }
 
-/// Keeps the best candidates of a search.
-template <typename Pair>
+struct Span {
+  double lo, hi;
+
+  Span(const Vec3& n, const std::array<Vec3, 3>& p) {
+    const double x = n.dot(p[0]), y = n.dot(p[1]), z = n.dot(p[2]);
+    lo = std::min(std::min(x, y), z);
+    hi = std::max(std::max(x, y), z);
+  }
+};
+
+/// Keeps the best of the directions offered to it.
 class Search {
  public:
-  explicit Search(const Pair& pair) : pair_(pair) {}
+  explicit Search(const TrianglePair& pair) : pair_(pair) {}
 
   /// A direction of the start and its counterpart at the end.
-  void offer(const Vec3& n0, const Vec3& n1) {
-    const double s0 = pair_.start(n0), s1 = pair_.end(n1);
+  void offer(const Vec3& n0, const Vec3& n1) { keep(pair_.start(n0), pair_.end(n1), n0, n1); }
+  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
+    const Span a0(n0, pair_.p0), b0(n0, pair_.q), a1(n1, pair_.p1), b1(n1, pair_.q);
+    if (a0.lo - b0.hi > b0.lo - a0.hi || a1.lo - b1.hi > b1.lo - a1.hi) keep(a0.lo - b0.hi, a1.lo - b1.hi, n0, n1);
+    if (a0.lo - b0.hi <= b0.lo - a0.hi || a1.lo - b1.hi <= b1.lo - a1.hi) keep(b0.lo - a0.hi, b1.lo - a1.hi, -n0, -n1);
+  }
+
+  /// Largest separation at the start and at the end.
+  double start() const { return start_; }
+  double end() const { return end_; }
+  const MovingPlane& best() const { return best_; }
+
+  /// Tries the direction that is best for both ends at once, then the best of each.
+  bool accept(const Bulge& bulge, const Sweep& sweep, Vec3& plane) const {
+    if (start_ < 0 || end_ < 0) return false;
+    for (const MovingPlane& p : {together_, best_}) {
+      if (!stays_apart(pair_, p.n0, p.n1, bulge, sweep, 0)) continue;
+      plane = p.n1;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  void keep(double s0, double s1, const Vec3& n0, const Vec3& n1) {
     if (s0 > start_) start_ = s0, best_.n0 = n0;
     if (s1 > end_) end_ = s1, best_.n1 = n1;
     if (std::min(s0, s1) > both_) both_ = std::min(s0, s1), together_ = {n0, n1};
   }
-  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
-    offer(n0, n1);
-    offer(-n0, -n1);
-  }
 
-  double start() const { return start_; }
-  double end() const { return end_; }
-  double both() const { return both_; }
-  const MovingPlane& best() const { return best_; }
-  const MovingPlane& together() const { return together_; }
-
- private:
-  const Pair& pair_;
+  const TrianglePair& pair_;
   double start_ = -std::numeric_limits<double>::infinity();
   double end_ = start_;
   double both_ = start_;
   MovingPlane best_{Vec3::Zero(), Vec3::Zero()};
   MovingPlane together_{Vec3::Zero(), Vec3::Zero()};
 };
-
-template <typename Pair>
-bool accept(const Search<Pair>& search, const Pair& pair, const Bulge& bulge, double floor, double spare, Vec3& plane) {
-  for (const MovingPlane& p : {search.together(), search.best()}) {
-    if (stays_apart(pair, p.n0, p.n1, bulge, floor, spare)) {
-      plane = p.n1;
-      return true;
-    }
-  }
-  return false;
-}
 
 /// Separation of two boxes along the normals of their faces, negative signs folded in: sep[i] along sign[i] · axis i,
 /// B's axes first.
@@ -156,6 +165,12 @@ Vec3 edge_direction(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) 
   return least > 0 ? Vec3(best / std::sqrt(least)) : Vec3(Vec3::Zero());
 }
 
+/// Thinner than kParallel of its longest edge.
+bool degenerate(const std::array<Vec3, 3>& v) {
+  const Vec3 e = v[1] - v[0], f = v[2] - v[0], g = v[2] - v[1];
+  return !(e.cross(f).norm() > kParallel * std::max({e.squaredNorm(), f.squaredNorm(), g.squaredNorm()}));
+}
+
 struct Edges {
   std::array<Vec3, 3> e;
   Vec3 n;  ///< unit or zero
@@ -181,21 +196,26 @@ class LeastLimiting {
  public:
   LeastLimiting(const TrianglePair& pair, double floor) : pair_(pair), floor_(floor) {}
 
-  void offer(const Vec3& n0, const Vec3&) {
-    const double s0 = pair_.start(n0);
-    const bool apart = s0 >= floor_;
-    // Where nothing separates at the start either (by rounding), the axis of least overlap.
-    const double value = apart ? pair_.end(n0) : s0;
-    if (apart == apart_ ? value > value_ : apart) apart_ = apart, value_ = value, gap_ = s0, normal_ = n0;
-  }
-  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
-    offer(n0, n1);
-    offer(-n0, -n1);
+  void offer(const Vec3& n0, const Vec3&) { keep(pair_.start(n0), pair_.end(n0), n0); }
+  void offer_both_ways(const Vec3& n0, const Vec3&) {
+    const Span a0(n0, pair_.p0), b(n0, pair_.q), a1(n0, pair_.p1);
+    if (a0.lo - b.hi > b.lo - a0.hi) {
+      keep(a0.lo - b.hi, a1.lo - b.hi, n0);
+    } else {
+      keep(b.lo - a0.hi, b.lo - a1.hi, -n0);
+    }
   }
   const Vec3& normal() const { return normal_; }
   double gap() const { return gap_; }
 
  private:
+  void keep(double s0, double s1, const Vec3& n) {
+    const bool apart = s0 >= floor_;
+    // Where nothing separates at the start either (by rounding), the axis of least overlap.
+    const double value = apart ? s1 : s0;
+    if (apart == apart_ ? value > value_ : apart) apart_ = apart, value_ = value, gap_ = s0, normal_ = n;
+  }
+
   const TrianglePair& pair_;
   double floor_;
   bool apart_ = false;
@@ -205,7 +225,7 @@ class LeastLimiting {
 };
 
 /// The cheap directions: both normals, and from center to center.
-void offer_normals(const TrianglePair& t, Search<TrianglePair>& search) {
+void offer_normals(const TrianglePair& t, Search& search) {
   auto normal = [](const std::array<Vec3, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); };
   const Vec3 b = normal(t.q);
   search.offer_both_ways(b, b);
@@ -247,17 +267,20 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
                    bool& overlap) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
-  if (stays_apart(pair, plane, plane, bulge, sweep.floor, 0)) return true;
-  Search<TrianglePair> search(pair);
+  if (stays_apart(pair, plane, plane, bulge, sweep, 0)) return true;
+  Search search(pair);
   search.offer(plane, plane);
   offer_normals(pair, search);
-  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
   offer_triangle_axes(pair, search);
-  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
+  // The axes are complete, but for triangles without a plane.
+  overlap = search.end() < 0 && !degenerate(a) && !degenerate(b);
+  if (overlap) return false;
   offer_closest(pair, search);
-  if (accept(search, pair, bulge, sweep.floor, 0, plane)) return true;
+  if (search.accept(bulge, sweep, plane)) return true;
   overlap = search.end() < sweep.floor;
-  if (overlap || search.start() < 0.5 * sweep.floor || halvings == 0) return false;
+  if (overlap || search.start() < sweep.start_floor || halvings == 0) return false;
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
   Vec3 half_plane = search.best().n0;
@@ -343,7 +366,7 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 
 bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
   const Bulge bulge(sweep, reach, 0, 1);
-  if (stays_apart(pair, plane, plane, bulge, sweep.floor, spare)) return true;
+  if (stays_apart(pair, plane, plane, bulge, sweep, spare)) return true;
   const BoxFaces at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
   int first = 0;
   for (int k = 1; k < 6; ++k) {
@@ -361,7 +384,7 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
   auto try_pair = [&](int i, int j) {
     const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
     const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
-    if (!stays_apart(pair, n0, n1, bulge, sweep.floor, spare)) return false;
+    if (!stays_apart(pair, n0, n1, bulge, sweep, spare)) return false;
     plane = n1;
     return true;
   };
@@ -375,7 +398,7 @@ bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
     return true;
   }
   const TrianglePair pair(a, b, sweep.start, sweep.end);
-  LeastLimiting axis(pair, 0.5 * sweep.floor);
+  LeastLimiting axis(pair, sweep.start_floor);
   offer_triangle_axes(pair, axis);
   offer_closest(pair, axis);
   block.normal = axis.normal();

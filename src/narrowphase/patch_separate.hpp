@@ -24,6 +24,7 @@ struct Sweep {
   Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
   double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
   double floor = 0;            ///< separations below do not count: clearance, at least the rounding, m
+  double start_floor = 0;      ///< the same at the start: less by the rounding with which the last motion kept the floor
 
   Placement at(double s) const;
 };

@@ -4,259 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "narrowphase/patch_clusters.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
 namespace {
 
-constexpr std::uint32_t kNoCluster = 0xffffffffu;
-/// Weight of the diameter against the thickness of a patch (design.md 4b): decides only where surfaces are flat.
-constexpr double kDiameterWeight = 3e-4;
+/// Mean normal of a patch, relative to its area, above which it is nearly flat (normals within some 15°).
+constexpr float kNearlyFlat = 0.98f;
+/// Patches of more faces lie along their largest variance; smaller ones, whose outlines meet the other part's, along
+/// their outline.
+constexpr std::uint32_t kOutlineFaces = 1024;
 /// Relative enlargement of boxes: covers rounding of the fit (double) and of the stored half extents.
 constexpr double kBoxSlack = 1e-6;
 /// Rounding of the single-precision copies of the vertices, relative to the mesh's radius (half a step is 2^-25).
 constexpr double kCopySlack = 1.0 / (1 << 24);
 /// Faces thinner than this part of their longest edge have no plane to speak of.
 constexpr double kFlatFace = 1e-9;
-/// A round of merging that joins less than one cluster in so many goes on with pairs that are best for one side only.
-constexpr std::size_t kSlowRound = 12;
 
 using Vec3f = Eigen::Vector3f;
-
-/// A triangle relative to the origin of the tree.
-struct Item {
-  std::array<Vec3f, 3> v;
-  Vec3f normal;
-  float area;
-};
-
-/// Area moments of a set of triangles, up to second order.
-struct Moments {
-  double w = 0;
-  double x = 0, y = 0, z = 0;
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
-
-  Moments& operator+=(const Moments& o) {
-    w += o.w, x += o.x, y += o.y, z += o.z;
-    xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
-    return *this;
-  }
-
-  /// ∫ over the triangle, by the sum over its corners and its center: A/12 (Σ v vᵀ + 9 g gᵀ).
-  static Moments of(const Item& t) {
-    const double w = t.area, k = w / 12;
-    const auto& [a, b, c] = t.v;
-    const double sx = double{a.x()} + b.x() + c.x(), sy = double{a.y()} + b.y() + c.y(),
-                 sz = double{a.z()} + b.z() + c.z();
-    auto sum = [&, &p = a, &q = b, &r = c](int i, int j, double si, double sj) {
-      return k * (double{p[i]} * p[j] + double{q[i]} * q[j] + double{r[i]} * r[j] + si * sj);
-    };
-    Moments m;
-    m.w = w, m.x = w / 3 * sx, m.y = w / 3 * sy, m.z = w / 3 * sz;
-    m.xx = sum(0, 0, sx, sx), m.yy = sum(1, 1, sy, sy), m.zz = sum(2, 2, sz, sz);
-    m.xy = sum(0, 1, sx, sy), m.xz = sum(0, 2, sx, sz), m.yz = sum(1, 2, sy, sz);
-    return m;
-  }
-
-  Mat3 covariance() const {
-    const double i = w > 0 ? 1 / w : 0;
-    const double mx = x * i, my = y * i, mz = z * i;
-    Mat3 c;
-    c << xx * i - mx * mx, xy * i - mx * my, xz * i - mx * mz,  //
-        xy * i - mx * my, yy * i - my * my, yz * i - my * mz,   //
-        xz * i - mx * mz, yz * i - my * mz, zz * i - mz * mz;
-    return c;
-  }
-
-  /// Thickness + kDiameterWeight · diameter of the two sets together. A uniform slab of thickness t has the variance
-  /// t²/12 across. The least eigenvalue is taken as det / (sum of the principal minors), exact for a thin set and a
-  /// third for a ball.
-  friend float joint_cost(const Moments& m, const Moments& o) {
-    const double i = 1 / (m.w + o.w), mx = (m.x + o.x) * i, my = (m.y + o.y) * i, mz = (m.z + o.z) * i;
-    const double a = (m.xx + o.xx) * i - mx * mx, b = (m.yy + o.yy) * i - my * my, c = (m.zz + o.zz) * i - mz * mz;
-    const double d = (m.xy + o.xy) * i - mx * my, e = (m.xz + o.xz) * i - mx * mz, f = (m.yz + o.yz) * i - my * mz;
-    const double minors = a * b - d * d + a * c - e * e + b * c - f * f;
-    const double det = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e);
-    const double thin = minors > 0 ? std::max(det, 0.0) / minors : 0.0;
-    return static_cast<float>(std::sqrt(12 * thin) + kDiameterWeight * std::sqrt(12 * std::max(a + b + c, 0.0)));
-  }
-};
-
-/// Two clusters joined: `left` and `right` are clusters; a single face has none.
-struct Join {
-  std::uint32_t left = kNoCluster, right = kNoCluster;
-  std::uint32_t faces = 1;
-};
-
-/// Clusters faces from the bottom by mutual best neighbors.
-class Clustering {
- public:
-  Clustering(const TriangleMesh& mesh, const std::vector<Item>& items) : joins_(items.size()) {
-    joins_.reserve(2 * items.size());
-    moments_.reserve(2 * items.size());
-    for (const Item& t : items) moments_.push_back(Moments::of(t));
-    active_.resize(items.size());
-    std::iota(active_.begin(), active_.end(), 0u);
-    link_faces(mesh);
-    while (!links_.empty()) round();
-    std::vector<std::uint32_t> roots = active_;
-    root_ = join_apart(roots.data(), roots.data() + roots.size());
-  }
-
-  const std::vector<Join>& joins() const { return joins_; }
-  const Moments& moments(std::uint32_t cluster) const { return moments_[cluster]; }
-  std::uint32_t root() const { return root_; }
-
- private:
-  /// Neighbors, as places in active_; a negative cost is not known yet.
-  struct Link {
-    std::uint32_t u, v;
-    float cost;
-  };
-
-  /// Faces that share an edge: half-edges sorted by their lesser vertex, matched by the other one.
-  void link_faces(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> begin(mesh.vertices.size() + 1, 0);
-    auto each = [&](auto f) {
-      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (int k = 0; k < 3; ++k) {
-          const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-          if (a != b) f(std::min(a, b), std::max(a, b), t);
-        }
-      }
-    };
-    each([&](std::uint32_t a, std::uint32_t, std::uint32_t) { ++begin[a + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    struct Half {
-      std::uint32_t other, face;
-    };
-    std::vector<Half> half(begin.back());
-    std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
-    each([&](std::uint32_t a, std::uint32_t b, std::uint32_t t) { half[place[a]++] = {b, t}; });
-    links_.reserve(half.size() / 2 + 1);
-    for (std::size_t a = 0; a + 1 < begin.size(); ++a) {
-      const auto from = half.begin() + begin[a], to = half.begin() + begin[a + 1];
-      std::sort(from, to,
-                [](const Half& x, const Half& y) { return x.other != y.other ? x.other < y.other : x.face < y.face; });
-      for (auto h = from; h != to && h + 1 != to; ++h) {
-        if (h[0].other == h[1].other && h[0].face != h[1].face) links_.push_back({h[0].face, h[1].face, -1});
-      }
-    }
-  }
-
-  void round() {
-    const std::size_t n = active_.size();
-    best_.assign(n, kNoCluster);
-    best_cost_.assign(n, std::numeric_limits<float>::infinity());
-    best_key_.assign(n, 0);
-    for (Link& l : links_) {
-      if (l.cost < 0) l.cost = joint_cost(moments_[active_[l.u]], moments_[active_[l.v]]);
-      // Regular meshes are full of ties; a scattered order breaks them in many places at once.
-      const std::uint32_t key = (std::min(l.u, l.v) * 2654435761u) ^ (std::max(l.u, l.v) * 2246822519u);
-      auto offer = [&](std::uint32_t u, std::uint32_t v) {
-        if (l.cost > best_cost_[u] || (l.cost == best_cost_[u] && key <= best_key_[u])) return;
-        best_cost_[u] = l.cost;
-        best_key_[u] = key;
-        best_[u] = v;
-      };
-      offer(l.u, l.v);
-      offer(l.v, l.u);
-    }
-    renamed_.assign(n, kNoCluster);
-    next_.clear();
-    std::size_t joined = 0;
-    for (std::uint32_t u = 0; u < n; ++u) {
-      const std::uint32_t v = best_[u];
-      if (v != kNoCluster && u < v && best_[v] == u) join(u, v), ++joined;
-    }
-    if (joined * kSlowRound < n) {
-      for (std::uint32_t u = 0; u < n; ++u) {
-        const std::uint32_t v = best_[u];
-        if (v != kNoCluster && renamed_[u] == kNoCluster && renamed_[v] == kNoCluster) join(u, v);
-      }
-    }
-    for (std::uint32_t u = 0; u < n; ++u) {
-      if (renamed_[u] != kNoCluster) continue;
-      renamed_[u] = static_cast<std::uint32_t>(next_.size()) | kKept;
-      next_.push_back(active_[u]);
-    }
-    active_.swap(next_);
-    relink();
-  }
-
-  /// Marks a place of the new round whose cluster is unchanged.
-  static constexpr std::uint32_t kKept = 0x80000000u;
-
-  void join(std::uint32_t u, std::uint32_t v) {
-    renamed_[u] = renamed_[v] = static_cast<std::uint32_t>(next_.size());
-    next_.push_back(add(active_[u], active_[v]));
-  }
-
-  std::uint32_t add(std::uint32_t left, std::uint32_t right) {
-    joins_.push_back({left, right, joins_[left].faces + joins_[right].faces});
-    Moments m = moments_[left];
-    moments_.push_back(m += moments_[right]);
-    return static_cast<std::uint32_t>(joins_.size() - 1);
-  }
-
-  /// Renames the ends of the links, drops those inside a cluster and all but one between two clusters.
-  void relink() {
-    std::size_t kept = 0;
-    first_.assign(active_.size() + 1, 0);
-    for (const Link& l : links_) {
-      const std::uint32_t u = renamed_[l.u], v = renamed_[l.v];
-      const std::uint32_t pu = u & ~kKept, pv = v & ~kKept;
-      if (pu == pv) continue;
-      links_[kept++] = {std::min(pu, pv), std::max(pu, pv), (u & v & kKept) ? l.cost : -1.0f};
-      ++first_[std::min(pu, pv) + 1];
-    }
-    links_.resize(kept);
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    sorted_.resize(kept);
-    for (const Link& l : links_) sorted_[first_[l.u]++] = l;
-    seen_.assign(active_.size(), kNoCluster);
-    kept = 0;
-    for (const Link& l : sorted_) {
-      if (seen_[l.v] == l.u) continue;
-      seen_[l.v] = l.u;
-      links_[kept++] = l;
-    }
-    links_.resize(kept);
-  }
-
-  /// Joins clusters that share no edge, by halving their centers along the longest side.
-  std::uint32_t join_apart(std::uint32_t* begin, std::uint32_t* end) {
-    if (end - begin == 1) return *begin;
-    Vec3 lo = center(*begin), hi = lo;
-    for (const std::uint32_t* c = begin; c != end; ++c) {
-      lo = lo.cwiseMin(center(*c));
-      hi = hi.cwiseMax(center(*c));
-    }
-    int axis = 0;
-    (hi - lo).maxCoeff(&axis);
-    std::uint32_t* middle = begin + (end - begin) / 2;
-    std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
-      const double x = center(a)[axis], y = center(b)[axis];
-      return x != y ? x < y : a < b;
-    });
-    const std::uint32_t left = join_apart(begin, middle), right = join_apart(middle, end);
-    return add(left, right);
-  }
-
-  Vec3 center(std::uint32_t cluster) const {
-    const Moments& m = moments_[cluster];
-    return Vec3(m.x, m.y, m.z) / m.w;
-  }
-
-  std::vector<Join> joins_;
-  std::vector<Moments> moments_;
-  std::vector<std::uint32_t> active_, next_, renamed_, best_, best_key_, first_, seen_;
-  std::vector<float> best_cost_;
-  std::vector<Link> links_, sorted_;
-  std::uint32_t root_ = 0;
-};
 
 struct Point2 {
   double x, y;
@@ -290,8 +57,8 @@ void drop_inner(std::vector<Point2>& points) {
 }
 
 /// Direction of a side of the enclosing rectangle of least area: it lies along an edge of the hull (Freeman and
-/// Shapira, 1975). Reorders and drops points.
-Point2 narrowest(std::vector<Point2>& points) {
+/// Shapira, 1975). Reorders and drops points; `hull` is scratch.
+Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
   constexpr std::size_t kWorthFiltering = 24;
   // The long edges are the straight sides of a patch; the short ones of a round outline do not matter.
   constexpr std::size_t kLongestEdges = 8;
@@ -299,7 +66,7 @@ Point2 narrowest(std::vector<Point2>& points) {
   std::sort(points.begin(), points.end(),
             [](const Point2& a, const Point2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   // Monotone chain (Andrew, 1979), lower and upper part one after the other.
-  std::vector<Point2> hull(2 * points.size());
+  hull.resize(2 * points.size());
   std::size_t n = 0;
   auto add = [&](const Point2& p, std::size_t least) {
     while (n >= least && turn(hull[n - 2], hull[n - 1], p) <= 0) --n;
@@ -349,11 +116,11 @@ Point2 narrowest(std::vector<Point2>& points) {
 /// Lays the clusters out as nodes with fitted boxes.
 class Layout {
  public:
-  Layout(const Clustering& clusters, const std::vector<Item>& items, double radius, std::vector<PatchNode>& nodes,
-         std::vector<std::uint32_t>& order)
+  Layout(const PatchClusters& clusters, const std::vector<PatchItem>& items, double radius,
+         std::vector<PatchNode>& nodes, std::vector<std::uint32_t>& order)
       : clusters_(clusters), copy_slack_(radius * kCopySlack), nodes_(nodes), order_(order) {
     order_.reserve(items.size());
-    const std::uint32_t root = clusters.root();
+    const std::uint32_t root = clusters.root;
     collect(root);
     items_.reserve(items.size());
     for (std::uint32_t f : order_) items_.push_back(items[f]);
@@ -365,7 +132,7 @@ class Layout {
     while (!stack.empty()) {
       const Place p = stack.back();
       stack.pop_back();
-      const Join& j = clusters_.joins()[p.cluster];
+      const PatchJoin& j = clusters_.joins[p.cluster];
       fit(p.node, p.cluster, p.begin, p.begin + j.faces);
       if (j.faces <= kPatchLeaf) {
         nodes_[p.node].first = p.begin;
@@ -377,7 +144,7 @@ class Layout {
       nodes_[p.node].count = 0;
       nodes_.emplace_back();
       nodes_.emplace_back();
-      stack.push_back({child + 1, j.right, p.begin + clusters_.joins()[j.left].faces});
+      stack.push_back({child + 1, j.right, p.begin + clusters_.joins[j.left].faces});
       stack.push_back({child, j.left, p.begin});
     }
   }
@@ -389,7 +156,7 @@ class Layout {
     while (!stack.empty()) {
       const std::uint32_t c = stack.back();
       stack.pop_back();
-      const Join& j = clusters_.joins()[c];
+      const PatchJoin& j = clusters_.joins[c];
       if (j.left == kNoCluster) {
         order_.push_back(c);
       } else {
@@ -400,28 +167,41 @@ class Layout {
   }
 
   void fit(std::uint32_t node, std::uint32_t cluster, std::uint32_t begin, std::uint32_t end) {
-    const Moments& m = clusters_.moments(cluster);
+    const PatchMoments& m = clusters_.moments[cluster];
     Vec3f mean = Vec3f::Zero();
     for (std::uint32_t i = begin; i < end; ++i) mean += items_[i].area * items_[i].normal;
-    Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-    eigen.computeDirect(m.covariance());
-    Mat3 frame = eigen.eigenvectors().rowwise().reverse();  // largest variance first
-    if (!frame.allFinite() || std::abs(std::abs(frame.determinant()) - 1) > 1e-3) frame = Mat3::Identity();
-    Vec3 normal = frame.col(2);
-    const float length = mean.norm();
-    // The mean normal gives the thinner box where the outline is ragged; it says nothing where normals cancel.
-    if (length > 0.5f * static_cast<float>(m.w)) {
-      const Vec3 other = (mean / length).cast<double>().normalized();
-      if (thickness(begin, end, other) < thickness(begin, end, normal)) normal = other;
+    const float length = mean.norm(), area = static_cast<float>(m.w);
+    Vec3 normal = length > 0 ? Vec3((mean / length).cast<double>().normalized()) : Vec3(Vec3::UnitZ());
+    // The least variance gives the thinner box where a patch is bent; the mean normal where its outline is ragged, and
+    // it is all that a nearly flat patch needs. It says nothing where normals cancel.
+    if (length < kNearlyFlat * area) {
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+      eigen.computeDirect(m.covariance());
+      const Vec3 least = eigen.eigenvectors().col(0);
+      const bool usable = least.allFinite() && std::abs(least.norm() - 1) < 1e-3;
+      if (usable && (length < 0.5f * area || thickness(begin, end, least) < thickness(begin, end, normal))) {
+        normal = least.normalized();
+      }
     }
-    Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    Vec3 v = normal.cross(u);
-    points_.clear();
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (const Vec3f& c : items_[i].v) points_.push_back({c.cast<double>().dot(u), c.cast<double>().dot(v)});
+    Mat3 frame;
+    if (end - begin <= kOutlineFaces) {
+      const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+      const Vec3 v = normal.cross(u);
+      points_.clear();
+      for (std::uint32_t i = begin; i < end; ++i) {
+        for (const Vec3f& c : items_[i].v) points_.push_back({c.cast<double>().dot(u), c.cast<double>().dot(v)});
+      }
+      const auto [x, y] = narrowest(points_, hull_);
+      frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
+    } else {
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+      eigen.computeDirect(m.covariance());
+      const Vec3 longest = eigen.eigenvectors().col(2);
+      Vec3 across = normal.cross(longest);
+      if (!(across.norm() > 0.1)) across = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+      across.normalize();
+      frame << across.cross(normal), across, normal;
     }
-    const auto [x, y] = narrowest(points_);
-    frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
     set_box(begin, end, frame, nodes_[node]);
   }
 
@@ -466,12 +246,12 @@ class Layout {
     }
   }
 
-  const Clustering& clusters_;
+  const PatchClusters& clusters_;
   double copy_slack_;
   std::vector<PatchNode>& nodes_;
   std::vector<std::uint32_t>& order_;
-  std::vector<Item> items_;
-  std::vector<Point2> points_;
+  std::vector<PatchItem> items_;
+  std::vector<Point2> points_, hull_;
 };
 
 }  // namespace
@@ -486,9 +266,9 @@ PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move
     }
   }
   origin_ = 0.5 * (lo + hi);
-  std::vector<Item> items(mesh_->triangles.size());
+  std::vector<PatchItem> items(mesh_->triangles.size());
   for (std::uint32_t f = 0; f < items.size(); ++f) {
-    Item& t = items[f];
+    PatchItem& t = items[f];
     std::array<Vec3, 3> v;
     for (int k = 0; k < 3; ++k) {
       v[k] = corner(f, k) - origin_;
@@ -503,7 +283,7 @@ PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move
     t.area = std::max(std::numeric_limits<float>::min(), t.area);
     t.area = std::max(t.area, 1e-6f * static_cast<float>((v[1] - v[0]).squaredNorm() + (v[2] - v[0]).squaredNorm()));
   }
-  const Clustering clusters(*mesh_, items);
+  const PatchClusters clusters = cluster_patches(*mesh_, items);
   Layout(clusters, items, radius_, nodes_, order_);
   nodes_.shrink_to_fit();
 }

@@ -31,13 +31,11 @@ struct PatchNode {
 /// Immutable hierarchy of flat patches over a triangle surface, in the mesh's file frame. Works for any surface: open,
 /// non-manifold, triangle soup, degenerate and repeated faces.
 ///
-/// Built from the top: a node is cut where the two halves, each measured in its own frame, have the least
-/// area-weighted `thickness + 3e-4 · diameter` (a patch of a curved wall is then as wide as its sagitta allows and as
-/// long as the wall is straight). Candidates are binned positions along the box axes and binned normals, so that the
-/// two sides of a sheet part early.
+/// Built from the bottom (see patch_clusters.hpp): a patch of a curved wall is as wide as its sagitta allows and as
+/// long as the wall is straight. Boxes are fitted to the patch's own normal and outline.
 class PatchTree {
  public:
-  /// Builds the hierarchy; about 1 µs a triangle. A mesh without triangles throws Error.
+  /// Builds the hierarchy; about 2 µs a triangle. A mesh without triangles throws Error.
   explicit PatchTree(std::shared_ptr<const TriangleMesh> mesh);
 
   const TriangleMesh& mesh() const { return *mesh_; }

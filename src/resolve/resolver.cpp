@@ -41,9 +41,7 @@ class LpResolver final : public Resolver {
     return out;
   }
 
-  /// Forces of least sum that push a far target out of every limit need not lead nearer to it at all: the part would
-  /// hang in the air.
-  bool takes_whole_error() const override { return false; }
+  bool projects() const override { return false; }
 
  private:
   LpSolver solver_;
@@ -64,7 +62,7 @@ class QpResolver final : public Resolver {
     return out;
   }
 
-  bool takes_whole_error() const override { return true; }
+  bool projects() const override { return true; }
 
  private:
   LeastDistanceSolver solver_;

@@ -22,8 +22,9 @@ class Resolver {
   virtual ~Resolver() = default;
   /// A motion z with rows z >= bounds (rows.rows() of them), as near to `wanted` as the method brings it.
   virtual Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept = 0;
-  /// Whether the answer to the whole error, scaled down, is a good step. If not, the error is scaled down first.
-  virtual bool takes_whole_error() const = 0;
+  /// Whether the answer is the allowed motion nearest to the wanted one. If not, it may be no motion at all although
+  /// some would lead nearer.
+  virtual bool projects() const = 0;
 };
 
 /// Names that make_resolver knows: "lp" (the paper's linear programme), "qp" (Gauss's least constraint).

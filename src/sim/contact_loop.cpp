@@ -200,8 +200,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   for (int i = 0; i < kMostResolves && !found; ++i) {
     if (!resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
-      // Of a shorter way the programme may take a part where of the longer one it takes nothing.
-      if (!resolver_->takes_whole_error()) trust_ *= 0.5;
+      if (!resolver_->projects()) trust_ *= 0.5;
       return 0;
     }
     found = is_free(trial, report);
@@ -225,9 +224,15 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  const double far = size(metric_.unwhiten(wanted));
-  Vec6 motion = resolver_->takes_whole_error() || far <= cap ? wanted : Vec6((cap / far) * wanted);
-  if (!contacts_->limits().empty() && !solve(Vec6(motion), report, motion)) return false;
+  Vec6 motion = wanted;
+  if (!contacts_->limits().empty()) {
+    if (!solve(wanted, report, motion)) return false;
+    const double far = size(metric_.unwhiten(wanted));
+    // Of a shorter way a programme that does not project may take a part where of the whole it takes nothing.
+    if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
+        !solve((cap / far) * wanted, report, motion))
+      return false;
+  }
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
   if (length > cap) {

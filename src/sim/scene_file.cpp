@@ -116,7 +116,8 @@ void read_coupling(const TomlTable& t, CouplingSettings& s) {
 
 SimulatedDeviceSettings read_device(const TomlTable& t) {
   SimulatedDeviceSettings s;
-  if (t.text("type", "simulated") != "simulated") t.fail("type", "unknown device type (known: simulated)");
+  const std::string type = t.text("type", "simulated");
+  if (type != "simulated") t.fail("type", "unknown device type " + type + " (known: simulated)");
   const TomlTable hand =
       t.table("hand", {"stiffness", "damping", "torsional_stiffness", "torsional_damping", "mass", "inertia"});
   s.hand.stiffness = hand.positive("stiffness", s.hand.stiffness);

@@ -77,6 +77,7 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
       {good + "[contact\n", {"bad.toml:12: not valid TOML"}},
       {replaced(good, "held = true", "held = false"), {"bad.toml:2: part: no part is held"}},
       {replaced(good, "\"block\"", "\"block\"\nheld = true"), {"bad.toml:", "part.held: "}},
+      {good + "type = \"pen\"\n", {"bad.toml:12: device.type: ", "pen"}},
       {replaced(good, "path.csv", "none.csv"), {"bad.toml:11: device.script: ", "none.csv"}},
       {replaced(good, "path.csv", "bad.csv"), {"bad.toml:11: device.script: ", "bad.csv:3"}},
       {replaced(good, "path.csv", "back.csv"), {"bad.toml:11: device.script: ", "back.csv:3"}},
@@ -107,6 +108,7 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
   check_refused(run_program("tegotae", "run --frobnicate " + scene), {"frobnicate"});
   check_refused(run_program("tegotae", "run --seconds -1 " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --seconds nan " + scene), {"--seconds"});
+  check_refused(run_program("tegotae", "run --seconds 1e300 " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --seconds soon " + scene), {"--seconds"});
   check_refused(run_program("tegotae", "run --fast --resolver magic " + scene), {"magic"});
   check_refused(run_program("tegotae", "run --fast --record " + (folder / "none/rec.csv") + " " + scene),

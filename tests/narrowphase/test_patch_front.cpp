@@ -28,7 +28,7 @@ std::vector<Scene> scenes() {
       {"box on a plate", box({0.02, 0.015, 0.01}), box({0.1, 0.1, 0.001}), Vec3::Zero(),
        Pose{Quat::Identity(), Vec3(0, 0, 0.02)}, 0.01, 0.3},
       {"offset file frame", box({0.02, 0.015, 0.01}), knot(0.05, 0.006, 800), Vec3(0.15, 0.1, 0),
-       Pose{Quat::Identity(), Vec3(-0.04, -0.1, 0.04)}, 0.01, 0.3},
+       Pose{Quat::Identity(), Vec3(-0.08, 0, 0)}, 0.01, 0.3},
   };
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("a certified motion has no intersecting pose", "[patch]") {
     for (int i = 0; i < 100; ++i) {
       const double size = std::pow(10.0, uniform(rng, -3, 0));
       Displacement d{random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)};
-      d.dp -= 0.5 * size * scene.move * (X * scene.center).normalized();  // back to B
+      d.dp -= 0.5 * size * scene.move * (X * a.origin()).normalized();  // back to B
 
       const CertifyReport report = front.certify(X, d);
       if (report.status == CertifyStatus::certified) {
@@ -109,7 +109,7 @@ TEST_CASE("a motion with room around it is certified", "[patch]") {
     std::mt19937 rng(23);
     const double room = oracle.distance(scene.start);
     int asked = 0;
-    for (int i = 0; i < 80; ++i) {
+    for (int i = 0; i < 40; ++i) {
       const double size = 4 * room * std::pow(10.0, uniform(rng, -2, 0));
       const Displacement d{random_in_ball(rng, size), random_in_ball(rng, size / reach)};
       const double motion = d.dp.norm() + (reach + scene.center.norm()) * d.dr.norm();
@@ -118,7 +118,7 @@ TEST_CASE("a motion with room around it is certified", "[patch]") {
       const CertifyReport report = front.certify(scene.start, d, {1000000});
       REQUIRE(report.status == CertifyStatus::certified);
     }
-    CHECK(asked >= 20);
+    CHECK(asked >= 10);
   }
 }
 
