@@ -8,7 +8,7 @@ namespace {
 
 /// A row counts as satisfied when it is short by less than this part of the largest violation at z0.
 constexpr double kFeasibility = 1e-10;
-/// The same relative to the length of the motion: rounding of g·x.
+/// The same relative to the lengths of the motion and of z0: rounding of g·x and of b - g·z0.
 constexpr double kRounding = 1e-14;
 /// A unit row whose part outside the span of the active rows is shorter than this depends on them.
 constexpr double kDependent = 1e-10;
@@ -44,8 +44,8 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
   for (;;) {
     const RowChoice violated = rows_.most_violated(x_);
     const double tolerance = result_.iterations < kPatience
-                                 ? kFeasibility * rows_.largest_violation() + kRounding * x_.norm()
-                                 : kAccepted * (rows_.largest_violation() + x_.norm());
+                                 ? kFeasibility * rows_.largest_violation() + kRounding * (x_.norm() + z0.norm())
+                                 : kAccepted * (rows_.largest_violation() + x_.norm()) + kRounding * z0.norm();
     if (!(violated.value > tolerance)) {
       finish(b, z0);
       return result_;
@@ -190,8 +190,8 @@ void LeastDistanceSolver::finish(const double* b, const Vec6& z0) noexcept {
     }
   }
   result_.dual_residual = rest.norm();
-  if (worst <= kAccepted * (rows_.largest_violation() + x_.norm()) &&
-      result_.dual_residual <= kAccepted * x_.norm() + kRounding * terms) {
+  if (worst <= kAccepted * (rows_.largest_violation() + x_.norm()) + kRounding * z0.norm() &&
+      result_.dual_residual <= kAccepted * x_.norm() + kRounding * (terms + z0.norm())) {
     result_.status = LpStatus::optimal;
     return;
   }

@@ -12,6 +12,9 @@ constexpr std::size_t kMostFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
+// Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they leave
+// out stops the next trial.
+constexpr std::uint32_t kMostBlocking = 24;
 // A motion carries no point farther than this share of the part's radius: limits are straightened at its start.
 constexpr double kLongestShare = 0.1;
 
@@ -29,6 +32,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   }
   const std::size_t fronts = std::min(kMostFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
+  capacity.blocking = kMostBlocking;
   capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kLeastPairs, kMostPairs));
   fronts_.reserve(fronts);
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);

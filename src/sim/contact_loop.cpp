@@ -50,9 +50,12 @@ constexpr double kStartShare = 0.5;
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
-// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
-// so many: like static friction, it ends the creep that is left where limits change with every piece.
-constexpr double kStiction = 1e-6;
+// A rotation error larger than this (rad) is taken in parts.
+constexpr double kMostTurn = 0.5;
+// While the pen stands still and the part moves by less than the second share of its radius a tick, a piece must take the
+// first share off the squared error, growing with the square of the time, over so many ticks: like static friction, it
+// ends the creep that is left where limits change with every piece.
+constexpr double kStiction = 2.5e-4, kCreepShare = 1e-3;
 constexpr int kMostStillTicks = 250;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
@@ -119,6 +122,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
+  const bool was_cut = report.cut;
   report.cut = false;
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
@@ -126,7 +130,8 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  still_ticks_ = pen < kRest ? still_ticks_ + 1 : 0;
+  if (pen >= kRest) still_ticks_ = 0;
+  if (moved_ < kCreepShare * radius_) still_ticks_ = std::min(still_ticks_ + 1, kMostStillTicks);
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
@@ -142,7 +147,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     check_->begin(near_, deadline_ns_);
     track();
     adapt_keep();
-    trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    if (!was_cut) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
@@ -154,7 +159,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
       made += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
-    track();
+    if (!late()) track();
   }
   gather(report);
   const double left = size(displacement(X_, Y, center_));
@@ -163,6 +168,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
+  moved_ = size(moved);
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
 }
 
@@ -193,7 +199,12 @@ void ContactLoop::adapt_keep() {
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
   track();
-  const Displacement error = displacement(X_, Y, center_);
+  Displacement error = displacement(X_, Y, center_);
+  // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the target
+  // only while the angle is small.
+  const double turn = error.dr.norm();
+  if (turn > kMostTurn) error.dr *= kMostTurn / turn;
+  const Pose goal = turn > kMostTurn ? displaced(X_, center_, error) : Y;
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
   bool found = false;
@@ -205,7 +216,10 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     }
     found = is_free(trial, report);
     if (found) break;
-    if (late()) return 0;
+    if (late()) {
+      trust_ = 0.5 * std::min(trust_, size(trial.d));
+      return 0;
+    }
     if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_)) == 0 &&
         contacts_->cut(blocking_, trial.d) == 0)
       break;
@@ -214,7 +228,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }
-  if (!worth_it(wanted, trial, Y)) return 0;
+  if (!worth_it(wanted, trial, goal)) return 0;
   X_ = trial.X;
   tracked_ = false;
   // Parts that started nearer than the floor keep it once they have come apart.
@@ -294,7 +308,8 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
-  return made > kStiction * std::min(still_ticks_, kMostStillTicks) * error.squaredNorm();
+  const double still = static_cast<double>(still_ticks_) / kMostStillTicks;
+  return made > kStiction * still * still * error.squaredNorm();
 }
 
 void ContactLoop::gather(TickReport& report) const {

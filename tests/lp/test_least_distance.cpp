@@ -193,3 +193,25 @@ TEST_CASE("Least distance: simple and bad problems", "[qp]") {
     CHECK(solver.solve(p.matrix(), p.d.data(), z0).status == LpStatus::stalled);
   }
 }
+
+TEST_CASE("Least distance: a target on the limits up to rounding is kept, not stalled on", "[qp]") {
+  // From a body spinning between two pins: all four limits pass through the target but for the last bits.
+  LowRankMatrix g(4);
+  double b[4];
+  int n = 0;
+  for (const double s : {-0.374, 0.374}) {
+    for (const double t : {-1.2236, 1.2236}) {
+      Vec6 row;
+      row << 0, 0, 1, s, t, t;
+      g.push_row(row);
+      b[n++] = -1e-17;
+    }
+  }
+  Vec6 z0;
+  z0 << 0, 0, -1.9e-17, 2.2e-17, -4.0861376748654e-4, 4.0861376748656e-4;
+  LeastDistanceSolver solver(8);
+  const QpResult& r = solver.solve(g, b, z0);
+  REQUIRE(r.status == LpStatus::optimal);
+  REQUIRE((r.z - z0).norm() < 1e-15);
+  for (int i = 0; i < 4; ++i) REQUIRE(g.row(i).dot(r.z) >= b[i] - 1e-15);
+}
