@@ -12,8 +12,8 @@ constexpr std::size_t kMostFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
-// Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they leave
-// out stops the next trial.
+// Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they
+// leave out stops the next trial.
 constexpr std::uint32_t kMostBlocking = 24;
 // A motion carries no point farther than this share of the part's radius: limits are straightened at its start.
 constexpr double kLongestShare = 0.1;

@@ -50,12 +50,13 @@ constexpr double kStartShare = 0.5;
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
+// It never falls below this length (m), or a part whose way was blocked would not try again.
+constexpr double kLeastTrust = 1e-8;
 // A rotation error larger than this (rad) is taken in parts.
 constexpr double kMostTurn = 0.5;
-// While the pen stands still and the part moves by less than the second share of its radius a tick, a piece must take the
-// first share off the squared error, growing with the square of the time, over so many ticks: like static friction, it
-// ends the creep that is left where limits change with every piece.
-constexpr double kStiction = 2.5e-4, kCreepShare = 1e-3;
+// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
+// so many: like static friction, it ends the creep that is left where limits change with every piece.
+constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
@@ -130,8 +131,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  if (pen >= kRest) still_ticks_ = 0;
-  if (moved_ < kCreepShare * radius_) still_ticks_ = std::min(still_ticks_ + 1, kMostStillTicks);
+  still_ticks_ = pen < kRest ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
@@ -147,6 +147,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     check_->begin(near_, deadline_ns_);
     track();
     adapt_keep();
+    trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
@@ -168,7 +169,6 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
-  moved_ = size(moved);
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
 }
 
@@ -200,8 +200,8 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
   track();
   Displacement error = displacement(X_, Y, center_);
-  // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the target
-  // only while the angle is small.
+  // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the
+  // target only while the angle is small.
   const double turn = error.dr.norm();
   if (turn > kMostTurn) error.dr *= kMostTurn / turn;
   const Pose goal = turn > kMostTurn ? displaced(X_, center_, error) : Y;
@@ -308,8 +308,7 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
-  const double still = static_cast<double>(still_ticks_) / kMostStillTicks;
-  return made > kStiction * still * still * error.squaredNorm();
+  return made > kStiction * still_ticks_ * error.squaredNorm();
 }
 
 void ContactLoop::gather(TickReport& report) const {

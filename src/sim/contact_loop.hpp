@@ -65,7 +65,6 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
-  double moved_ = 0;  ///< of X in the last tick, m
   int still_ticks_ = 0;  ///< since the pen last moved
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
