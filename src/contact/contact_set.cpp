@@ -4,6 +4,7 @@
 
 #include "contact/separating_axis.hpp"
 #include "feature/simplex_distance.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 
@@ -71,9 +72,10 @@ void ContactSet::track(const Pose& X, double reach) {
   pairs_.assign(next_.begin(), next_.end());
 }
 
-int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near) {
+int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns) {
   int fresh = 0;
   for (const FacePair& t : triangles) {
+    if (past(deadline_ns)) break;
     if (static_cast<int>(next_.size()) >= capacity_) {
       ++overflow_;
       break;
@@ -98,10 +100,11 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near)
   return fresh;
 }
 
-int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d) {
+int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, std::int64_t deadline_ns) {
   int added = 0;
   const Vec3 c = X_ * center_;
   for (const FacePair& t : triangles) {
+    if (past(deadline_ns)) break;
     const FixedSurface& B = fixed_[t.part];
     std::array<Vec3, 3> a, b, motion;
     for (int k = 0; k < 3; ++k) {

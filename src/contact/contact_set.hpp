@@ -25,11 +25,12 @@ class ContactSet {
   /// and lists the limits anew.
   void track(const Pose& X, double reach);
   /// Starts pairs from triangle pairs: nearest features at `X_near` (close to the contact), followed to their minimum
-  /// at the pose of the last track(). Returns how many pairs within reach were not known yet.
-  int seed(const std::vector<FacePair>& triangles, const Pose& X_near);
+  /// at the pose of the last track(). Returns how many pairs within reach were not known yet. Ends early after
+  /// `deadline_ns` of monotonic_ns().
+  int seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns);
   /// Adds limits for this tick only: for each triangle pair (free at the last track()) the separating axis that limits
-  /// the displacement `d` least. Returns how many were added.
-  int cut(const std::vector<FacePair>& triangles, const Displacement& d);
+  /// the displacement `d` least. Returns how many were added. Ends early after `deadline_ns`.
+  int cut(const std::vector<FacePair>& triangles, const Displacement& d, std::int64_t deadline_ns);
 
   const std::vector<Contact>& limits() const { return limits_; }
   /// Limits that were dropped since the last track() because the capacity was used up.

@@ -33,6 +33,8 @@ constexpr std::size_t kKeepSplits = 512;
 /// A tick raises half as many pairs again as it split (or the front grows without end) and this many more; what it
 /// cannot raise is owed, up to a bound, and made up by as many more a tick.
 constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
+/// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
+constexpr int kDebtShare = 64, kFullShare = 4;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
 /// motion of late counts, since a blocked part stands still between two pushes.
 constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9;
@@ -104,7 +106,11 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
   } else if (report_.exhausted) {
     report_.status = CertifyStatus::cut;
   }
-  if (report_.status == CertifyStatus::certified) raise();
+  // Also after a motion that was not certified: its splits stay, and a front that is full of them certifies nothing.
+  // Not when time ran out.
+  const bool full = report_.status == CertifyStatus::cut && report_.overflow;
+  if (full) debt_ = std::max(debt_, pairs() / kFullShare);
+  if (!report_.exhausted || full) raise();
   report_.pairs = pairs();
   return report_;
 }
@@ -170,8 +176,7 @@ void PatchFront::collect_failures() {
 
 bool PatchFront::spend() {
   if (++report_.searches > limit_.searches) return false;
-  return report_.searches % kClockStride != 0 || limit_.deadline_ns == std::numeric_limits<std::int64_t>::max() ||
-         monotonic_ns() < limit_.deadline_ns;
+  return report_.searches % kClockStride != 0 || !past(limit_.deadline_ns);
 }
 
 PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
@@ -303,7 +308,7 @@ void PatchFront::roll_back() {
 }
 
 void PatchFront::raise() {
-  const int wanted = std::min(debt_, kMostRaises + report_.splits + report_.splits / 2);
+  const int wanted = std::min(debt_, kMostRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
   int tries = 2 * wanted;
   // Round robin over both groups, once around at most.
   for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries > 0; --looks) {
@@ -311,7 +316,7 @@ void PatchFront::raise() {
     const std::uint32_t id = cursor_ < boxes_.count ? boxes_.owner[cursor_] : triangles_.owner[cursor_ - boxes_.count];
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
-    --tries;
+    if (--tries % kClockStride == 0 && past(limit_.deadline_ns)) break;
     if (try_raise(parent)) ++report_.merges;
   }
   debt_ -= report_.merges;

@@ -7,6 +7,7 @@
 #include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/patch_separate.hpp"
 #include "narrowphase/patch_tree.hpp"
+#include "tegotae/core/clock.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae {
@@ -20,8 +21,8 @@ struct FrontCapacity {
 
 /// How much one call may do.
 struct WorkLimit {
-  int searches = 8192;                                                  ///< searches for a plane; about 0.2 µs each
-  std::int64_t deadline_ns = std::numeric_limits<std::int64_t>::max();  ///< of monotonic_ns()
+  int searches = 8192;                     ///< searches for a plane; about 0.2 µs each
+  std::int64_t deadline_ns = kNoDeadline;  ///< of monotonic_ns()
 };
 
 enum class CertifyStatus : std::uint8_t {

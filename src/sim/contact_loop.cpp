@@ -127,7 +127,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.cut = false;
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
-                     : std::numeric_limits<std::int64_t>::max();
+                     : kNoDeadline;
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
@@ -173,7 +173,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
 }
 
 bool ContactLoop::late() const {
-  return deadline_ns_ != std::numeric_limits<std::int64_t>::max() && monotonic_ns() >= deadline_ns_;
+  return past(deadline_ns_);
 }
 
 void ContactLoop::track() {
@@ -220,8 +220,8 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
       trust_ = 0.5 * std::min(trust_, size(trial.d));
       return 0;
     }
-    if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_)) == 0 &&
-        contacts_->cut(blocking_, trial.d) == 0)
+    if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
+        contacts_->cut(blocking_, trial.d, deadline_ns_) == 0)
       break;
   }
   if (!found) {

@@ -1,6 +1,7 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "contact/contact_set.hpp"
+#include "tegotae/core/clock.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -27,7 +28,7 @@ TEST_CASE("a box over a floor has its four corners as contacts, also when it hov
   const Pose X{rotation({0.7 * tilt, tilt, 0}), {0.01, 0.02, 0.0202}};
   set.track(X, 0.001);
   REQUIRE(set.limits().empty());
-  REQUIRE(set.seed(all_pairs(*A, *B), X) >= 4);
+  REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) >= 4);
   int corners_found = 0;
   for (double sx : {-0.02, 0.02})
     for (double sy : {-0.02, 0.02}) {
@@ -48,7 +49,7 @@ TEST_CASE("pairs keep their identity and age while followed, and are dropped pas
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 256);
   Pose X{Quat::Identity(), {0, 0, 0.0201}};
   set.track(X, 0.001);
-  set.seed(all_pairs(*A, *B), X);
+  set.seed(all_pairs(*A, *B), X, kNoDeadline);
   const std::size_t n = set.limits().size();
   REQUIRE(n >= 4);
   for (int tick = 1; tick <= 10; ++tick) {
@@ -56,7 +57,7 @@ TEST_CASE("pairs keep their identity and age while followed, and are dropped pas
     set.track(X, 0.001);
     REQUIRE(set.limits().size() == n);
     for (const Contact& c : set.limits()) REQUIRE(c.age == tick);
-    REQUIRE(set.seed(all_pairs(*A, *B), X) == 0);  // nothing new: the followed pairs are these
+    REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) == 0);  // nothing new: the followed pairs are these
   }
   X.p.z() += 0.002;
   set.track(X, 0.001);
@@ -72,7 +73,7 @@ TEST_CASE("a corner in a concave corner is limited by both faces", "[contact]") 
   ContactSet set(A, {{B, Pose{}}}, Vec3::Zero(), 256);
   const Pose X{Quat::Identity(), {0.0205, 0, 0.0203}};
   set.track(X, 0.002);
-  set.seed(all_pairs(*A, *B), X);
+  set.seed(all_pairs(*A, *B), X, kNoDeadline);
   bool floor = false, wall = false;
   const Vec3 wall_normal = Vec3(1, 0, 0.2).normalized();
   for (const Contact& c : set.limits()) {
@@ -88,7 +89,7 @@ TEST_CASE("capacity is kept and its overflow counted", "[contact]") {
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 2);
   const Pose X{Quat::Identity(), {0, 0, 0.0201}};
   set.track(X, 0.001);
-  set.seed(all_pairs(*A, *B), X);
+  set.seed(all_pairs(*A, *B), X, kNoDeadline);
   REQUIRE(set.limits().size() == 2);
   REQUIRE(set.overflow() > 0);
 }
