@@ -21,6 +21,8 @@ class ContactLoop {
   /// See HapticLoop::step.
   void step(const Pose& Y, double dt, TickReport& report);
   const Pose& pose() const { return X_; }
+  /// The limits at the end of the last tick.
+  const std::vector<Contact>& limits() const { return contacts_->limits(); }
 
  private:
   /// A displacement together with the pose it leads to.
