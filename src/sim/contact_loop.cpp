@@ -79,9 +79,9 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
     : settings_(settings),
       center_(mass.center),
       metric_(mass),
-      resolver_(make_resolver(settings.resolver, kMostLimits)),
-      rows_(kMostLimits),
-      bounds_(kMostLimits) {
+      resolver_(make_resolver(settings.resolver, kMostLimits + 1)),
+      rows_(kMostLimits + 1),
+      bounds_(kMostLimits + 1) {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
   for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
@@ -146,7 +146,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   } else {
     check_->begin(near_, deadline_ns_);
     track();
-    adapt_keep();
+    adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
@@ -181,9 +181,10 @@ void ContactLoop::track() {
   tracked_ = true;
 }
 
-void ContactLoop::adapt_keep() {
+void ContactLoop::adapt_keep(const Pose& Y) {
   // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
-  // when a motion exists that leaves twice as much everywhere.
+  // when a motion exists that leaves twice as much everywhere and does not lead away from the pen (out of a hole there
+  // is always room).
   const auto& limits = contacts_->limits();
   if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
   metric_.set_orientation(X_.q);
@@ -192,6 +193,8 @@ void ContactLoop::adapt_keep() {
     rows_.push_row(metric_.row(limits[i]));
     bounds_[i] = 2 * keep_ - limits[i].gap;
   }
+  const Vec6 wanted = metric_.whiten(displacement(X_, Y, center_));
+  if (wanted.norm() > kRest && rows_.push_row(wanted.normalized())) bounds_[limits.size()] = 0;
   const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
   keep_ = std::clamp(room ? kKeepGrowth * keep_ : 0.5 * keep_, least_keep_, most_keep_);
 }

@@ -44,7 +44,7 @@ class ContactLoop {
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;
   /// Fits the gap that contacts keep to the room that the part has.
-  void adapt_keep();
+  void adapt_keep(const Pose& Y);
   void track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).

@@ -28,8 +28,8 @@ enum class RecordMode {
 };
 
 /// Writes a CSV file: a header row, then one row a frame, numbers so that reading them gives the same bits, whatever
-/// the locale. Only whole rows are handed to the system, so a killed process leaves a file that ends with a whole row;
-/// what it loses are the last 10 ms (threaded) or 64 KB (synchronous).
+/// the locale. Only whole rows are handed to the system, so a killed process leaves whole rows but perhaps for the last
+/// one; what it loses are the last 10 ms (threaded) or 64 KB (synchronous).
 class Recorder {
  public:
   /// Creates or replaces `path`. `capacity`: frames of the ring. Throws Error naming the path and the cause.
