@@ -35,6 +35,8 @@ constexpr std::size_t kKeepSplits = 512;
 constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
+/// Tries to raise when time ran out (about 40 µs): without them a front that takes longer than a tick never shrinks.
+constexpr int kLateTries = 128;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
 /// motion of late counts, since a blocked part stands still between two pushes.
 constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9;
@@ -107,10 +109,8 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     report_.status = CertifyStatus::cut;
   }
   // Also after a motion that was not certified: its splits stay, and a front that is full of them certifies nothing.
-  // Not when time ran out.
-  const bool full = report_.status == CertifyStatus::cut && report_.overflow;
-  if (full) debt_ = std::max(debt_, pairs() / kFullShare);
-  if (!report_.exhausted || full) raise();
+  if (report_.status == CertifyStatus::cut && report_.overflow) debt_ = std::max(debt_, pairs() / kFullShare);
+  raise();
   report_.pairs = pairs();
   return report_;
 }
@@ -309,14 +309,14 @@ void PatchFront::roll_back() {
 
 void PatchFront::raise() {
   const int wanted = std::min(debt_, kMostRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
-  int tries = 2 * wanted;
+  int tries = report_.exhausted ? std::min(2 * wanted, kLateTries) : 2 * wanted;
   // Round robin over both groups, once around at most.
   for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries > 0; --looks) {
     if (++cursor_ >= boxes_.count + triangles_.count) cursor_ = 0;
     const std::uint32_t id = cursor_ < boxes_.count ? boxes_.owner[cursor_] : triangles_.owner[cursor_ - boxes_.count];
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
-    if (--tries % kClockStride == 0 && past(limit_.deadline_ns)) break;
+    if (--tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (try_raise(parent)) ++report_.merges;
   }
   debt_ -= report_.merges;
