@@ -39,6 +39,10 @@ constexpr double kKeepShare = 0.5;
 // factor where there is room for more.
 constexpr int kAdaptTicks = 8;
 constexpr double kKeepGrowth = 1.1;
+// A part that moved less than this in a tick (m) stands; normals with less than this dot product are of opposite sides,
+// looked for among so many limits.
+constexpr double kStanding = 2e-6, kOpposite = -0.3;
+constexpr std::size_t kMostWedging = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
 constexpr double kLeastKeep = 2e-6;
 // No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
@@ -79,9 +83,9 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
     : settings_(settings),
       center_(mass.center),
       metric_(mass),
-      resolver_(make_resolver(settings.resolver, kMostLimits + 1)),
-      rows_(kMostLimits + 1),
-      bounds_(kMostLimits + 1) {
+      resolver_(make_resolver(settings.resolver, kMostLimits)),
+      rows_(kMostLimits),
+      bounds_(kMostLimits) {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
   for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
@@ -169,6 +173,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
+  moved_ = size(moved);
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
 }
 
@@ -183,20 +188,34 @@ void ContactLoop::track() {
 
 void ContactLoop::adapt_keep(const Pose& Y) {
   // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
-  // when a motion exists that leaves twice as much everywhere and does not lead away from the pen (out of a hole there
-  // is always room).
+  // when a motion exists that leaves twice as much everywhere; out of a hole there always is one, so a part that stands
+  // wedged between opposite sides has none either. The gap never grows under a part at rest: it would push it about.
   const auto& limits = contacts_->limits();
   if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
+  const bool standing = moved_ < kStanding;
+  if (standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged()) {
+    keep_ = std::max(0.5 * keep_, least_keep_);
+    return;
+  }
   metric_.set_orientation(X_.q);
   rows_.clear();
   for (std::size_t i = 0; i < limits.size(); ++i) {
     rows_.push_row(metric_.row(limits[i]));
     bounds_[i] = 2 * keep_ - limits[i].gap;
   }
-  const Vec6 wanted = metric_.whiten(displacement(X_, Y, center_));
-  if (wanted.norm() > kRest && rows_.push_row(wanted.normalized())) bounds_[limits.size()] = 0;
   const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
-  keep_ = std::clamp(room ? kKeepGrowth * keep_ : 0.5 * keep_, least_keep_, most_keep_);
+  if (!room) keep_ = std::max(0.5 * keep_, least_keep_);
+  if (room && !standing) keep_ = std::min(kKeepGrowth * keep_, most_keep_);
+}
+
+bool ContactLoop::wedged() const {
+  const auto& limits = contacts_->limits();
+  const std::size_t n = std::min(limits.size(), kMostWedging);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (std::max(limits[i].gap, limits[j].gap) <= keep_ / kKeepShare && limits[i].n.dot(limits[j].n) < kOpposite)
+        return true;
+  return false;
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {

@@ -45,6 +45,8 @@ class ContactLoop {
   bool late() const;
   /// Fits the gap that contacts keep to the room that the part has.
   void adapt_keep(const Pose& Y);
+  /// Whether contacts press from opposite sides.
+  bool wedged() const;
   void track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
@@ -67,6 +69,7 @@ class ContactLoop {
   Pose X_;
   Pose last_Y_;
   double trust_;
+  double moved_ = 0;     ///< of X in the last tick, m
   int still_ticks_ = 0;  ///< since the pen last moved
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
