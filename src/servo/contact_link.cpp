@@ -1,11 +1,12 @@
 #include "tegotae/servo/contact_link.hpp"
 
 #include "servo/shm_convert.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 
 ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center)
-    : channel_(channel), coupling_(coupling), center_(center) {}
+    : channel_(channel), coupling_(coupling), center_(center), session_(monotonic_ns()) {}
 
 bool ContactLink::read(PenSample& pen) const noexcept {
   tegotae_shm_device in;
@@ -29,6 +30,9 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.heartbeat_ns = now_ns;
   out.tick = tick;
   out.device_sequence = device_sequence;
+  out.session = session_;
+  out.enable = 1;
+  out.scale = 1;
   out.touching = proxy.touching ? 1 : 0;
   store(proxy.X.p, out.position);
   store(proxy.X.q, out.orientation);

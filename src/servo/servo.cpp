@@ -23,6 +23,13 @@ constexpr double kLowestRate = 10.0;      // Hz; slower is no servo
 constexpr double kHighestRate = 4000.0;   // Hz
 constexpr double kStatisticsRate = 10.0;  // Hz, how often they are published
 
+void store(const LatencySummary& s, double (&out)[4]) noexcept {
+  out[0] = s.p50;
+  out[1] = s.p99;
+  out[2] = s.p999;
+  out[3] = s.max;
+}
+
 void sleep_until(std::int64_t ns) {
   const timespec wake = {ns / 1'000'000'000, ns % 1'000'000'000};
   // Only a signal ends it early; with an absolute time it is simply called again.
@@ -84,6 +91,10 @@ struct Servo::Impl {
     store(pen.velocity.w, out.angular_velocity);
     store(rendered.wrench.force, out.force);
     store(rendered.wrench.torque, out.torque);
+    store(pen.pose.p, out.raw_position);
+    store(pen.pose.q, out.raw_orientation);
+    out.scale = 1;
+    out.session = application.session;
     channel.write(out);
   }
 
@@ -115,11 +126,15 @@ struct Servo::Impl {
 
   void publish_statistics() noexcept {
     const ServoStatistics s = statistics();
-    channel.write(tegotae_shm_statistics{s.ticks,
-                                         s.missed,
-                                         s.rate_hz,
-                                         {s.late_us.p50, s.late_us.p99, s.late_us.p999, s.late_us.max},
-                                         {s.compute_us.p50, s.compute_us.p99, s.compute_us.p999, s.compute_us.max}});
+    tegotae_shm_statistics out{};
+    out.ticks = s.ticks;
+    out.missed = s.missed;
+    out.set_rate_hz = settings.rate_hz;
+    out.rate_hz = s.rate_hz;
+    store(s.late_us, out.late_us);
+    store(s.compute_us, out.compute_us);
+    out.cpu = -1;
+    channel.write(out);
   }
 
   void loop() noexcept {

@@ -35,6 +35,7 @@ class ContactLink {
   Channel& channel_;
   CouplingSettings coupling_;
   Vec3 center_;
+  std::int64_t session_;  // when this application attached
 };
 
 }  // namespace tegotae
