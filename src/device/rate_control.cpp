@@ -20,7 +20,7 @@ bool positive(double x) {
 /// Speed (of the full one) and direction; the dead zone is round, so that no direction is favored.
 Vec3 shaped(const Vec3& deflection, double dead_zone) {
   const double size = deflection.norm();
-  if (!(size > dead_zone)) return Vec3::Zero();  // not a number neither
+  if (!(size > dead_zone) || !std::isfinite(size)) return Vec3::Zero();
   const double beyond = std::min(1.0, (size - dead_zone) / (1.0 - dead_zone));
   return beyond * beyond / size * deflection;
 }
