@@ -80,6 +80,7 @@ struct SimulatedDevice::Impl {
   Wrench rendered;
   std::atomic<std::int64_t> time_ns{0};  // since the script's begin; atomic for script_time()
   std::int64_t last_read_clock_ns = -1;  // wall clock
+  bool waiting = settings.wait_for_application;
   DeviceStatus status = DeviceStatus::uninitialized;
 
   // What was read last.
@@ -146,7 +147,7 @@ DeviceState SimulatedDevice::read() noexcept {
   std::int64_t stamp = impl_->time_ns.load(std::memory_order_relaxed);
   if (impl_->settings.wall_clock) {
     stamp = monotonic_ns();
-    if (impl_->last_read_clock_ns >= 0)
+    if (impl_->last_read_clock_ns >= 0 && !impl_->waiting)
       impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs), center());
     impl_->last_read_clock_ns = stamp;
   }
@@ -175,6 +176,10 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   // The difference to the last sample would be a jump of the point, not a motion.
   impl_->velocity.forget();
   Device::set_center(center_now);
+}
+
+void SimulatedDevice::set_lead(const Displacement&) noexcept {
+  impl_->waiting = false;
 }
 
 void SimulatedDevice::advance(double dt) noexcept {
