@@ -61,7 +61,7 @@ class Session {
         device_(with_clock(file.device, settings.real_time), file.script, loop_.center()),
         channel_(Channel::create()),
         servo_(device_, channel_),
-        link_(channel_, file.scene.coupling, loop_.center()),
+        link_(channel_, file.scene.coupling, loop_.center(), loop_.gyration()),
         script_seconds_(file.script.end() - file.script.begin()),
         duration_(settings.seconds > 0 ? settings.seconds : script_seconds_ + kSettleTime) {
     const Pose first = file.script.pose(file.script.begin()), last = file.script.pose(file.script.end());
@@ -128,7 +128,8 @@ class Session {
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
-    link_.publish(report.proxy, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
+    link_.publish(report.proxy, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now,
+                  report.planes);
 
     tick_times_.add(took);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
