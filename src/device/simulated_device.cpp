@@ -132,6 +132,18 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, Stylus
 
 SimulatedDevice::~SimulatedDevice() = default;
 
+DeviceInfo SimulatedDevice::info() const {
+  const SimulatedDeviceSettings& s = impl_->settings;
+  DeviceInfo info;
+  info.name = "simulated";
+  info.limits = s.limits;
+  info.damping = s.hand.damping;
+  info.torsional_damping = s.hand.torsional_damping;
+  info.friction = s.friction;
+  info.position_resolution = s.position_resolution;
+  return info;
+}
+
 void SimulatedDevice::start() {
   impl_->rendered = {};
   impl_->last_read_clock_ns = -1;

@@ -43,6 +43,8 @@ class SimulatedDevice final : public Device {
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
+  /// Its damping is the hand's, which it has for good.
+  DeviceInfo info() const override;
   void start() override;
   void stop() override;
   DeviceState read() noexcept override;
