@@ -41,8 +41,7 @@ void run(const char* device) {
     if (there) loop.step(sample.state.pose, 1e-9 * static_cast<double>(now - before));
     ProxyState proxy = loop.report().proxy;
     if (!there) proxy.velocity = {};
-    pen.publish(proxy, tick, sample.state.sequence, monotonic_ns(),
-                there ? loop.report().planes : ContactPlanes{});
+    pen.publish(proxy, tick, sample.state.sequence, monotonic_ns(), there ? loop.report().planes : ContactPlanes{});
   }
 }
 

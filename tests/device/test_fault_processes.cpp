@@ -13,6 +13,7 @@
 #include "device/spawn.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/pose.hpp"
 #include "tegotae/device/channel.hpp"
 
 using namespace tegotae;

@@ -25,8 +25,9 @@ struct Field {
   std::string name, type;
 };
 
-const std::map<std::string, std::size_t> kSize = {{"uint64_t", 8}, {"int64_t", 8}, {"uint32_t", 4}, {"int32_t", 4},
-                                                  {"double", 8},   {"char", 1},    {"tegotae_shm_plane", 56}};
+const std::map<std::string, std::size_t> kSize = {{"uint64_t", 8},          {"int64_t", 8}, {"uint32_t", 4},
+                                                  {"int32_t", 4},           {"double", 8},  {"char", 1},
+                                                  {"tegotae_shm_plane", 56}};
 const std::map<std::string, std::size_t> kNumber = {
     {"TEGOTAE_SHM_NAME", TEGOTAE_SHM_NAME},
     {"TEGOTAE_SHM_PLANES", TEGOTAE_SHM_PLANES},
@@ -93,7 +94,7 @@ TEST_CASE("every field of the segment is in the document, with its offset and ty
   }
   // What the compiler says, where the rules above could be wrong.
   std::size_t end = 0;
-  CHECK(fields("tegotae_shm_application", end)[24].offset == offsetof(tegotae_shm_application, planes));
+  CHECK(fields("tegotae_shm_application", end).back().offset == offsetof(tegotae_shm_application, planes));
   CHECK(end == sizeof(tegotae_shm_application));
   CHECK(fields("tegotae_shm_segment", end).back().offset == offsetof(tegotae_shm_segment, statistics));
 }
@@ -105,8 +106,7 @@ TEST_CASE("every reason is in the document, with its words for a person", "[prot
   int found = 0;
   for (std::sregex_iterator i(header.begin(), header.end(), reason), none; i != none; ++i, ++found) {
     const auto code = static_cast<tegotae::ForceOff>(std::stoul((*i)[2]));
-    const std::string row =
-        "| " + (*i)[2].str() + " | `" + (*i)[1].str() + "` | " + tegotae::to_string(code) + " |\n";
+    const std::string row = "| " + (*i)[2].str() + " | `" + (*i)[1].str() + "` | " + tegotae::to_string(code) + " |\n";
     INFO(row);
     CHECK(document.find(row) != std::string::npos);
   }
