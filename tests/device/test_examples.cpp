@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.hpp"
-#include "device/spawn.hpp"
+#include "spawn.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/servo/attachment.hpp"

@@ -10,7 +10,7 @@
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
-#include "device/spawn.hpp"
+#include "spawn.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/pose.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "catch.hpp"
-#include "device/child_process.hpp"
+#include "child_process.hpp"
 #include "device/moving_pen.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/input_devices.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "catch.hpp"
-#include "device/child_process.hpp"
+#include "child_process.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/channel.hpp"
 
