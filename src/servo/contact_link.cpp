@@ -44,12 +44,18 @@ bool ContactLink::read(PenSample& pen) const noexcept {
   pen.energy = in.energy;
   pen.heartbeat_ns = in.heartbeat_ns;
   pen.tick = in.tick;
+  pen.session = in.session;
+  pen.home_counter = in.home_counter;
   return true;
 }
 
 void ContactLink::set_scale(double scale) {
   if (!(scale >= kLeastScale && scale <= kMostScale)) throw Error("pen: the scale must be from 0.01 to 100");
   scale_ = scale;
+}
+
+bool ContactLink::obeyed(const PenSample& pen) const noexcept {
+  return pen.session == session_ && pen.home_counter == home_counter_;
 }
 
 void ContactLink::home(const Pose& X) noexcept {

@@ -61,6 +61,10 @@ SafetyChain::SafetyChain(const SafetySettings& settings)
       gate_(settings),
       slew_(settings.slew) {}
 
+bool SafetyChain::alive(std::int64_t heartbeat_ns, std::int64_t now_ns) const noexcept {
+  return within(now_ns, heartbeat_ns, timeout_ns_);
+}
+
 ForceOff SafetyChain::emergency(const SafetyInput& in) const noexcept {
   if (in.device_status != DeviceStatus::enabled)
     return in.device_reason == ForceOff::none ? ForceOff::software : in.device_reason;
@@ -74,8 +78,7 @@ ForceOff SafetyChain::off(const SafetyInput& in, double workspace) const noexcep
   if (in.pen_silent) return ForceOff::silent;
   if (settings_.dead_man_buttons != 0 && (in.buttons & settings_.dead_man_buttons) == 0) return ForceOff::dead_man;
   if (!in.attached || !in.force_asked) return ForceOff::software;
-  // A heartbeat from the future is no better than an old one.
-  if (!within(in.now_ns, in.heartbeat_ns, timeout_ns_)) return ForceOff::watchdog;
+  if (!alive(in.heartbeat_ns, in.now_ns)) return ForceOff::watchdog;
   if (in.clutched) return ForceOff::clutched;
   if (in.remapped) return ForceOff::engage;
   if (in.pen_fast) return ForceOff::velocity;

@@ -45,6 +45,8 @@ class SafetyChain {
   explicit SafetyChain(const SafetySettings& settings);
   SafetyOutput apply(const SafetyInput& in) noexcept;
   double thermal_load() const noexcept { return thermal_.load(); }
+  /// Whether a heartbeat of the contact loop is fresh; one from the future is no better than an old one.
+  bool alive(std::int64_t heartbeat_ns, std::int64_t now_ns) const noexcept;
 
  private:
   /// Why the force must be zero at once, or none.

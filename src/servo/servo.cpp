@@ -161,10 +161,13 @@ const RealtimeReport& Servo::realtime() const noexcept {
 }
 
 ServoStatistics Servo::statistics() const noexcept {
-  if (!impl_->thread.joinable()) return impl_->statistics();
-  // The thread owns its counters while it runs; this is what it last published.
+  // The thread owns its counters while it runs.
+  return impl_->thread.joinable() ? servo_statistics(impl_->channel) : impl_->statistics();
+}
+
+ServoStatistics servo_statistics(const ChannelReader& channel) noexcept {
   tegotae_shm_statistics s;
-  if (!impl_->channel.read(s)) return {};
+  if (!channel.read(s)) return {};
   ServoStatistics out;
   out.ticks = s.ticks;
   out.missed = s.missed;

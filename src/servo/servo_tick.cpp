@@ -64,6 +64,13 @@ void ServoTick::read_application() noexcept {
   if (command_.center != device_.center()) device_.set_center(command_.center);
 }
 
+void ServoTick::tell_lead(std::int64_t now_ns) noexcept {
+  if (!attached_ || !sane_ || !started_ || !chain_.alive(application_.heartbeat_ns, now_ns)) return;
+  Displacement lead = displacement(proxy_of(application_).X, mapping_.Y(), command_.center);
+  lead.dp /= mapping_.scale();  // in the pen's meters
+  device_.set_lead(lead);
+}
+
 void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
   moved_ = {};
   in.pen_proper = proper(pen.pose) && pen.velocity.v.allFinite() && pen.velocity.w.allFinite();
@@ -102,6 +109,7 @@ void ServoTick::run(std::int64_t now_ns) noexcept {
   in.dt = ticks_ == 0 ? 1.0 / settings_.rate_hz : 1e-9 * static_cast<double>(now_ns - last_ns_);
   flags_ = 0;
   read_application();
+  tell_lead(now_ns);
   const DeviceState pen = device_.read();
   follow_pen(pen, in);
 

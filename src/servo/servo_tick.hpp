@@ -26,6 +26,8 @@ class ServoTick {
 
  private:
   void read_application() noexcept;
+  /// Tells the device how far it is ahead of the part while an application is there.
+  void tell_lead(std::int64_t now_ns) noexcept;
   ProxyState proxy() const noexcept;
   /// Wrench on the pen that the coupling asks for; sets what its springs store.
   Wrench coupling(double& stored) noexcept;

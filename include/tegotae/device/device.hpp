@@ -91,6 +91,10 @@ class Device {
   const Vec3& center() const noexcept { return center_; }
   virtual void set_center(const Vec3& center) noexcept { center_ = center; }
 
+  /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
+  /// read() while an application is attached; an input that is integrated stays near the part by it.
+  virtual void set_lead(const Displacement&) noexcept {}
+
  private:
   Vec3 center_ = Vec3::Zero();
 };

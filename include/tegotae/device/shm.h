@@ -3,8 +3,10 @@
  *
  * One segment a device: a POSIX shared-memory object of exactly sizeof(struct tegotae_shm_segment) bytes, owned by the
  * user and with permission 0600, in the machine's byte order. Whoever attaches checks owner, permission, size, magic
- * and version before use. Units: m, rad, s, N, N*m; times are CLOCK_MONOTONIC in ns; quaternions are w, x, y, z and of
- * unit length; all vectors are expressed in the world.
+ * and version before use. While they live, the device's process and the application hold a write lock (F_OFD_SETLK) on
+ * a byte of the object: a device that cannot lock its byte finds the name in use; one that can takes over what a dead
+ * process left, by unlinking it and creating anew. Units: m, rad, s, N, N*m; times are CLOCK_MONOTONIC in ns;
+ * quaternions are w, x, y, z and of unit length; all vectors are expressed in the world.
  *
  * Every slot has one writer and any number of readers, and is guarded by a sequence counter (a seqlock):
  *   0 = never written, odd = a write is going on, even = whole. Neither side ever waits for the other.
@@ -34,6 +36,10 @@
 #define TEGOTAE_SHM_MAGIC UINT64_C(0x314541544F474554)
 /* Changes with every change of the layout or of a field's meaning. */
 #define TEGOTAE_SHM_VERSION UINT32_C(2)
+
+/* Bytes of the object that are locked, by the device's process and by the application: the kernel ends a lock of an
+ * open file description with the process that holds it, so the lock is the proof that it lives. */
+enum { TEGOTAE_SHM_LOCK_DEVICE = 0, TEGOTAE_SHM_LOCK_APPLICATION = 1 };
 
 /* tegotae_shm_device.status */
 enum {

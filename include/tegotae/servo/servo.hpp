@@ -33,6 +33,9 @@ struct ServoStatistics {
   std::array<std::uint64_t, TEGOTAE_SHM_REASONS> force_off{};
 };
 
+/// What the servo at the other end of `channel` last told of itself; zeros before it has.
+ServoStatistics servo_statistics(const ChannelReader& channel) noexcept;
+
 /// The fast loop: pen in, mapping, coupling to the newest proxy, safety chain, wrench out, pen state to the
 /// application. Either as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.
 class Servo {
