@@ -10,6 +10,7 @@
 
 #include "alloc_guard.hpp"
 #include "catch.hpp"
+#include "puppet_device.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/simulated_device.hpp"
@@ -17,46 +18,17 @@
 #include "tegotae/servo/servo.hpp"
 
 using namespace tegotae;
+using test::engage;
+using test::kMs;
+using test::PuppetDevice;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-/// A pen that says what the test tells it to, and remembers what it was asked to render.
-class PuppetDevice : public Device {
- public:
-  DeviceState state;
-  DeviceStatus now = DeviceStatus::enabled;
-  Wrench rendered;
-  void start() override {}
-  void stop() override {}
-  DeviceState read() noexcept override {
-    ++state.sequence;
-    return state;
-  }
-  void write(const Wrench& wrench) noexcept override { rendered = wrench; }
-  DeviceStatus status() const noexcept override { return now; }
-  ForceOff reason() const noexcept override {
-    return now == DeviceStatus::enabled ? ForceOff::none : ForceOff::disconnected;
-  }
-};
 
 ProxyState touching_at(const Vec3& p) {
   ProxyState x;
   x.X.p = p;
   x.touching = true;
   return x;
-}
-
-/// Ticks without contact until the force is engaged and ramped in; returns the time of the last tick.
-std::int64_t engage(Servo& servo, ContactLink& link, std::int64_t from_ns = 0) {
-  std::int64_t now = from_ns;
-  for (int i = 0; i < 250; ++i) {
-    now += kMs;
-    link.publish({}, 0, 0, now);
-    servo.tick(now);
-  }
-  return now;
 }
 
 /// Moves the pen by a script against the wall x >= 0, the proxy being the pen's center projected on the wall, in
@@ -212,6 +184,125 @@ TEST_CASE("whatever stands in the application's slot, the wrench stays within th
     REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-15));
     REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-15));
     REQUIRE(device.center().allFinite());
+  }
+}
+
+TEST_CASE("every field of the application's slot may hold garbage, one at a time or all", "[servo]") {
+  PuppetDevice device;
+  device.state.pose.p = Vec3(0, 0, -0.002);
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
+  Servo servo(device, channel);
+  std::mt19937_64 rng(12);
+  ContactPlanes planes;
+  planes.planes[0] = {Vec3::UnitZ(), Vec3::Zero(), 0};
+  planes.count = 1;
+  std::int64_t now = 0;
+  std::uint64_t rendered = 0;
+  Wrench last;
+  constexpr std::size_t kWords = sizeof(tegotae_shm_application) / 8;
+  for (int i = 0; i < 100'000; ++i) {
+    now += kMs;
+    // Long enough without garbage to be engaged and to press.
+    const int phase = i % 400;
+    planes.pen = device.state.pose;
+    link.publish(phase < 300 ? ProxyState() : touching_at(Vec3::Zero()), 0, 0, now, planes);
+    if (phase >= 340) {
+      tegotae_shm_application slot;
+      REQUIRE(channel.read(slot));
+      std::uint64_t words[kWords];
+      std::memcpy(words, &slot, sizeof slot);
+      const std::uint64_t odd[] = {rng(), 0x7ff8000000000000u, 0x7ff0000000000000u, 0xffffffffffffffffu,
+                                   0,     rng() >> 32};
+      if (phase % 10 == 0)
+        for (std::uint64_t& word : words) word = rng() % 2 == 0 ? word : odd[rng() % 6];
+      else
+        words[static_cast<std::size_t>(i) % kWords] = odd[rng() % 6];
+      std::memcpy(&slot, words, sizeof slot);
+      channel.write(slot);
+    }
+    servo.tick(now);
+    REQUIRE(device.rendered.force.allFinite());
+    REQUIRE(device.rendered.torque.allFinite());
+    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
+    REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-12));
+    const double step = (device.rendered.force - last.force).norm();
+    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
+    last = device.rendered;
+    REQUIRE(device.center().allFinite());
+    rendered += device.rendered.force.norm() > 0.5 ? 1 : 0;
+  }
+  CHECK(rendered > 5'000);
+}
+
+TEST_CASE("a pen that jumps, says NaN or falls silent for 10 s gets no sudden force", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  Servo servo(device, channel);
+  std::mt19937_64 rng(13);
+  std::normal_distribution<double> normal;
+  std::int64_t now = engage(servo, link);
+  Wrench last;
+  PenSample pen;
+  const auto tick = [&](bool repeat) {
+    now += kMs;
+    // The wall x >= 0, the proxy on it.
+    ProxyState x;
+    if (link.read(pen) && pen.state.pose.p.allFinite()) x.X = pen.state.pose;
+    x.touching = x.X.p.x() < 0;
+    x.X.p.x() = std::max(0.0, x.X.p.x());
+    link.publish(x, 0, 0, now);
+    if (repeat) --device.state.sequence;
+    device.state.time_ns = now;
+    servo.tick(now);
+    REQUIRE(link.read(pen));
+    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
+    const double step = (device.rendered.force - last.force).norm();
+    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
+    last = device.rendered;
+  };
+  const auto press = [&] {
+    device.state.pose = {Quat::Identity(), Vec3(0.01, 0, 0)};
+    for (int i = 0; i < 400; ++i) tick(false);
+    for (int i = 0; i < 60; ++i) {
+      device.state.pose.p.x() -= 0.2e-3;
+      tick(false);
+    }
+    REQUIRE(device.rendered.force.x() > 1);
+  };
+  press();
+  for (int i = 0; i < 10'000; ++i) {
+    tick(true);
+    if (i > 25) REQUIRE(device.rendered.force.norm() == 0);
+  }
+  CHECK(pen.reason == ForceOff::silent);
+  device.state.pose.p.x() = -0.1;  // it comes back somewhere else
+  for (int i = 0; i < 100; ++i) tick(false);
+  CHECK(device.rendered.force.norm() == 0);
+  CHECK(pen.reason == ForceOff::engage);
+  for (int round = 0; round < 50; ++round) {
+    press();
+    const DeviceState good = device.state;
+    switch (round % 4) {
+      case 0:
+        device.state.pose.p[static_cast<int>(rng() % 3)] = std::numeric_limits<double>::quiet_NaN();
+        break;
+      case 1:
+        device.state.velocity.w.x() = std::numeric_limits<double>::infinity();
+        break;
+      case 2:
+        device.state.pose.p += Vec3(normal(rng), normal(rng), normal(rng));
+        break;
+      default:
+        device.state.pose.q.coeffs() *= 1 + normal(rng);
+    }
+    for (int i = 0; i < 10; ++i) tick(false);
+    CHECK(device.rendered.force.norm() == 0);
+    device.state.pose = good.pose;
+    device.state.velocity = good.velocity;
+    tick(false);
+    CHECK(device.rendered.force.norm() == 0);
   }
 }
 
