@@ -121,8 +121,7 @@ class Session {
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
-    pen_->publish(report.proxy, report.planes, number, pen.state.sequence,
-                  settings_.real_time ? monotonic_ns() : now);
+    pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
     sequence_ = pen.state.sequence;
 
     tick_times_.add(took);

@@ -1,5 +1,7 @@
 // Processes that die: the application in contact, and the device. Everything is judged by the time stamps in the
 // segment and by the clock readings that the application says, not by when this test was woken.
+#include <signal.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -188,4 +190,23 @@ TEST_CASE("an application notices that its device died, keeps the part, and take
   }
   std::cout << TEGOTAE_FAULT_DEVICE_KILLS << " devices killed: noticed at most " << 1e-6 * static_cast<double>(latest)
             << " ms after the last heartbeat\n";
+}
+
+TEST_CASE("a device that was only held up is the same device afterwards", "[fault]") {
+  const test::TempFolder folder;
+  const std::unique_ptr<Program> device = start_device(folder);
+  const std::unique_ptr<Program> application = start_application();
+  REQUIRE(next_event(*application).what == "back");
+  kill(device->pid(), SIGSTOP);
+  const Event lost = next_event(*application);
+  REQUIRE(lost.what == "lost");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  // It lives: nobody takes its name.
+  CHECK_THROWS_WITH(Channel::create(kName), Catch::Contains("alive"));
+  kill(device->pid(), SIGCONT);
+  const Event back = next_event(*application);
+  REQUIRE(back.what == "back");
+  CHECK(back.place == lost.place);
+  Observer observer;
+  CHECK(observer.wait(10, [&] { return in_contact(observer); }));
 }
