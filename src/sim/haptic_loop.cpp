@@ -83,6 +83,9 @@ const TickReport& HapticLoop::report() const {
 const Vec3& HapticLoop::center() const {
   return state_->mass.center;
 }
+Mat3 HapticLoop::gyration() const {
+  return state_->mass.inertia / state_->mass.mass;
+}
 const ContactSettings& HapticLoop::contact() const {
   return state_->settings;
 }
