@@ -75,6 +75,8 @@ class Session {
       summary_.record_dropped = recorder_->dropped();
     }
     summary_.servo = pen_->statistics();
+    summary_.missing_realtime = pen_->missing_realtime();
+    summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
     const Pose& X = loop_.report().proxy.X;
@@ -121,8 +123,7 @@ class Session {
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
-    pen_->publish(report.proxy, report.planes, number, pen.state.sequence,
-                  settings_.real_time ? monotonic_ns() : now);
+    pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
     sequence_ = pen.state.sequence;
 
     tick_times_.add(took);
