@@ -15,7 +15,9 @@ constexpr double kEnvelope = 2e-6;
 constexpr double kLongestTick = 0.02;
 // Impulses of a sub-step; a part wedged between contacts would go on for ever. Gaps are recovered in the first of them
 // only: those of opposite sides may not recover at once.
-constexpr int kMostImpulses = 200, kRecovering = 40;
+constexpr int kMostImpulses = 100, kRecovering = 30;
+// Pieces of a tick; each goes to the next collision.
+constexpr std::size_t kMostPieces = 1024;
 // New limits looked for on one piece of the way before it is shortened.
 constexpr int kMostSearches = 6;
 constexpr int kMostHalvings = 4;
@@ -47,6 +49,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
 
 void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
+  report.pieces.reserve(kMostPieces);  // in the first tick
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
   report.cut = false;
@@ -62,7 +65,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, mass_.center));
   if (h > 0) {
     const Twist pen{travel.dp / time, travel.dr / time};
-    for (int i = 1; i <= n && !late(); ++i) {
+    for (int i = 1; i <= n && !late() && report.pieces.size() < kMostPieces; ++i) {
       accelerate(displaced(last_Y_, mass_.center, (static_cast<double>(i) / n) * travel), pen, h);
       substep(h, report);
     }
@@ -105,9 +108,10 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     return;
   }
   at_.check->begin(near_, deadline_ns_);
+  tracked_ = false;  // planes for motions of the last sub-step are of no more use
   double left = h;
   int impulses = 0, searches = 0;
-  while (left > 0 && !late()) {
+  while (left > 0 && !late() && report.pieces.size() < kMostPieces) {
     if (!tracked_) at_.contacts->track(X_, at_.reach);
     tracked_ = true;
     Collision next;
