@@ -38,8 +38,8 @@ constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
 /// Tries to raise in one call: fewer than the least share come off, and the next call tries half as many; more than the
-/// good share, twice as many.
-constexpr int kFewestTries = 8, kMostTries = 256, kPoorShare = 8, kGoodShare = 3;
+/// good share, twice as many. Never less than the fewest, and one for so many pairs.
+constexpr int kFewestTries = 8, kPairsPerTry = 256, kMostTries = 256, kPoorShare = 8, kGoodShare = 3;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
 constexpr int kLateTries = 32;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
@@ -160,18 +160,15 @@ LaneSweep PatchFront::lane_sweep() const {
 
 bool PatchFront::collect_failures() {
   const LaneSweep sweep = lane_sweep();
-  alignas(kLanes * sizeof(float)) std::array<float, kChunk> margins;
   failure_count_ = 0;
   for (const Group* g : {&triangles_, &boxes_}) {
-    const auto check = g == &boxes_ ? box_margins : triangle_margins;
+    const auto check = g == &boxes_ ? box_failures : triangle_failures;
     for (std::uint32_t first = 0; first < g->count; first += kChunk) {
       if (past(limit_.deadline_ns)) return false;
-      const std::uint32_t count = std::min(g->count - first, kChunk);
-      check(g->lanes, first, count, sweep, margins.data());
-      for (std::uint32_t i = 0; i < count; ++i) {
-        failures_[failure_count_] = g->owner[first + i];
-        failure_count_ += !(margins[i] > 0);
-      }
+      std::uint32_t* failed = failures_.data() + failure_count_;
+      const std::size_t n = check(g->lanes, first, std::min(g->count, first + kChunk), sweep, failed);
+      for (std::size_t i = 0; i < n; ++i) failed[i] = g->owner[failed[i]];
+      failure_count_ += n;
     }
   }
   return true;
@@ -299,6 +296,8 @@ void PatchFront::roll_back() {
 
 void PatchFront::raise() {
   const int wanted = std::min(debt_, kMostRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
+  const int fewest = std::max(kFewestTries, pairs() / kPairsPerTry);
+  effort_ = std::max(effort_, fewest);
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
   int tries = 0;
   // Round robin over both groups, once around at most.
@@ -310,7 +309,7 @@ void PatchFront::raise() {
     if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (try_raise(parent)) ++report_.merges;
   }
-  if (tries >= kFewestTries && kPoorShare * report_.merges < tries) effort_ = std::max(effort_ / 2, kFewestTries);
+  if (kPoorShare * report_.merges < tries) effort_ /= 2;
   if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMostTries);
   debt_ -= report_.merges;
 }

@@ -83,26 +83,38 @@ TEGOTAE_INLINE bool all_positive(Lane x) {
   return (two[0] | two[1]) == 0;
 }
 
-}  // namespace
-
-TEGOTAE_WIDE void box_margins(const LaneBlocks& pairs, std::size_t first, std::size_t count, const LaneSweep& sweep,
-                              float* margins) {
-  const float* f = pairs.block(first);
-  for (std::size_t i = 0; i < count; i += kLanes, f += kBoxFields * kLanes) {
-    Lane margin = box_margin<Lane>(f, sweep.coarse);
-    if (!all_positive(margin)) margin = __builtin_convertvector(box_margin<FineLane>(f, sweep.fine), Lane);
-    *reinterpret_cast<Lane*>(margins + i) = margin;
+/// Appends the lanes of a block that do not stay positive.
+TEGOTAE_INLINE std::size_t append_failures(Lane margin, std::size_t slot, std::size_t end, std::uint32_t* out) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < kLanes && slot + i < end; ++i) {
+    out[n] = static_cast<std::uint32_t>(slot + i);
+    n += !(margin[i] > 0);
   }
+  return n;
 }
 
-TEGOTAE_WIDE void triangle_margins(const LaneBlocks& pairs, std::size_t first, std::size_t count,
-                                   const LaneSweep& sweep, float* margins) {
+}  // namespace
+
+TEGOTAE_WIDE std::size_t box_failures(const LaneBlocks& pairs, std::size_t first, std::size_t end,
+                                      const LaneSweep& sweep, std::uint32_t* failed) {
   const float* f = pairs.block(first);
-  for (std::size_t i = 0; i < count; i += kLanes, f += kTriFields * kLanes) {
-    Lane margin = triangle_margin<Lane>(f, sweep.coarse);
-    if (!all_positive(margin)) margin = __builtin_convertvector(triangle_margin<FineLane>(f, sweep.fine), Lane);
-    *reinterpret_cast<Lane*>(margins + i) = margin;
+  std::size_t n = 0;
+  for (std::size_t i = first; i < end; i += kLanes, f += kBoxFields * kLanes) {
+    if (all_positive(box_margin<Lane>(f, sweep.coarse))) continue;
+    n += append_failures(__builtin_convertvector(box_margin<FineLane>(f, sweep.fine), Lane), i, end, failed + n);
   }
+  return n;
+}
+
+TEGOTAE_WIDE std::size_t triangle_failures(const LaneBlocks& pairs, std::size_t first, std::size_t end,
+                                           const LaneSweep& sweep, std::uint32_t* failed) {
+  const float* f = pairs.block(first);
+  std::size_t n = 0;
+  for (std::size_t i = first; i < end; i += kLanes, f += kTriFields * kLanes) {
+    if (all_positive(triangle_margin<Lane>(f, sweep.coarse))) continue;
+    n += append_failures(__builtin_convertvector(triangle_margin<FineLane>(f, sweep.fine), Lane), i, end, failed + n);
+  }
+  return n;
 }
 
 }  // namespace tegotae
