@@ -64,8 +64,8 @@ class ContactSet {
   int capacity_;
   Pose X_;
   double reach_ = 0;
-  std::vector<Pair> pairs_;          ///< of the last finished track; `followed_` of them are in next_ already
-  std::vector<Pair> next_;           ///< of this track
+  std::vector<Pair> pairs_;  ///< of the last finished track; `followed_` of them are in next_ already
+  std::vector<Pair> next_;   ///< of this track
   std::size_t followed_ = 0;
   std::vector<std::int32_t> table_;  ///< open addressing into next_, -1 is empty
   std::vector<std::size_t> taken_;   ///< places of table_ that are not

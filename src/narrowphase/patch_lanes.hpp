@@ -67,9 +67,9 @@ enum BoxField : std::size_t {
 /// Fields of a triangle pair: the same (the plane stands at the same place), with three corners.
 enum TriangleField : std::size_t { kTriNormal = 0, kTriOffset = 3, kTriCorners = 4, kTriReach = 13, kTriFields };
 
-/// Which of the pairs from slot `first` (the first of a block) up to `end` do not certainly keep a positive gap to their
-/// plane during the motion: their slots, in order, to `failed` (room for end - first); returns how many. The same on
-/// every processor: the wide versions do the same operations in the same order, none fused.
+/// Which of the pairs from slot `first` (the first of a block) up to `end` do not certainly keep a positive gap to
+/// their plane during the motion: their slots, in order, to `failed` (room for end - first); returns how many. The same
+/// on every processor: the wide versions do the same operations in the same order, none fused.
 std::size_t box_failures(const LaneBlocks& pairs, std::size_t first, std::size_t end, const LaneSweep& sweep,
                          std::uint32_t* failed);
 std::size_t triangle_failures(const LaneBlocks& pairs, std::size_t first, std::size_t end, const LaneSweep& sweep,
