@@ -87,6 +87,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     all_free = false;
     for (const BlockingPair& pair : front.blocking())
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
+    if (report.exhausted && past(limit_.deadline_ns)) break;
   }
   if (all_free) return MotionAnswer::free;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;

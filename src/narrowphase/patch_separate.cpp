@@ -40,7 +40,8 @@ struct Bulge {
 };
 
 template <typename Pair>
-bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep, double spare) {
+bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep,
+                 double spare) {
   const double share = bulge.share(n0, n1);
   const double alpha = pair.start(n0) - share * bulge.at_start - spare - sweep.start_floor;
   if (!(alpha >= 0)) return false;
@@ -191,39 +192,6 @@ struct Edges {
   }
 };
 
-/// Keeps the axis of the start that, taken as it stands, the end violates least.
-class LeastLimiting {
- public:
-  LeastLimiting(const TrianglePair& pair, double floor) : pair_(pair), floor_(floor) {}
-
-  void offer(const Vec3& n0, const Vec3&) { keep(pair_.start(n0), pair_.end(n0), n0); }
-  void offer_both_ways(const Vec3& n0, const Vec3&) {
-    const Span a0(n0, pair_.p0), b(n0, pair_.q), a1(n0, pair_.p1);
-    if (a0.lo - b.hi > b.lo - a0.hi) {
-      keep(a0.lo - b.hi, a1.lo - b.hi, n0);
-    } else {
-      keep(b.lo - a0.hi, b.lo - a1.hi, -n0);
-    }
-  }
-  const Vec3& normal() const { return normal_; }
-  double gap() const { return gap_; }
-
- private:
-  void keep(double s0, double s1, const Vec3& n) {
-    const bool apart = s0 >= floor_;
-    // Where nothing separates at the start either (by rounding), the axis of least overlap.
-    const double value = apart ? s1 : s0;
-    if (apart == apart_ ? value > value_ : apart) apart_ = apart, value_ = value, gap_ = s0, normal_ = n;
-  }
-
-  const TrianglePair& pair_;
-  double floor_;
-  bool apart_ = false;
-  double value_ = -std::numeric_limits<double>::infinity();
-  double gap_ = 0;
-  Vec3 normal_ = Vec3::Zero();
-};
-
 /// The cheap directions: both normals, and from center to center.
 void offer_normals(const TrianglePair& t, Search& search) {
   auto normal = [](const std::array<Vec3, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); };
@@ -236,8 +204,7 @@ void offer_normals(const TrianglePair& t, Search& search) {
 }
 
 /// All directions that can separate two triangles; offered to `search` with their counterparts at the end.
-template <typename Sink>
-void offer_triangle_axes(const TrianglePair& t, Sink& search) {
+void offer_triangle_axes(const TrianglePair& t, Search& search) {
   const Edges a0(t.p0), a1(t.p1), b(t.q);
   if (!b.n.isZero(0)) search.offer_both_ways(b.n, b.n);
   if (!a0.n.isZero(0)) search.offer_both_ways(a0.n, a1.n);
@@ -256,15 +223,13 @@ void offer_triangle_axes(const TrianglePair& t, Sink& search) {
   }
 }
 
-template <typename Sink>
-void offer_closest(const TrianglePair& t, Sink& search) {
+void offer_closest(const TrianglePair& t, Search& search) {
   const Vec3 n0 = edge_direction(t.p0, t.q), n1 = edge_direction(t.p1, t.q);
   if (!n0.isZero(0) && !n1.isZero(0)) search.offer(n0, n1);
 }
 
 bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                   double s0, const Placement& from, double s1, const Placement& to, int halvings, Vec3& plane,
-                   bool& overlap) {
+                   double s0, const Placement& from, double s1, const Placement& to, int halvings, Vec3& plane) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
   if (stays_apart(pair, plane, plane, bulge, sweep, 0)) return true;
@@ -275,18 +240,15 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   offer_triangle_axes(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
   // The axes are complete, but for triangles without a plane.
-  overlap = search.end() < 0 && !degenerate(a) && !degenerate(b);
-  if (overlap) return false;
+  if (search.end() < 0 && !degenerate(a) && !degenerate(b)) return false;
   offer_closest(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
-  overlap = search.end() < sweep.floor;
-  if (overlap || search.start() < sweep.start_floor || halvings == 0) return false;
+  if (search.end() < sweep.floor || search.start() < sweep.start_floor || halvings == 0) return false;
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
   Vec3 half_plane = search.best().n0;
-  bool overlap_inside = false;
-  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, half_plane, overlap_inside) ||
-      !separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, half_plane, overlap_inside)) {
+  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, half_plane) ||
+      !separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, half_plane)) {
     return false;
   }
   plane = half_plane;
@@ -392,18 +354,8 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        Vec3& plane, TriangleBlock& block) {
-  block = {};
-  if (separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, plane, block.overlap_at_end)) {
-    return true;
-  }
-  const TrianglePair pair(a, b, sweep.start, sweep.end);
-  LeastLimiting axis(pair, sweep.start_floor);
-  offer_triangle_axes(pair, axis);
-  offer_closest(pair, axis);
-  block.normal = axis.normal();
-  block.gap = axis.gap();
-  return false;
+                        Vec3& plane) {
+  return separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, plane);
 }
 
 }  // namespace tegotae

@@ -91,7 +91,6 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
-  const bool was_cut = report.cut;
   report.cut = false;
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
@@ -109,14 +108,13 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
     report.pieces.push_back(X_);
-    contacts_->track(X_, 0);
+    contacts_->clear();
     tracked_ = false;
   } else {
     check_->begin(near_, deadline_ns_);
-    track();
-    adapt_keep(Y);
+    if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
-    if (!was_cut) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
@@ -131,10 +129,13 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     if (!late()) track();
   }
   gather(report);
-  metric_.set_orientation(X_.q);
-  planes_.pick(contacts_->limits(), metric_, X_, Y, center_, keep_, report.planes);
+  was_cut_ = report.cut;
   // Out of time, the limits may be those of an earlier pose.
-  if (!tracked_) report.planes.count = 0;
+  report.planes.count = 0;
+  if (tracked_) {
+    metric_.set_orientation(X_.q);
+    planes_.pick(contacts_->limits(), metric_, X_, Y, center_, keep_, report.planes);
+  }
   const double left = size(displacement(X_, Y, center_));
   // A part that limits hold back a little above their gap is felt like one that rests on them.
   report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
@@ -149,9 +150,9 @@ bool ContactLoop::late() const {
   return past(deadline_ns_);
 }
 
-void ContactLoop::track() {
-  if (!tracked_) contacts_->track(X_, reach_);
-  tracked_ = true;
+bool ContactLoop::track() {
+  if (!tracked_) tracked_ = contacts_->track(X_, reach_, deadline_ns_);
+  return tracked_;
 }
 
 void ContactLoop::adapt_keep(const Pose& Y) {
@@ -187,8 +188,8 @@ bool ContactLoop::wedged() const {
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+  if (!track()) return 0;
   metric_.set_orientation(X_.q);
-  track();
   Displacement error = displacement(X_, Y, center_);
   // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the
   // target only while the angle is small.
@@ -199,7 +200,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   Trial trial;
   bool found = false;
   for (int i = 0; i < kMostResolves && !found; ++i) {
-    if (!resolve(wanted, cap, report, trial)) return 0;
+    if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
       if (!resolver_->projects()) trust_ *= 0.5;
       return 0;

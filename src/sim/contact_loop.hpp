@@ -47,7 +47,8 @@ class ContactLoop final : public ProxyLoop {
   void adapt_keep(const Pose& Y);
   /// Whether contacts press from opposite sides.
   bool wedged() const;
-  void track();
+  /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
+  bool track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
@@ -77,6 +78,7 @@ class ContactLoop final : public ProxyLoop {
   int ticks_ = 0;
   double clearance_;      ///< gap that a motion must leave, m
   bool tracked_ = false;  ///< the contacts are those of X_
+  bool was_cut_ = false;  ///< the last tick
   std::int64_t deadline_ns_ = 0;
 };
 

@@ -137,7 +137,9 @@ class Session {
   }
 
   RecordingInfo info() const {
-    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
+    const auto& parts = file_.scene.parts;
+    const auto held = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.held; });
+    return {file_.path, held->name, file_.scene.contact.resolver, settings_.program};
   }
 
   /// There is no pen to follow: the part stays, and the servo hears that this loop lives.
