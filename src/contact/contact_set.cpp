@@ -100,7 +100,8 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near,
   return fresh;
 }
 
-int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, std::int64_t deadline_ns) {
+int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
+                    std::int64_t deadline_ns) {
   int added = 0;
   const Vec3 c = X_ * center_;
   for (const FacePair& t : triangles) {
@@ -112,9 +113,9 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
       b[k] = B.X_WB * B.surface->mesh->vertices[B.surface->mesh->triangles[t.b][k]];
       motion[k] = d.dp + d.dr.cross(a[k] - c);
     }
-    const AxisLimit axis = least_limiting_axis(a, b, motion);
+    const AxisLimit axis = least_limiting_axis(a, b, motion, clearance);
     if (!axis.found) continue;
-    add({axis.n, a[axis.corner] - c, axis.gap, t.part, 0});
+    add({axis.n, a[axis.corner] - c, axis.gap, t.part, kCutAge});
     ++added;
   }
   return added;

@@ -29,8 +29,9 @@ class ContactSet {
   /// `deadline_ns` of monotonic_ns().
   int seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns);
   /// Adds limits for this tick only: for each triangle pair (free at the last track()) the separating axis that limits
-  /// the displacement `d` least. Returns how many were added. Ends early after `deadline_ns`.
-  int cut(const std::vector<FacePair>& triangles, const Displacement& d, std::int64_t deadline_ns);
+  /// the displacement `d` least, of those that leave `clearance` (m). Returns how many were added. Ends early after
+  /// `deadline_ns`.
+  int cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance, std::int64_t deadline_ns);
 
   const std::vector<Contact>& limits() const { return limits_; }
   /// Limits that were dropped since the last track() because the capacity was used up.

@@ -8,19 +8,18 @@
 #include "narrowphase/motion_check.hpp"
 #include "resolve/metric.hpp"
 #include "resolve/resolver.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "sim/proxy_loop.hpp"
 
 namespace tegotae {
 
-/// One tick of the contact loop (design: broad phase, intersection, back-off, tracking, contacts, resolver, free
+/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver, free
 /// check), over a scene whose parts were checked to be free at the start.
-class ContactLoop {
+class ContactLoop final : public ProxyLoop {
  public:
   ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
 
-  /// See HapticLoop::step.
-  void step(const Pose& Y, double dt, TickReport& report);
-  const Pose& pose() const { return X_; }
+  void step(const Pose& Y, double dt, TickReport& report) override;
+  const Pose& pose() const override { return X_; }
   /// The limits at the end of the last tick.
   const std::vector<Contact>& limits() const { return contacts_->limits(); }
 

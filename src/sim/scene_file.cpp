@@ -105,6 +105,14 @@ void read_contact(const TomlTable& t, ContactSettings& s) {
   s.tick_budget = t.positive("tick_budget", s.tick_budget);
   s.resolver = one_of(t, "resolver", s.resolver, resolver_names());
   s.narrowphase = one_of(t, "narrowphase", s.narrowphase, narrowphase_names());
+  const TomlTable impulse = t.table("impulse", {"restitution", "micro_speed", "substep"});
+  s.impulse.restitution = impulse.at_least_zero("restitution", s.impulse.restitution);
+  if (s.impulse.restitution > 1) impulse.fail("restitution", "must be at most 1");
+  s.impulse.micro_speed = impulse.at_least_zero("micro_speed", s.impulse.micro_speed);
+  s.impulse.substep = impulse.positive("substep", s.impulse.substep);
+  const TomlTable penalty = t.table("penalty", {"stiffness", "damping"});
+  s.penalty.stiffness = penalty.positive("stiffness", s.penalty.stiffness);
+  s.penalty.damping = penalty.at_least_zero("damping", s.penalty.damping);
 }
 
 void read_coupling(const TomlTable& t, CouplingSettings& s) {
@@ -137,8 +145,9 @@ SceneFile load_scene(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density"}),
-               scene.contact);
+  read_contact(
+      top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density", "impulse", "penalty"}),
+      scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);
   const TomlTable device = top.table("device", {"type", "hand", "script"});

@@ -131,6 +131,7 @@ class Session {
     link_.publish(report.proxy, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
 
     tick_times_.add(took);
+    summary_.deepest_m = std::max(summary_.deepest_m, report.depth);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());

@@ -16,13 +16,14 @@ struct TickReport {
   ProxyState proxy;          ///< X, its velocity, and whether it touches
   int contacts = 0;          ///< feature pairs with a gap of at most l_min
   int limits = 0;            ///< feature pairs that limited the motion, contacts included
-  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach
+  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
+  double depth = 0;          ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
   int candidate_parts = 0;   ///< fixed parts that passed the broad phase
-  int resolves = 0;          ///< programmes solved
-  int iterations = 0;        ///< pivots of all programmes
+  int resolves = 0;          ///< programmes solved (penalty: Newton steps)
+  int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
   ResolveStatus status = ResolveStatus::not_needed;
   double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
-  bool cut = false;          ///< time or work ran out before the wanted motion was decided
+  bool cut = false;       ///< time or work ran out before the wanted motion was decided
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 

@@ -39,6 +39,7 @@ struct RunSummary {
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked.
   std::int64_t penetrating = 0;
+  double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;  ///< time a tick of the contact loop takes
   ServoStatistics servo;   ///< in virtual time only the number of ticks
   double force_max_n = 0;  ///< largest rendered force
