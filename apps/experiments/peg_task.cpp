@@ -30,10 +30,10 @@ std::shared_ptr<const TriangleMesh> shared(TriangleMesh mesh) {
 
 }  // namespace
 
-PegTask::PegTask(double ratio, const std::string& resolver) {
+PegTask::PegTask(double ratio, const std::string& resolver, int segments) {
   shapes::Block block = kBlock;
   shapes::Peg peg = kPeg;
-  block.segments = peg.segments = apps::facets(ratio);
+  block.segments = peg.segments = segments > 0 ? segments : apps::facets(ratio);
   peg.diameter = ratio * block.hole_diameter;
   scene_.parts.push_back({"hole", shared(shapes::block_with_hole(block)), Pose{}, false});
   scene_.parts.push_back({"peg", shared(shapes::peg(peg)), Pose{Quat::Identity(), {0, 0, 0.05}}, true});

@@ -11,10 +11,11 @@ namespace tegotae::experiments {
 /// A peg of 50 mm and its hole of 20 mm in diameter and 40 mm in depth.
 class PegTask {
  public:
-  /// `ratio`: diameter of the peg by that of the hole. The tessellation is fine enough for it.
-  PegTask(double ratio, const std::string& resolver);
+  /// `ratio`: diameter of the peg by that of the hole. `segments` around both; 0: fine enough for the ratio.
+  PegTask(double ratio, const std::string& resolver, int segments = 0);
 
-  const Scene& scene() const { return scene_; }
+  /// Of the resolver "penalty", N/m.
+  void set_penalty_stiffness(double stiffness) { scene_.contact.penalty.stiffness = stiffness; }
   /// The same parts, the held one starting at `start`.
   Scene scene_at(const Pose& start) const;
   /// What an operator is to do: begin 40 mm aside and over the hole, push to the bottom.

@@ -24,9 +24,8 @@ constexpr int kLookEvery = 4;
 constexpr double kEyeGain = 0.3;
 // Share of what the part pushes the hand aside that the hand gives way to at each look.
 constexpr double kYield = 0.15;
-// Offset (m) and tilt (rad) with which a person goes down on a chamfered hole without aiming again: what the chamfer
-// catches.
-constexpr double kAcceptedOffset = 1.3e-3, kAcceptedTilt = 0.1;
+// Offset (m) and tilt (rad) with which a person goes down on a hole without aiming again: the rim will guide the tip.
+constexpr double kAcceptedOffset = 2e-3, kAcceptedTilt = 0.12;
 // Where the hand wants tip and part never leads what it feels by more than its push takes on the grip's springs, sideways
 // as far as into the hole, turning with this lever (m): one who cannot turn a part does not turn the hand ever further.
 constexpr double kLever = 0.04;
