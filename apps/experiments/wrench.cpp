@@ -113,7 +113,7 @@ Outcome wrench(const Work& work) {
       "The pen is brought to places where geometry and the coupling's springs alone say what it must feel, and held there. "
       "Magnitude: relative error of force and torque. Direction: the angle to the true one. Stray: force or torque that "
       "should be zero, by what is there (a torque counts as the force at 10 mm). Noise: standard deviation under the "
-      "still pen. What is left is the gap that contacts keep (2 to 10 µm of the spring's millimeters) and the facets.";
+      "still pen. What is left is the gap that contacts keep (2 µm of the spring's millimeters) and the facets.";
   Csv csv{"wrench", {"resolver", "scene", "probe", "expected", "measured", "magnitude_error_percent", "direction_error_deg",
                      "stray_percent", "noise_percent"}};
   Worst own{0, 0, 0, 0};

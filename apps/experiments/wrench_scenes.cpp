@@ -12,6 +12,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kPlay = 1e-4;  // from the middle to either side, m
+// Pushed farther than the square of its radius of gyration by the contact's distance (4 mm of the sphere's 10, 2.4 mm of
+// the cone's 30) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.
+
+constexpr double kLMin = 4e-6;  // m: contacts keep half of it
 
 Part part(const char* name, TriangleMesh mesh, const Pose& X, bool held) {
   return {name, std::make_shared<const TriangleMesh>(weld(mesh)), X, held};
@@ -40,11 +44,11 @@ Vec3 direction(int i, int n) {
 
 WrenchScene ball_in_sphere(int probes) {
   WrenchScene w{"sphere in a spherical socket", "F = −k (d − c) u, T = 0", {}, {}};
-  constexpr double kRadius = 0.01, kPush = 8e-3;
+  constexpr double kRadius = 0.01, kPush = 3e-3;
   TriangleMesh socket = shapes::sphere(4 * kRadius, 16, 8);  // a ball with a cavity
-  append(inside_out(shapes::sphere(2 * (kRadius + kPlay), 64, 32)), socket);
+  append(inside_out(shapes::sphere(2 * (kRadius + kPlay), 128, 64)), socket);
   w.scene.parts.push_back(part("socket", socket, {}, false));
-  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 64, 32), {}, true));
+  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 128, 64), {}, true));
   const double k = w.scene.coupling.stiffness;
   for (int i = 0; i < probes; ++i) {
     const Vec3 u = direction(i, probes);
@@ -55,13 +59,13 @@ WrenchScene ball_in_sphere(int probes) {
 
 WrenchScene ball_in_tube(int probes) {
   WrenchScene w{"sphere in a cylindrical socket", "F = −k (d − c) u across the axis, T = 0", {}, {}};
-  constexpr double kRadius = 0.01, kPush = 8e-3;
+  constexpr double kRadius = 0.01, kPush = 3e-3;
   shapes::Block block;
   block.hole_diameter = 2 * (kRadius + kPlay);
-  block.segments = 64;
+  block.segments = 128;
   block.through = true;
   w.scene.parts.push_back(part("socket", shapes::block_with_hole(block), at(0, 0, 0.025), false));
-  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 64, 32), {}, true));
+  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 128, 64), {}, true));
   const double k = w.scene.coupling.stiffness;
   for (int i = 0; i < probes; ++i) {
     const double a = 2.4 * i, along = 6e-3 * std::cos(1.7 * i);  // along the axis nothing holds it
@@ -89,7 +93,7 @@ TriangleMesh cone(double radius, double height, int segments) {
 
 WrenchScene cone_on_block(int probes) {
   WrenchScene w{"cone on a block", "tip on the plane: min (h cos θ − z)² + ρ² (θ − θ_Y)² over θ", {}, {}};
-  constexpr double kRadius = 0.012, kHeight = 0.03, kTip = 0.75 * kHeight, kPush = 4e-3;
+  constexpr double kRadius = 0.012, kHeight = 0.03, kTip = 0.75 * kHeight, kPush = 1.2e-3;
   w.scene.parts.push_back(part("block", shapes::box({0.06, 0.06, 0.02}, {6, 6, 2}), at(0, 0, -0.01), false));
   w.scene.parts.push_back(part("cone", cone(kRadius, kHeight, 128), at(0, 0, kTip + 1e-3), true));
   // Radius of gyration of a solid cone across its axis, about its center of mass.
@@ -180,7 +184,10 @@ WrenchScene shaft_turned(int probes) {
 std::vector<WrenchScene> wrench_scenes(int probes) {
   std::vector<WrenchScene> all;
   for (const auto make : {ball_in_sphere, ball_in_tube, cone_on_block, pin_pushed, pin_turned, shaft_turned})
+{
     all.push_back(make(probes));
+    all.back().scene.contact.l_min = kLMin;
+  }
   return all;
 }
 
