@@ -1,20 +1,18 @@
 // Penalty methods widen holes (the paper's reference 5): the apparent clearance of a hole by who asks.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "experiments/clearance.hpp"
 #include "experiments/experiment_list.hpp"
 #include "experiments/peg_task.hpp"
 #include "peg_scene.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::experiments {
 namespace {
 
 constexpr double kRatio = 0.99, kHole = 0.02;  // diametral clearance 0.2 mm
-constexpr double kPush = 3e-3;                 // how far the pen goes to either side, m
+constexpr double kForce = 2;                    // with which the peg is pushed to either side, N
 constexpr double kDepthShare = 0.95;           // of the hole: the push goes through the middle of what touches
-constexpr int kRampTicks = 400, kRestTicks = 400;
 // Pegs larger than the hole (diameter by the hole's), and what an operator has to press them in.
 constexpr double kOversize[] = {1.002, 1.005, 1.01};
 constexpr double kGiveUp = 3;  // s
@@ -24,34 +22,16 @@ constexpr int kSegments = 128, kOversizeSegments = 64;
 struct Point {
   double stiffness = 0;  // of a penetrating vertex, N/m; NaN for the default resolver
   double play = 0;       // how far the peg goes from side to side, m
-  double force = 0;      // with which it is pushed, N
+  double deepest = 0;    // of a vertex inside the other part, m
 };
 
 /// Pushes the peg in its hole to both sides.
 Point measure(const PegTask& peg, double stiffness) {
   const Pose middle{Quat::Identity(), Vec3(0, 0, -kDepthShare * peg.depth()) - peg.tip()};
   Scene scene = peg.scene_at(middle);
-  scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   if (std::isfinite(stiffness)) scene.contact.penalty.stiffness = stiffness;
-  HapticLoop loop(scene);
-  Point out;
-  out.stiffness = stiffness;
-  double side[2], from = 0;
-  for (int i = 0; i < 2; ++i) {
-    const double to = i == 0 ? -kPush : kPush;
-    Pose Y = middle;
-    for (int tick = 1; tick <= kRampTicks + kRestTicks; ++tick) {
-      const double s = std::min(1.0, static_cast<double>(tick) / kRampTicks);
-      Y.p.x() = from + s * (to - from);
-      loop.step(Y, 1e-3);
-    }
-    const ProxyState& x = loop.report().proxy;
-    side[i] = (x.X * loop.center()).x();
-    out.force = coupling_wrench(scene.coupling, x, Y, {}, loop.center()).force.norm();
-    from = to;
-  }
-  out.play = side[1] - side[0];
-  return out;
+  const Clearance c = measure_clearance(scene, middle, Vec3::UnitX(), kForce);
+  return {stiffness, c.play, c.deepest};
 }
 
 struct Entry {
@@ -92,27 +72,23 @@ Outcome widening(const Work& work) {
 
   Outcome out;
   out.title = "Widening: how large a hole appears";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f N", own.force);
   out.intro =
-      std::string("A peg in its hole (20 mm, ratio 0.99: 0.2 mm of play) is pushed to one side and to the other with ") +
-      text +
-      ". How far it goes is the clearance that the hand feels. A penalty method answers force with penetration, so holes "
+      "A peg in its hole (20 mm, ratio 0.99: 0.2 mm of play) is pushed to one side and to the other with 2 N. How far it goes is the clearance that the hand feels. A penalty method answers force with penetration, so holes "
       "grow: what does not fit seems to, which is what the paper's reference 5 warns of. Stiffer springs grow it less, but "
       "what a 1 kHz loop can render is bounded.";
   Plot plot{"apparent clearance", {"stiffness of a penetrating vertex (N/m)", true}, {"play (µm)", true}, {}};
   Series penalty{"penalty", {}, {}}, mine{first, {}, {}}, truth{"true clearance", {}, {}};
   penalty.points = true;
   truth.dash = true;
-  Csv csv{"widening", {"resolver", "stiffness_n_per_m", "play_um", "true_um", "force_n"}};
-  Table table{"", {"resolver", "stiffness (N/m)", "play (µm)", "of the true one (%)", "force (N)"}};
+  Csv csv{"widening", {"resolver", "stiffness_n_per_m", "play_um", "true_um", "deepest_um"}};
+  Table table{"", {"resolver", "stiffness (N/m)", "play (µm)", "of the true one (%)", "deepest vertex (µm)"}};
   double widest = 0;
   for (const Point& p : points) {
     const bool is_own = &p == &own;
     const std::string name = is_own ? first : "penalty";
     const nlohmann::json stiffness = is_own ? nlohmann::json("-") : nlohmann::json(p.stiffness);
-    csv.rows.push_back({name, stiffness, 1e6 * p.play, 1e6 * clearance, p.force});
-    table.rows.push_back({name, stiffness, 1e6 * p.play, 100 * p.play / clearance, p.force});
+    csv.rows.push_back({name, stiffness, 1e6 * p.play, 1e6 * clearance, 1e6 * p.deepest});
+    table.rows.push_back({name, stiffness, 1e6 * p.play, 100 * p.play / clearance, 1e6 * p.deepest});
     if (is_own) continue;
     penalty.x.push_back(p.stiffness);
     penalty.y.push_back(1e6 * p.play);

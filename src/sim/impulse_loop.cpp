@@ -13,8 +13,11 @@ namespace {
 constexpr double kEnvelope = 2e-6;
 // Time steps longer than this (s) are a pause, not motion.
 constexpr double kLongestTick = 0.02;
-// Impulses of a sub-step; a part wedged between contacts would go on for ever.
-constexpr int kMostImpulses = 200;
+// Impulses of a sub-step; a part wedged between contacts would go on for ever. Gaps are recovered in the first of them
+// only: those of opposite sides may not recover at once.
+constexpr int kMostImpulses = 100, kRecovering = 30;
+// Pieces of a tick; each goes to the next collision.
+constexpr std::size_t kMostPieces = 1024;
 // New limits looked for on one piece of the way before it is shortened.
 constexpr int kMostSearches = 6;
 constexpr int kMostHalvings = 4;
@@ -46,6 +49,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
 
 void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
+  report.pieces.reserve(kMostPieces);  // in the first tick
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
   report.cut = false;
@@ -61,7 +65,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   const double wanted = size(displacement(X_, Y, mass_.center));
   if (h > 0) {
     const Twist pen{travel.dp / time, travel.dr / time};
-    for (int i = 1; i <= n && !late(); ++i) {
+    for (int i = 1; i <= n && !late() && report.pieces.size() < kMostPieces; ++i) {
       accelerate(displaced(last_Y_, mass_.center, (static_cast<double>(i) / n) * travel), pen, h);
       substep(h, report);
     }
@@ -104,12 +108,16 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     return;
   }
   at_.check->begin(near_, deadline_ns_);
+  tracked_ = false;  // planes for motions of the last sub-step are of no more use
   double left = h;
   int impulses = 0, searches = 0;
-  while (left > 0 && !late()) {
+  while (left > 0 && !late() && report.pieces.size() < kMostPieces) {
     if (!tracked_) at_.contacts->track(X_, at_.reach);
     tracked_ = true;
-    const Collision next = next_collision(left, h);
+    Collision next;
+    next.time = left;
+    recovery_ = impulses < kRecovering ? kRecovery / h : 0;
+    if (impulses < kMostImpulses) next = next_collision(left);
     double time = next.limit < 0 ? left : next.time;
     if (time > 0) {
       const Advance outcome = advance(time, report);
@@ -119,12 +127,9 @@ void ImpulseLoop::substep(double h, TickReport& report) {
       searches = 0;
       continue;  // the limits are followed to here first; the nearest of them collides
     }
-    if (++impulses > kMostImpulses) {
-      report.status = ResolveStatus::stalled;
-      break;
-    }
-    collide(next, h);
+    collide(next);
     ++report.iterations;
+    if (++impulses == kMostImpulses) report.status = ResolveStatus::stalled;
     if (report.status == ResolveStatus::not_needed) report.status = ResolveStatus::solved;
   }
 }
@@ -133,19 +138,19 @@ double ImpulseLoop::floor(const Contact& c) const {
   return c.age == kCutAge ? kCutMargin * at_.clearance : envelope_;
 }
 
-double ImpulseLoop::opening_speed(const Contact& c, double h) const {
+double ImpulseLoop::opening_speed(const Contact& c) const {
   const double lost = c.age == kCutAge ? 0 : floor(c) - c.gap;
-  return lost > kSlack * envelope_ ? kRecovery * lost / h : 0;
+  return lost > kSlack * envelope_ ? recovery_ * lost : 0;
 }
 
-ImpulseLoop::Collision ImpulseLoop::next_collision(double time, double h) const {
+ImpulseLoop::Collision ImpulseLoop::next_collision(double time) const {
   Collision next;
   next.time = time;
   const auto& limits = at_.contacts->limits();
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const Contact& c = limits[i];
     const double v = speed(c), slack = kSlack * envelope_, room = c.gap - floor(c);
-    const double approach = opening_speed(c, h) - v;
+    const double approach = opening_speed(c) - v;
     if (approach <= 0 || room - approach * time > -slack) continue;
     const double t = std::max(0.0, room) / approach;
     // At the same time the one that closes fastest.
@@ -157,14 +162,14 @@ ImpulseLoop::Collision ImpulseLoop::next_collision(double time, double h) const 
   return next;
 }
 
-void ImpulseLoop::collide(const Collision& collision, double h) {
+void ImpulseLoop::collide(const Collision& collision) {
   const Contact& c = at_.contacts->limits()[static_cast<std::size_t>(collision.limit)];
   const Vec3 arm = c.r.cross(c.n);
   const double v = speed(c);
   // What the coupling itself has added in this sub-step is pressure, not an impact.
   const double pressed = std::max(0.0, -c.n.dot(gained_.v + gained_.w.cross(c.r)));
   const bool impact = -v > settings_.impulse.micro_speed + pressed;
-  const double after = std::max(opening_speed(c, h), impact ? -settings_.impulse.restitution * v : 0.0);
+  const double after = std::max(opening_speed(c), impact ? -settings_.impulse.restitution * v : 0.0);
   const double impulse = (after - v) / (1 / mass_.mass + arm.dot(inverse_inertia_W_ * arm));
   V_.v += impulse / mass_.mass * c.n;
   V_.w += impulse * (inverse_inertia_W_ * arm);

@@ -35,13 +35,13 @@ class ImpulseLoop final : public ProxyLoop {
   /// Moves on by `h` through the collisions on the way.
   void substep(double h, TickReport& report);
   /// The next collision within `time` (s).
-  Collision next_collision(double time, double h) const;
-  void collide(const Collision& collision, double h);
+  Collision next_collision(double time) const;
+  void collide(const Collision& collision);
   /// Moves by V · time, or by as much of it as is free (then `time` is what was made). `found`: no motion, but limits
   /// that were not known.
   Advance advance(double& time, TickReport& report);
   /// Speed at which the contact should open at least: zero, or what recovers its gap.
-  double opening_speed(const Contact& c, double h) const;
+  double opening_speed(const Contact& c) const;
   double floor(const Contact& c) const;
   double speed(const Contact& c) const { return c.n.dot(V_.v + V_.w.cross(c.r)); }
   double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
@@ -55,8 +55,9 @@ class ImpulseLoop final : public ProxyLoop {
   double envelope_;  ///< gap at which contacts collide, m
   double piece_cap_;
   Pose X_, last_Y_;
-  Twist V_;       ///< of the center of mass
-  Twist gained_;  ///< by the coupling in this sub-step
+  Twist V_;              ///< of the center of mass
+  Twist gained_;         ///< by the coupling in this sub-step
+  double recovery_ = 0;  ///< speed by lost gap, 1/s
   Mat3 inverse_inertia_W_ = Mat3::Zero();
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;

@@ -13,12 +13,12 @@
 namespace tegotae {
 namespace {
 
-// Newton steps in a tick, and rounds in which springs are found to push or not in one step.
-constexpr int kMostSteps = 8, kMostRounds = 12;
+// Steps in a tick, and rounds in which springs are found to push or not in one step.
+constexpr int kMostSteps = 4, kMostRounds = 12;
 // A step carries no point farther than this share of the part's radius: springs are straightened at its start.
 constexpr double kStepShare = 0.02;
 // Steps shorter than this (m) are rest.
-constexpr double kRest = 1e-10;
+constexpr double kRest = 1e-8;
 constexpr std::size_t kMostSprings = 16384;
 
 }  // namespace
@@ -50,11 +50,13 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
 
 void PenaltyLoop::move(const Displacement& d) {
   X_ = displaced(X_, center_, d);
+  collected_ = false;
   for (VertexShell& shell : shells_) shell.move(size(d));
 }
 
 void PenaltyLoop::collect(double reach, TickReport& report) {
   springs_.clear();
+  collected_ = true;
   report.contacts = 0;
   report.depth = 0;
   report.gap = std::numeric_limits<double>::infinity();
@@ -117,10 +119,10 @@ void PenaltyLoop::step(const Pose& Y, double dt, TickReport& report) {
     move(displacement(X_, Y, center_));
     X_ = Y;
   }
+  // One linear step a tick; more only for a pen that is farther than a step may go.
   for (int i = 0; i < kMostSteps && !near_.empty(); ++i) {
+    if (!collected_) collect(most, report);
     const Displacement e = displacement(X_, Y, center_), m = displacement(X_before, X_, center_);
-    const double reach = std::min(most, size(e));
-    collect(reach, report);
     Vec6 error, made;
     error << e.dp, e.dr;
     made << m.dp, m.dr;
@@ -132,11 +134,10 @@ void PenaltyLoop::step(const Pose& Y, double dt, TickReport& report) {
     report.limits = std::max(report.limits, static_cast<int>(springs_.size()));
     if (!springs_.empty()) report.status = ResolveStatus::solved;
     move(d);
-    if (length < kRest) break;
     report.cut = past(deadline);
-    if (report.cut) break;
+    if (length <= most || report.cut) break;
   }
-  collect(kRest, report);
+  collect(most, report);
   report.pieces.push_back(X_);
   const double left = size(displacement(X_, Y, center_));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;

@@ -13,8 +13,9 @@ namespace tegotae {
 /// depth (the point shell of McNeely, Puterbaugh and Troy, "Six degree-of-freedom haptic rendering using voxel
 /// sampling", 1999). The held part hangs on the pen by the coupling and is where coupling and penalty forces balance
 /// (the quasi-static virtual tool of Wan and McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic
-/// rendering", 2003); so the coupling's wrench on the pen is that of the penalty forces. The balance is found by Newton
-/// steps over linear springs that only push. Parts interpenetrate: the depth is force by stiffness.
+/// rendering", 2003); so the coupling's wrench on the pen is that of the penalty forces. Every tick goes to the
+/// balance of the springs as they look from where the part is, linear and only pushing. Parts interpenetrate: the depth
+/// is force by stiffness.
 class PenaltyLoop final : public ProxyLoop {
  public:
   PenaltyLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
@@ -46,6 +47,7 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;
+  bool collected_ = false;  ///< the springs are those of X_
   Pose X_;
 };
 

@@ -16,8 +16,8 @@ struct LadderStart {
   unsigned seed = 1;  ///< directions of tilt and offset, tremor, and what the eye gets wrong
 };
 
-/// Down on the rim, pressed while nothing goes on, straightened and rocked towards the hole, pushed to its bottom with a
-/// tremor, and 1 mm more. What stays wrong by eye: up to 0.15 mm and 0.3 degrees. `half_length` of the peg whose file
+/// Down on the rim, pressed while nothing goes on, straightened and rocked towards the hole, pushed to its bottom with
+/// a tremor, and 1 mm more. What stays wrong by eye: up to 0.15 mm and 0.3 degrees. `half_length` of the peg whose file
 /// frame is at its middle, `depth` of the hole (m).
 inline StylusScript ladder_script(const LadderStart& start, double half_length, double depth) {
   std::mt19937 rng(start.seed);
