@@ -6,6 +6,7 @@
 #include "bench/bench.hpp"
 #include "bench/scenes.hpp"
 #include "check.hpp"
+#include "experiments/experiments.hpp"
 #include "run_options.hpp"
 
 using namespace tegotae;
@@ -51,9 +52,25 @@ int main(int argc, char** argv) {
   bench_options.command = "tegotae";
   for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
 
+  experiments::Options trials;
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
+  experiment->add_option("NAME", trials.name, "Which one, or all")
+      ->required()
+      ->check(CLI::IsMember(experiments::names()));
+  experiment->add_option("--out", trials.out, "Folder for what it writes")->capture_default_str()->type_name("DIR");
+  experiment->add_option("--seeds", trials.seeds, "Runs of each kind (each experiment has its own number)")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  experiment->add_option("--threads", trials.threads, "Threads (all processors unless told); no result depends on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
+
   return guarded_main(app, argc, argv, [&] {
     if (check->parsed()) return check_files(files);
     if (measure->parsed()) return bench::run_bench(bench_options);
+    if (experiment->parsed()) return experiments::run(trials);
     return run_and_report(load_scene(scene), options, scene);
   });
 }

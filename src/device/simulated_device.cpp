@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device/pen_body.hpp"
+#include "device/script_hand.hpp"
 #include "device/velocity_filter.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
@@ -66,14 +67,21 @@ Vec3 rounded(const Vec3& value, double resolution) {
 }  // namespace
 
 struct SimulatedDevice::Impl {
-  Impl(const SimulatedDeviceSettings& settings_in, StylusScript script_in)
+  Impl(const SimulatedDeviceSettings& settings_in, HandIntent& hand_in, std::unique_ptr<HandIntent> owned_in)
       : settings(settings_in),
-        script(std::move(script_in)),
+        owned(std::move(owned_in)),
+        hand(hand_in),
         body_constants(body_settings(settings)),
         velocity(settings.velocity_cutoff_hz) {}
 
+  static std::unique_ptr<Impl> with(const SimulatedDeviceSettings& settings, std::unique_ptr<HandIntent> hand) {
+    HandIntent& it = *hand;
+    return std::make_unique<Impl>(settings, it, std::move(hand));
+  }
+
   SimulatedDeviceSettings settings;
-  StylusScript script;
+  std::unique_ptr<HandIntent> owned;  // null when the caller owns the hand
+  HandIntent& hand;
   PenBodySettings body_constants;
   PenBody body;
   Quat encoder_zero = Quat::Identity();  // rotations are counted from where the pen started
@@ -89,11 +97,10 @@ struct SimulatedDevice::Impl {
   VelocityFilter velocity;
   std::uint64_t sequence = 0;
 
-  double script_time(std::int64_t ns) const { return script.begin() + 1e-9 * static_cast<double>(ns); }
+  double script_time(std::int64_t ns) const { return hand.begin() + 1e-9 * static_cast<double>(ns); }
 
-  PenTarget target(double t, const Vec3& center) const {
-    const Pose pose = script.pose(t);
-    const Twist rate = script.velocity(t);
+  PenTarget target(double t, const Vec3& center) {
+    const auto [pose, rate] = hand.target(t, {body.rotation, body.center - body.rotation * center});
     const Vec3 arm = pose.q * center;
     return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
   }
@@ -120,15 +127,21 @@ struct SimulatedDevice::Impl {
   }
 };
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
-    : impl_((check(settings), std::make_unique<Impl>(settings, std::move(script)))) {
+SimulatedDevice::SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center) : impl_(std::move(impl)) {
+  check(impl_->settings);
   require(center.allFinite(), "center");
   Device::set_center(center);
-  const Pose start = impl_->script.pose(impl_->script.begin());
+  const Pose start = impl_->hand.start();
   impl_->body.center = start * center;
   impl_->body.rotation = start.q;
   impl_->encoder_zero = start.q;
 }
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
+    : SimulatedDevice(Impl::with(settings, std::make_unique<ScriptHand>(std::move(script))), center) {}
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center)
+    : SimulatedDevice(std::make_unique<Impl>(settings, hand, nullptr), center) {}
 
 SimulatedDevice::~SimulatedDevice() = default;
 

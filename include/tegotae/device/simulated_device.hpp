@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tegotae/device/device.hpp"
+#include "tegotae/device/hand_intent.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
@@ -35,12 +36,14 @@ struct SimulatedDeviceSettings {
   bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
 };
 
-/// A pen without hardware: a rigid body pushed by a hand that follows a script and by the rendered wrench. Same
-/// settings, script and calls give the same bits.
+/// A pen without hardware: a rigid body pushed by a hand, which follows a script or an operator's intent, and by the
+/// rendered wrench. Same settings, script and calls give the same bits.
 class SimulatedDevice final : public Device {
  public:
   /// At rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
+  /// At rest where `hand` begins. Keeps a reference to it, which must outlive the device.
+  SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
   /// Its damping is the hand's, which it has for good.
@@ -56,7 +59,7 @@ class SimulatedDevice final : public Device {
 
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
   void advance(double dt) noexcept;
-  /// The script's time, s: begin of the script plus the time advanced. May be called from any thread.
+  /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.
   double script_time() const noexcept;
   /// The exact pose and velocity (v of the center of mass), before resolution and filter.
   Pose true_pose() const noexcept;
@@ -64,6 +67,7 @@ class SimulatedDevice final : public Device {
 
  private:
   struct Impl;
+  SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center);
   std::unique_ptr<Impl> impl_;
 };
 
