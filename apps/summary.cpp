@@ -17,6 +17,18 @@ std::string row(const char* what, const LatencySummary& us) {
                 us.p999, us.max);
 }
 
+/// Why the force went off, and how often. That it waited for an application and for a small force comes at every start.
+std::string force_off_lines(const ServoStatistics& servo) {
+  std::string text;
+  for (std::size_t i = 0; i < servo.force_off.size(); ++i) {
+    const auto reason = static_cast<ForceOff>(i);
+    if (servo.force_off[i] == 0 || reason == ForceOff::software || reason == ForceOff::engage) continue;
+    text += format("  %-12s %llu times: %s\n", "force off", static_cast<unsigned long long>(servo.force_off[i]),
+                   to_string(reason));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string json_line(const RunSummary& s, const SceneFile& file) {
@@ -30,7 +42,11 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["contacts_max"] = s.contacts_max;
   j["penetrating"] = s.penetrating;
   j["tick_us"] = to_json(s.tick_us);
-  j["servo"] = {{"rate_hz", s.servo.rate_hz}, {"late_us", to_json(s.servo.late_us)}, {"missed", s.servo.missed}};
+  j["servo"] = {{"rate_hz", s.servo.rate_hz},
+                {"late_us", to_json(s.servo.late_us)},
+                {"missed", s.servo.missed},
+                {"compute_us", to_json(s.servo.compute_us)},
+                {"force_off", s.servo.force_off}};
   j["device_losses"] = s.device_losses;
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
@@ -57,6 +73,10 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const s
     text += format("  %-12s %.1f s, servo at %.1f Hz, %lld ticks missed\n", "time", s.seconds, s.servo.rate_hz,
                    static_cast<long long>(s.servo.missed));
   }
+  if (!options.fast && !s.missing_realtime.empty())
+    text += format("  %-12s ", "real time") + "not granted: " + s.missing_realtime + "\n";
+  if (!s.stability.empty()) text += format("  %-12s ", "stability") + s.stability + "\n";
+  text += force_off_lines(s.servo);
   if (s.device_losses > 0)
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
                    static_cast<unsigned long long>(s.device_losses));

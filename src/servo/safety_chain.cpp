@@ -9,8 +9,6 @@ namespace tegotae {
 
 namespace {
 
-// Of timeouts: longer ones would keep a force that nobody updates for longer than a hand takes to notice.
-constexpr double kLongestTimeout = 1.0;
 // Of what is counted for one tick (s), so that a servo that was held up does not make up for it in one step.
 constexpr double kLongestStep = 0.005;
 

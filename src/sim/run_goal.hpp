@@ -17,7 +17,7 @@ class RunGoal {
 
  private:
   Vec3 center_;
-  Pose end_;                       // of the script
+  Pose end_;                       // of the script, scaled
   Vec3 from_;                      // center of mass where the script starts
   Vec3 direction_ = Vec3::Zero();  // from there to where the script ends; zero when it ends where it starts
   double tolerance_;               // m

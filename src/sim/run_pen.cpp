@@ -1,5 +1,6 @@
 #include "sim/run_pen.hpp"
 
+#include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/servo/attachment.hpp"
 
@@ -12,14 +13,23 @@ SimulatedDeviceSettings with_clock(SimulatedDeviceSettings settings, bool wall_c
   return settings;
 }
 
+ServoSettings servo_settings(const SceneFile& file) {
+  ServoSettings s;
+  s.safety = file.safety;
+  return s;
+}
+
 class LocalPen final : public RunPen {
  public:
   LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock)
       : wall_clock_(wall_clock),
         device_(with_clock(file.device, wall_clock), file.script, loop.center()),
         channel_(Channel::create()),
-        servo_(device_, channel_),
-        link_(channel_, file.scene.coupling, loop.center(), loop.gyration()) {}
+        servo_(device_, channel_, servo_settings(file)),
+        link_(channel_, file.scene.coupling, loop.center(), loop.gyration()),
+        stability_(tegotae::stability(device_.info(), file.scene.coupling, ServoSettings().rate_hz).text()) {
+    link_.set_scale(file.scale);
+  }
 
   void start() override {
     device_.start();
@@ -41,6 +51,8 @@ class LocalPen final : public RunPen {
   bool connected() const noexcept override { return true; }
   std::uint64_t losses() const noexcept override { return 0; }
   ServoStatistics statistics() const noexcept override { return servo_.statistics(); }
+  std::string missing_realtime() const override { return servo_.realtime().missing; }
+  std::string stability() const override { return stability_; }
 
  private:
   bool wall_clock_;
@@ -48,6 +60,7 @@ class LocalPen final : public RunPen {
   Channel channel_;
   Servo servo_;
   ContactLink link_;
+  std::string stability_;
 };
 
 class RemotePen final : public RunPen {
@@ -69,6 +82,8 @@ class RemotePen final : public RunPen {
   bool connected() const noexcept override { return attachment_.connected(); }
   std::uint64_t losses() const noexcept override { return attachment_.losses(); }
   ServoStatistics statistics() const noexcept override { return attachment_.statistics(); }
+  std::string missing_realtime() const override { return {}; }
+  std::string stability() const override { return {}; }
 
  private:
   Attachment attachment_;

@@ -29,6 +29,9 @@ class RunPen {
   virtual bool connected() const noexcept = 0;
   virtual std::uint64_t losses() const noexcept = 0;
   virtual ServoStatistics statistics() const noexcept = 0;
+  /// RunSummary::missing_realtime and stability.
+  virtual std::string missing_realtime() const = 0;
+  virtual std::string stability() const = 0;
 };
 
 /// The scene's simulated pen with a servo of its own, in this process.

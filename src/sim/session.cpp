@@ -75,6 +75,8 @@ class Session {
       summary_.record_dropped = recorder_->dropped();
     }
     summary_.servo = pen_->statistics();
+    summary_.missing_realtime = pen_->missing_realtime();
+    summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
     const Pose& X = loop_.report().proxy.X;

@@ -350,9 +350,11 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
   SimulatedDevice device({}, StylusScript({{0, Pose()}, {1, {rotation(Vec3(0, 1, 0)), Vec3(0.1, 0, 0)}}}));
   device.start();
   Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3(0.01, 0, 0));
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
+  ContactPlanes planes;
   Servo servo(device, channel);
   std::uint64_t allocations = 0;
+  int local = 0;
   {
     const test::AllocGuard guard;
     PenSample pen;
@@ -363,11 +365,17 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
       // In contact, out of contact, and silent for longer than the watchdog allows.
       ProxyState x = touching_at(Vec3(0.001, 0, 0));
       x.touching = i % 200 < 150;
-      if (i < 900) link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, i * kMs);
+      planes.count = i % 7;
+      planes.pen = pen.state.pose;
+      for (int k = 0; k < planes.count; ++k)
+        planes.planes[static_cast<std::size_t>(k)] = {Vec3::UnitX(), Vec3(0, 0.01 * k, 0.01 * (k % 3)), 0};
+      local += (pen.flags & TEGOTAE_SHM_FLAG_LOCAL) != 0 ? 1 : 0;
+      if (i < 900) link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, i * kMs, planes);
     }
     allocations = guard.count();
   }
   CHECK(allocations == 0);
+  CHECK(local > 300);
 }
 
 TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[servo]") {

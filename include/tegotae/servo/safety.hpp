@@ -45,6 +45,9 @@ struct SafetySettings {
   std::uint32_t dead_man_buttons = 0;  ///< force only while one of these is pressed; 0: no dead-man switch
 };
 
+/// Of timeouts, s: longer ones would keep a force that nobody updates for longer than a hand takes to notice.
+inline constexpr double kLongestTimeout = 1.0;
+
 /// Throws Error naming the first setting that is out of range.
 void check(const SafetySettings& settings);
 

@@ -44,9 +44,11 @@ struct RunSummary {
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked.
   std::int64_t penetrating = 0;
-  LatencySummary tick_us;  ///< time a tick of the contact loop takes
-  ServoStatistics servo;   ///< in virtual time only the number of ticks
-  double force_max_n = 0;  ///< largest rendered force
+  LatencySummary tick_us;        ///< time a tick of the contact loop takes
+  ServoStatistics servo;         ///< in virtual time only the number of ticks
+  std::string missing_realtime;  ///< what the system did not grant to the servo's thread; of this process's servo only
+  std::string stability;         ///< StabilityReport::text(); of this process's servo only
+  double force_max_n = 0;        ///< largest rendered force
   double torque_max_nm = 0;
   std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
