@@ -62,7 +62,7 @@ class Session {
         goal_(file, loop_.center()),
         duration_(duration(file, settings)) {
     if (!settings.record.empty())
-      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous);
+      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
   }
 
@@ -141,6 +141,10 @@ class Session {
     still.velocity = {};
     pen_->publish(still, {}, static_cast<std::uint64_t>(summary_.ticks), sequence_, now);
     if (settings_.progress) settings_.progress->device.store(pen_->connected(), std::memory_order_relaxed);
+  }
+
+  RecordingInfo info() const {
+    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {
