@@ -38,7 +38,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   CLI::Option* fast =
       app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
   fast->excludes(device);
-  app.add_option("--record", options.record, "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")->type_name("FILE");
+  app.add_option("--record", options.record,
+                 "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
+      ->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
 }
 

@@ -103,7 +103,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
   if (near_.empty()) {
     X_ = displaced(X_, mass_.center, {h * V_.v, h * V_.w});
     report.pieces.push_back(X_);
-    at_.contacts->track(X_, 0);
+    at_.contacts->clear();
     tracked_ = false;
     return;
   }
@@ -112,8 +112,8 @@ void ImpulseLoop::substep(double h, TickReport& report) {
   double left = h;
   int impulses = 0, searches = 0;
   while (left > 0 && !late() && report.pieces.size() < kMostPieces) {
-    if (!tracked_) at_.contacts->track(X_, at_.reach);
-    tracked_ = true;
+    if (!tracked_) tracked_ = at_.contacts->track(X_, at_.reach, deadline_ns_);
+    if (!tracked_) break;  // out of time
     Collision next;
     next.time = left;
     recovery_ = impulses < kRecovering ? kRecovery / h : 0;

@@ -13,11 +13,11 @@ namespace {
 constexpr double kEndTolerance = 0.02;
 constexpr double kEndRotationTolerance = 0.1;  // rad
 
+}  // namespace
+
 const Part& held_part(const Scene& scene) {
   return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
 }
-
-}  // namespace
 
 RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
     : center_(center),

@@ -136,18 +136,16 @@ class Session {
     if (settings_.progress) show(t, pen, report);
   }
 
-  RecordingInfo info() const {
-    const auto& parts = file_.scene.parts;
-    const auto held = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.held; });
-    return {file_.path, held->name, file_.scene.contact.resolver, settings_.program};
-  }
-
   /// There is no pen to follow: the part stays, and the servo hears that this loop lives.
   void wait(std::int64_t now) {
     ProxyState still = loop_.report().proxy;
     still.velocity = {};
     pen_->publish(still, {}, static_cast<std::uint64_t>(summary_.ticks), sequence_, now);
     if (settings_.progress) settings_.progress->device.store(pen_->connected(), std::memory_order_relaxed);
+  }
+
+  RecordingInfo info() const {
+    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {
