@@ -13,8 +13,8 @@ struct Experiment {
   const char* name;
   Outcome (*run)(const Work&);
 };
-constexpr Experiment kExperiments[] = {{"wall", wall}, {"insertion", insertion}, {"task-time", task_time},
-                                       {"ladder", ladder}, {"hold", hold}, {"widening", widening},
+constexpr Experiment kExperiments[] = {{"wall", wall},     {"insertion", insertion}, {"task-time", task_time},
+                                       {"ladder", ladder}, {"hold", hold},           {"widening", widening},
                                        {"wrench", wrench}};
 
 std::string command(const std::string& name, const Options& options) {

@@ -10,7 +10,7 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr unsigned kFirstSeed = 1000;                                // as in the test of the same configurations
+constexpr unsigned kFirstSeed = 1000;                                 // as in the test of the same configurations
 constexpr double kMoved = 1e-6, kTurned = 1e-4, kForceChange = 0.01;  // m, rad, share
 // Less is drawn as this much: the axis is logarithmic.
 constexpr double kFloor = 1e-9;
@@ -54,15 +54,17 @@ Outcome hold(const Work& work) {
       "everything that shows is the method's own. " +
       std::to_string(n) + " configurations, those in which the part touches in the end count.";
   Csv csv{"hold", {"resolver", "seed", "touching", "moved_um", "turned_mrad", "force_change_percent"}};
-  Table table{"peak to peak", {"resolver", "touching", "still moving", "moved at most (µm)", "turned at most (mrad)",
-                               "force change at most (%)"}};
+  Table table{"peak to peak",
+              {"resolver", "touching", "still moving", "moved at most (µm)", "turned at most (mrad)",
+               "force change at most (%)"}};
   Plot moved{"motion of the center of mass", {"share of the configurations (%)"}, {"peak to peak (µm)", true}, {}};
   Plot force{"change of the force", {"share of the configurations (%)"}, {"peak to peak (%)", true}, {}};
   for (std::size_t r = 0; r < names.size(); ++r) {
     std::vector<Held> touching;
     for (std::size_t i = 0; i < all[r].size(); ++i) {
       const Held& h = all[r][i];
-      csv.rows.push_back({names[r], kFirstSeed + i, h.touching ? 1 : 0, 1e6 * h.moved, 1e3 * h.turned, 100 * h.force_change});
+      csv.rows.push_back(
+          {names[r], kFirstSeed + i, h.touching ? 1 : 0, 1e6 * h.moved, 1e3 * h.turned, 100 * h.force_change});
       if (h.touching) touching.push_back(h);
     }
     const auto moving = std::count_if(touching.begin(), touching.end(), [](const Held& h) {
@@ -79,8 +81,10 @@ Outcome hold(const Work& work) {
                   at_most(names[r] + ": turned", t, 1e3 * kTurned, "mrad"),
                   at_most(names[r] + ": change of the force", f, 100 * kForceChange, "%")};
   }
-  out.sections = {{"All resolvers", "Configurations in the order of their motion; what is below 1e-9 is drawn there.",
-                   {moved, force}, {table}}};
+  out.sections = {{"All resolvers",
+                   "Configurations in the order of their motion; what is below 1e-9 is drawn there.",
+                   {moved, force},
+                   {table}}};
   out.csv = {csv};
   return out;
 }

@@ -30,15 +30,17 @@ Held hold_case(const std::string& resolver, unsigned seed) {
   scene.contact.tick_budget = INFINITY;
   const bool convex = seed % 2 == 1;
   const auto body = [&](double size) {
-    return std::make_shared<const TriangleMesh>(convex ? shapes::random_convex_body(rng, 14, size) : shapes::random_star_body(rng, 14, size));
+    return std::make_shared<const TriangleMesh>(convex ? shapes::random_convex_body(rng, 14, size)
+                                                       : shapes::random_star_body(rng, 14, size));
   };
   const int parts = 2 + static_cast<int>(seed % 3);
   for (int k = 0; k < parts; ++k) {
     const double angle = 2 * M_PI * k / parts;
-    scene.parts.push_back({"fixed" + std::to_string(k),
-                           body(0.03),
-                           {rotation(3 * shapes::random_direction(rng)), {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0}},
-                           false});
+    scene.parts.push_back(
+        {"fixed" + std::to_string(k),
+         body(0.03),
+         {rotation(3 * shapes::random_direction(rng)), {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0}},
+         false});
   }
   scene.parts.push_back({"held", body(0.02), {Quat::Identity(), {0, 0, 0.09}}, true});
   HapticLoop loop(scene);

@@ -74,14 +74,15 @@ Plot over_time(const std::string& title, const std::string& label, const std::ve
 }
 
 Section section(double ratio, const std::vector<std::string>& names, const std::vector<Run>& runs) {
-  Section s{"Ratio " + apps::ratio_text(ratio),
-            "The hand misses the hole by two millimeters and three degrees, slides over the rim (1.6 to 2.4 s), goes in "
-            "tilted until it jams (3.2 s), straightens up, and rocks its way to the bottom.",
-            {}};
+  Section s{
+      "Ratio " + apps::ratio_text(ratio),
+      "The hand misses the hole by two millimeters and three degrees, slides over the rim (1.6 to 2.4 s), goes in "
+      "tilted until it jams (3.2 s), straightens up, and rocks its way to the bottom.",
+      {}};
   s.plots.push_back(over_time("depth of the center of mass", "z (mm)", names, runs, 1, 8,
                               [](const Sample& a) { return 1e3 * a.center.z(); }));
-  s.plots.push_back(over_time("sideways", "x (mm)", names, runs, 1, 8,
-                              [](const Sample& a) { return 1e3 * a.center.x(); }));
+  s.plots.push_back(
+      over_time("sideways", "x (mm)", names, runs, 1, 8, [](const Sample& a) { return 1e3 * a.center.x(); }));
   Plot trace{"path of the center of mass", {"x (mm)"}, {"z (mm)"}, {}, true};
   for (std::size_t i = 0; i < names.size(); ++i) {
     Series path{names[i], {}, {}};
@@ -134,20 +135,24 @@ Outcome insertion(const Work& work) {
   out.title = "Insertion: one script, every resolver";
   out.intro =
       "The path of the peg's center of mass while a scripted hand carries it into its hole (20 mm), as in the paper's "
-      "figure 10. The paper found its linear programme smooth and the impulse method vibrating and slow. Vibration is what "
-      "is above 30 Hz, root mean square, from the tip's reaching the surface on; stalled is the time at less than 1 mm/s "
+      "figure 10. The paper found its linear programme smooth and the impulse method vibrating and slow. Vibration is "
+      "what "
+      "is above 30 Hz, root mean square, from the tip's reaching the surface on; stalled is the time at less than 1 "
+      "mm/s "
       "with the pen at least 0.5 mm ahead; the insertion speed is that from the tip's to the center's reaching the "
       "surface.";
   for (std::size_t k = 0; k < ratios.size(); ++k) {
     const Run& first = runs[k][0];
     const std::string at = " at " + apps::ratio_text(ratios[k]);
     out.claims.push_back(at_least(names[0] + ": depth at the end" + at, 1e3 * first.depth, 39.9, "mm"));
-    out.claims.push_back(at_most(names[0] + ": intersecting poses" + at, static_cast<double>(first.intersecting), 0, ""));
+    out.claims.push_back(
+        at_most(names[0] + ": intersecting poses" + at, static_cast<double>(first.intersecting), 0, ""));
     out.sections.push_back(section(ratios[k], names, runs[k]));
     for (std::size_t r = 0; r < names.size(); ++r) {
       out.csv.push_back(csv_of(ratios[k], names[r], runs[k][r]));
       if (names[r] != "impulse") continue;
-      out.claims.push_back(at_most(names[0] + ": stalled against impulse" + at, first.stalled - runs[k][r].stalled, 0, "s"));
+      out.claims.push_back(
+          at_most(names[0] + ": stalled against impulse" + at, first.stalled - runs[k][r].stalled, 0, "s"));
     }
   }
   return out;

@@ -11,14 +11,14 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHole = 0.02, kChamfer = 0.001;     // m
+constexpr double kHole = 0.02, kChamfer = 0.001;      // m
 constexpr double kMostTilt = 5 * 0.0174532925199433;  // rad
 constexpr double kGiveUp = 15;                        // s after the tip's reaching the surface
 
 struct Rung {
   int tries = 0, completed = 0;
   std::int64_t intersecting = 0;
-  double penetration = 0;                // deepest, m
+  double penetration = 0;               // deepest, m
   std::vector<double> time, vibration;  // s of those completed, m
 };
 
@@ -83,13 +83,15 @@ Outcome ladder(const Work& work) {
     const Job& j = jobs[static_cast<std::size_t>(i)];
     const PegTask& peg = pegs[j.resolver * ratios.size() + j.rung];
     Attempt& a = attempts[static_cast<std::size_t>(i)];
-    a = attempt(peg, people[j.person], start(peg, j.person, j.seed, seeds), static_cast<std::uint64_t>(j.seed), kGiveUp, false);
+    a = attempt(peg, people[j.person], start(peg, j.person, j.seed, seeds), static_cast<std::uint64_t>(j.seed), kGiveUp,
+                false);
     a.samples = {};
   });
 
   std::vector<std::vector<Rung>> rungs(names.size(), std::vector<Rung>(ratios.size()));
-  Csv csv{"ladder", {"resolver", "ratio", "clearance_um", "operator", "seed", "completed", "time_s", "vibration_um",
-                     "penetration_um", "intersecting"}};
+  Csv csv{"ladder",
+          {"resolver", "ratio", "clearance_um", "operator", "seed", "completed", "time_s", "vibration_um",
+           "penetration_um", "intersecting"}};
   for (std::size_t i = jobs.size(); i-- > 0;) {
     const Job& j = jobs[i];
     const Attempt& a = attempts[i];
@@ -107,12 +109,15 @@ Outcome ladder(const Work& work) {
   Outcome out;
   out.title = "Ladder: ever tighter fits";
   out.intro =
-      "A hole of 20 mm and pegs down to 10 µm of diametral clearance, an H7/g6 fit. Three modeled operators begin tilted "
-      "by up to 5° and off center by up to the chamfer's millimeter, and push to the bottom; who is not there 15 s after "
+      "A hole of 20 mm and pegs down to 10 µm of diametral clearance, an H7/g6 fit. Three modeled operators begin "
+      "tilted "
+      "by up to 5° and off center by up to the chamfer's millimeter, and push to the bottom; who is not there 15 s "
+      "after "
       "the tip has reached the surface has failed. The deepest penetration is measured in closed form on every tenth "
       "pose, and FCL is asked about sixty poses a run.";
-  Table table{"", {"ratio", "clearance (µm)", "resolver", "completed", "time to the bottom (s)", "jitter (µm)",
-                   "deepest penetration (µm)", "intersecting poses"}};
+  Table table{"",
+              {"ratio", "clearance (µm)", "resolver", "completed", "time to the bottom (s)", "jitter (µm)",
+               "deepest penetration (µm)", "intersecting poses"}};
   double penetration = 0, worst = 100;
   std::int64_t intersecting = 0;
   for (std::size_t k = 0; k < ratios.size(); ++k) {

@@ -129,8 +129,7 @@ void write_outcome(const Outcome& outcome, const std::string& name, const std::s
   for (const Csv& csv : outcome.csv) write_text(to / (csv.name + ".csv"), csv_text(csv));
   const Json claims = to_json(outcome.claims);
   write_text(to / "summary.json", Json{{"experiment", name}, {"claims", claims}}.dump(1) + "\n");
-  Json report = {
-      {"title", outcome.title}, {"subtitle", subtitle}, {"intro", outcome.intro}, {"claims", claims}};
+  Json report = {{"title", outcome.title}, {"subtitle", subtitle}, {"intro", outcome.intro}, {"claims", claims}};
   report["sections"] = Json::array();
   for (const Section& s : outcome.sections) {
     Json one = {{"title", s.title}, {"text", s.text}, {"plots", Json::array()}, {"tables", Json::array()}};

@@ -10,7 +10,7 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kGiveUp = 15;   // s after the tip's reaching the surface
+constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
 constexpr double kNoTrend = 0.05;
 
 struct Result {
@@ -61,8 +61,9 @@ Outcome task_time(const Work& work) {
       work.options.quick ? std::vector<double>{0.91, 0.94} : std::vector<double>{0.91, 0.92, 0.93, 0.94};
   const int seeds = work.seeds(8, 1);
   const std::size_t n_seeds = static_cast<std::size_t>(seeds);
-  Times all(names.size(), std::vector<std::vector<std::vector<Result>>>(
-                              people.size(), std::vector<std::vector<Result>>(ratios.size(), std::vector<Result>(n_seeds))));
+  Times all(names.size(),
+            std::vector<std::vector<std::vector<Result>>>(
+                people.size(), std::vector<std::vector<Result>>(ratios.size(), std::vector<Result>(n_seeds))));
   // One task a ratio and resolver, shared by its runs.
   std::vector<PegTask> pegs;
   for (const std::string& name : names)
@@ -72,21 +73,26 @@ Outcome task_time(const Work& work) {
     const std::size_t seed = static_cast<std::size_t>(i) % n_seeds, rest = static_cast<std::size_t>(i) / n_seeds;
     const std::size_t person = rest % people.size(), which = rest / people.size();
     const Attempt a = attempt(pegs[which], people[person], pegs[which].task(), 1000 * person + seed, kGiveUp, true);
-    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kGiveUp, a.vibration};
+    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kGiveUp,
+                                                                       a.vibration};
   });
 
   Outcome out;
   out.title = "Task time against the ratio of peg and hole";
   out.intro =
-      "From the tip's reaching the hole's surface to the center of mass's reaching it, as in the paper's figure 11, with "
+      "From the tip's reaching the hole's surface to the center of mass's reaching it, as in the paper's figure 11, "
+      "with "
       "three modeled operators and " +
       std::to_string(seeds) +
-      " seeds each; every resolver gets the same seeds. Who does not get in within 15 s counts with 15 s. Bars are 95 % "
-      "confidence intervals of the mean. The trend over the ratios is tested with Jonckheere and Terpstra's test within "
+      " seeds each; every resolver gets the same seeds. Who does not get in within 15 s counts with 15 s. Bars are 95 "
+      "% "
+      "confidence intervals of the mean. The trend over the ratios is tested with Jonckheere and Terpstra's test "
+      "within "
       "each operator, statistics added up (one-sided: do times rise?).";
   Csv csv{"task_time", {"resolver", "operator", "ratio", "seed", "reached", "time_s", "vibration_um"}};
   Table table{"all operators",
-              {"resolver", "mean (s)", "deviation (s)", "slope (s per 0.01)", "trend z", "trend p", "got in", "vibration (µm)"}};
+              {"resolver", "mean (s)", "deviation (s)", "slope (s per 0.01)", "trend z", "trend p", "got in",
+               "vibration (µm)"}};
   std::vector<std::vector<std::vector<double>>> pooled(names.size());
   std::vector<Section> by_person;
   for (std::size_t r = 0; r < names.size(); ++r) {
@@ -105,7 +111,8 @@ Outcome task_time(const Work& work) {
           vibration.push_back(1e6 * one.vibration);
           reached += one.reached ? 1 : 0;
           pooled[r][k].push_back(one.time);
-          csv.rows.push_back({names[r], people[p].name, ratios[k], s, one.reached ? 1 : 0, one.time, 1e6 * one.vibration});
+          csv.rows.push_back(
+              {names[r], people[p].name, ratios[k], s, one.reached ? 1 : 0, one.time, 1e6 * one.vibration});
         }
       }
     }
@@ -116,7 +123,8 @@ Outcome task_time(const Work& work) {
                           std::to_string(static_cast<int>(std::lround(share))) + " %", spread(vibration).mean});
     if (names[r] == "qp" || names[r] == "lp") {
       out.claims.push_back(at_least(names[r] + ": operators that get in", share, 100, "%"));
-      out.claims.push_back(at_least(names[r] + ": no rise of the task time with the ratio (one-sided p)", trend.p, kNoTrend, ""));
+      out.claims.push_back(
+          at_least(names[r] + ": no rise of the task time with the ratio (one-sided p)", trend.p, kNoTrend, ""));
     }
   }
   Section means{"All operators", "", {plot("mean task time", names, ratios, pooled)}, {table}};

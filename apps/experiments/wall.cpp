@@ -14,11 +14,11 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kEdge = 0.04;             // of the cube, m
-constexpr double kWallX = 0.01;            // of the cube's center when it lies on the wall, m
-constexpr double kFloorZ = -0.01;          // of the cube's center when it lies on the floor, m
-constexpr double kPushed = 0.012;          // how far the hand goes on behind the wall and the floor, m
-constexpr double kTilt = 12 * 0.0174533;   // of the cube in procedure B, about y, rad
+constexpr double kEdge = 0.04;            // of the cube, m
+constexpr double kWallX = 0.01;           // of the cube's center when it lies on the wall, m
+constexpr double kFloorZ = -0.01;         // of the cube's center when it lies on the floor, m
+constexpr double kPushed = 0.012;         // how far the hand goes on behind the wall and the floor, m
+constexpr double kTilt = 12 * 0.0174533;  // of the cube in procedure B, about y, rad
 // The phases of the figures: (A) free, (B) at the wall, (C) at wall and floor; s.
 constexpr double kBegin = 0.5, kAtWall = 1.5, kDown = 3.0, kHold = 4.5, kEnd = 5.5;
 // Forces that tell of the wall and, while the cube slides down the wall a tick behind the pen, of the floor, N.
@@ -38,14 +38,16 @@ Scene cube_scene(double tilt, const std::string& resolver) {
                              {Quat::Identity(), {wall_x, 0, kWide / 2 + floor_z + kThick / 2}}, false));
   scene.parts.push_back(
       part("floor", shapes::box({kWide, kWide, kThick}, {8, 8, 1}), {Quat::Identity(), {-0.05, 0, floor_z}}, false));
-  scene.parts.push_back(part("cube", shapes::box({kEdge, kEdge, kEdge}, {2, 2, 2}),
-                             {rotation({0, tilt, 0}), {-0.02, 0, 0.02}}, true));
+  scene.parts.push_back(
+      part("cube", shapes::box({kEdge, kEdge, kEdge}, {2, 2, 2}), {rotation({0, tilt, 0}), {-0.02, 0, 0.02}}, true));
   return scene;
 }
 
 /// Procedure A (upright, `tilt` 0) or B (held at a tilt all the time).
 StylusScript push(double tilt) {
-  const auto at = [&](double t, double x, double z) { return StylusScript::Key{t, {rotation({0, tilt, 0}), {x, 0, z}}}; };
+  const auto at = [&](double t, double x, double z) {
+    return StylusScript::Key{t, {rotation({0, tilt, 0}), {x, 0, z}}};
+  };
   return smooth_script({at(0, -0.02, 0.02), at(kBegin, -0.02, 0.02), at(kAtWall + 0.7, kWallX + kPushed, 0.02),
                         at(kDown, kWallX + kPushed, 0.02), at(kHold, kWallX + kPushed, kFloorZ - kPushed),
                         at(kEnd, kWallX + kPushed, kFloorZ - kPushed)});
@@ -164,7 +166,8 @@ std::vector<Mark> phases(const Trace& trace) {
 }
 
 Csv csv_of(const std::string& name, const Trace& trace) {
-  Csv csv{name, {"t_s", "x_mm", "z_mm", "pen_x_mm", "pen_z_mm", "tilt_mrad", "pen_tilt_mrad", "fx_n", "fz_n", "ty_mnm"}};
+  Csv csv{name,
+          {"t_s", "x_mm", "z_mm", "pen_x_mm", "pen_z_mm", "tilt_mrad", "pen_tilt_mrad", "fx_n", "fz_n", "ty_mnm"}};
   for (const Sample& s : trace.samples)
     csv.rows.push_back({s.t, 1e3 * s.center.x(), 1e3 * s.center.z(), 1e3 * s.Y.p.x(), 1e3 * s.Y.p.z(),
                         1e3 * tilt_of(s.X), 1e3 * tilt_of(s.Y), s.wrench.force.x(), s.wrench.force.z(),
@@ -173,17 +176,20 @@ Csv csv_of(const std::string& name, const Trace& trace) {
 }
 
 Section section_a(const Trace& t) {
-  Section s{"Procedure A: upright (the paper's figure 7)",
-            "(A) The cube follows the pen. (B) It meets the wall: its x stays, the pen's goes on, and the force grows with "
-            "their distance. (C) It slides down the wall to the floor, and z stays too.",
-            {}};
+  Section s{
+      "Procedure A: upright (the paper's figure 7)",
+      "(A) The cube follows the pen. (B) It meets the wall: its x stays, the pen's goes on, and the force grows with "
+      "their distance. (C) It slides down the wall to the floor, and z stays too.",
+      {}};
   s.plots.push_back({"position",
                      {"time (s)"},
                      {"position (mm)"},
                      {series("x, cube", t, [](const Sample& a) { return 1e3 * a.center.x(); }),
-                      series("x, pen", t, [](const Sample& a) { return 1e3 * a.Y.p.x(); }, true),
+                      series(
+                          "x, pen", t, [](const Sample& a) { return 1e3 * a.Y.p.x(); }, true),
                       series("z, cube", t, [](const Sample& a) { return 1e3 * a.center.z(); }),
-                      series("z, pen", t, [](const Sample& a) { return 1e3 * a.Y.p.z(); }, true)},
+                      series(
+                          "z, pen", t, [](const Sample& a) { return 1e3 * a.Y.p.z(); }, true)},
                      false,
                      phases(t)});
   s.plots.push_back({"force on the pen",
@@ -197,16 +203,18 @@ Section section_a(const Trace& t) {
 }
 
 Section section_b(const Trace& t) {
-  Section s{"Procedure B: tilted (figure 8)",
-            "The pen holds the cube at 12° all the time. (A) The cube is tilted like the pen. (B) Its edge meets the wall "
-            "and it is laid flat: its tilt goes to zero, and the torque pulls the pen the same way. (C) It goes down to the "
-            "floor, flat on both.",
-            {}};
+  Section s{
+      "Procedure B: tilted (figure 8)",
+      "The pen holds the cube at 12° all the time. (A) The cube is tilted like the pen. (B) Its edge meets the wall "
+      "and it is laid flat: its tilt goes to zero, and the torque pulls the pen the same way. (C) It goes down to the "
+      "floor, flat on both.",
+      {}};
   s.plots.push_back({"tilt",
                      {"time (s)"},
                      {"tilt about y (mrad)"},
                      {series("cube", t, [](const Sample& a) { return 1e3 * tilt_of(a.X); }),
-                      series("pen", t, [](const Sample& a) { return 1e3 * tilt_of(a.Y); }, true)},
+                      series(
+                          "pen", t, [](const Sample& a) { return 1e3 * tilt_of(a.Y); }, true)},
                      false,
                      phases(t)});
   s.plots.push_back({"torque on the pen",
@@ -230,8 +238,10 @@ Outcome wall(const Work& work) {
   Outcome out;
   out.title = "Wall: a cube against a wall and a floor";
   out.intro =
-      "A hand carries a cube of 40 mm against a wall and then down to a floor, and goes on 12 mm behind either. The paper "
-      "shows that the blocked coordinate stays while the pen goes on, that the force follows k (X − Y) from the moment of "
+      "A hand carries a cube of 40 mm against a wall and then down to a floor, and goes on 12 mm behind either. The "
+      "paper "
+      "shows that the blocked coordinate stays while the pen goes on, that the force follows k (X − Y) from the moment "
+      "of "
       "contact, and that a tilted cube is turned flat by the torque.";
   Table table{"all resolvers",
               {"resolver", "x blocked within (µm)", "z blocked within (µm)", "error of the slope of F (%)",
@@ -239,8 +249,8 @@ Outcome wall(const Work& work) {
   for (std::size_t r = 0; r < names.size(); ++r) {
     const Figures f = measure_a(a[r]);
     const TiltFigures t = measure_b(b[r]);
-    table.rows.push_back({names[r], 1e6 * f.blocked_x, 1e6 * f.blocked_z, 100 * f.slope, 100 * f.rest, 1e3 * t.left,
-                          100 * t.torque});
+    table.rows.push_back(
+        {names[r], 1e6 * f.blocked_x, 1e6 * f.blocked_z, 100 * f.slope, 100 * f.rest, 1e3 * t.left, 100 * t.torque});
     if (r > 0) continue;
     out.claims = {at_most("x stays while the pen goes on behind the wall", 1e6 * f.blocked_x, 1, "µm"),
                   at_most("z stays while the pen goes on into the floor", 1e6 * f.blocked_z, 1, "µm"),
@@ -254,7 +264,9 @@ Outcome wall(const Work& work) {
                   at_least("share of ticks whose torque turns the pen flat", 100 * t.sign, 99, "%"),
                   at_most("torque against k_t times the difference of tilts at rest", 100 * t.torque, 1, "%")};
   }
-  out.sections = {section_a(a[0]), section_b(b[0]), {"All resolvers", "The plots are those of the default, " + names[0] + ".", {}, {table}}};
+  out.sections = {section_a(a[0]),
+                  section_b(b[0]),
+                  {"All resolvers", "The plots are those of the default, " + names[0] + ".", {}, {table}}};
   for (std::size_t r = 0; r < names.size(); ++r) {
     out.csv.push_back(csv_of("procedure_a_" + names[r], a[r]));
     out.csv.push_back(csv_of("procedure_b_" + names[r], b[r]));

@@ -11,7 +11,7 @@ namespace tegotae::experiments {
 namespace {
 
 constexpr double kRatio = 0.99, kHole = 0.02;  // diametral clearance 0.2 mm
-constexpr double kForce = 2;                    // with which the peg is pushed to either side, N
+constexpr double kForce = 2;                   // with which the peg is pushed to either side, N
 constexpr double kDepthShare = 0.95;           // of the hole: the push goes through the middle of what touches
 // Pegs larger than the hole (diameter by the hole's), and what an operator has to press them in.
 constexpr double kOversize[] = {1.002, 1.005, 1.01};
@@ -48,20 +48,20 @@ Entry try_in(double ratio, const std::string& resolver, double stiffness) {
   return {resolver, ratio, a.completed, -(a.samples.back().X * peg.tip()).z()};
 }
 
-
 }  // namespace
 
 Outcome widening(const Work& work) {
   const std::string first = resolvers().front();
   const bool quick = work.options.quick;
-  const std::vector<double> stiffnesses = quick ? std::vector<double>{500, 20000}
-                                                : std::vector<double>{200, 500, 1000, 2000, 5000, 1e4, 5e4};
+  const std::vector<double> stiffnesses =
+      quick ? std::vector<double>{500, 20000} : std::vector<double>{200, 500, 1000, 2000, 5000, 1e4, 5e4};
   const double clearance = kHole * (1 - kRatio), standard = PenaltySettings().stiffness;
   std::vector<Point> points(stiffnesses.size() + 1);
   work.each("widening", static_cast<int>(points.size()), [&](int i) {
     const std::size_t k = static_cast<std::size_t>(i);
-    points[k] = k == stiffnesses.size() ? measure(PegTask(kRatio, first, kSegments), std::numeric_limits<double>::quiet_NaN())
-                                        : measure(PegTask(kRatio, "penalty", kSegments), stiffnesses[k]);
+    points[k] = k == stiffnesses.size()
+                    ? measure(PegTask(kRatio, first, kSegments), std::numeric_limits<double>::quiet_NaN())
+                    : measure(PegTask(kRatio, "penalty", kSegments), stiffnesses[k]);
   });
   const Point& own = points.back();
   std::vector<Entry> entries(quick ? 2 : 2 * std::size(kOversize));
@@ -73,8 +73,10 @@ Outcome widening(const Work& work) {
   Outcome out;
   out.title = "Widening: how large a hole appears";
   out.intro =
-      "A peg in its hole (20 mm, ratio 0.99: 0.2 mm of play) is pushed to one side and to the other with 2 N. How far it goes is the clearance that the hand feels. A penalty method answers force with penetration, so holes "
-      "grow: what does not fit seems to, which is what the paper's reference 5 warns of. Stiffer springs grow it less, but "
+      "A peg in its hole (20 mm, ratio 0.99: 0.2 mm of play) is pushed to one side and to the other with 2 N. How far "
+      "it goes is the clearance that the hand feels. A penalty method answers force with penetration, so holes "
+      "grow: what does not fit seems to, which is what the paper's reference 5 warns of. Stiffer springs grow it less, "
+      "but "
       "what a 1 kHz loop can render is bounded.";
   Plot plot{"apparent clearance", {"stiffness of a penetrating vertex (N/m)", true}, {"play (µm)", true}, {}};
   Series penalty{"penalty", {}, {}}, mine{first, {}, {}}, truth{"true clearance", {}, {}};
@@ -99,7 +101,8 @@ Outcome widening(const Work& work) {
     if (p.stiffness <= standard) widest = std::max(widest, p.play);
   }
   plot.series = {penalty, mine, truth};
-  Table pegs{"Pegs larger than their hole, pressed by the operator \"average\" for " + std::to_string(static_cast<int>(kGiveUp)) + " s",
+  Table pegs{"Pegs larger than their hole, pressed by the operator \"average\" for " +
+                 std::to_string(static_cast<int>(kGiveUp)) + " s",
              {"peg by hole", "resolver", "at the bottom", "tip below the surface (mm)"}};
   int entered = 0;
   for (const Entry& e : entries) {

@@ -44,7 +44,8 @@ Reading read(const WrenchScene& w, const Probe& probe, const std::string& resolv
   std::vector<double> force, torque;
   Wrench mean;
   for (int tick = 1; tick <= kMoveTicks + kRestTicks + kWatchedTicks; ++tick) {
-    const Pose Y = tick < kMoveTicks ? displaced(from, Vec3::Zero(), static_cast<double>(tick) / kMoveTicks * way) : probe.Y;
+    const Pose Y =
+        tick < kMoveTicks ? displaced(from, Vec3::Zero(), static_cast<double>(tick) / kMoveTicks * way) : probe.Y;
     const ProxyState& x = loop.step(Y, 1e-3).proxy;
     if (tick <= kMoveTicks + kRestTicks) continue;
     const Wrench now = coupling_wrench(scene.coupling, x, Y, {}, loop.center());
@@ -110,12 +111,15 @@ Outcome wrench(const Work& work) {
   Outcome out;
   out.title = "Wrench: force and torque against closed forms";
   out.intro =
-      "The pen is brought to places where geometry and the coupling's springs alone say what it must feel, and held there. "
-      "Magnitude: relative error of force and torque. Direction: the angle to the true one. Stray: force or torque that "
+      "The pen is brought to places where geometry and the coupling's springs alone say what it must feel, and held "
+      "there. "
+      "Magnitude: relative error of force and torque. Direction: the angle to the true one. Stray: force or torque "
+      "that "
       "should be zero, by what is there (a torque counts as the force at 10 mm). Noise: standard deviation under the "
       "still pen. What is left is the gap that contacts keep (2 µm of the spring's millimeters) and the facets.";
-  Csv csv{"wrench", {"resolver", "scene", "probe", "expected", "measured", "magnitude_error_percent", "direction_error_deg",
-                     "stray_percent", "noise_percent"}};
+  Csv csv{"wrench",
+          {"resolver", "scene", "probe", "expected", "measured", "magnitude_error_percent", "direction_error_deg",
+           "stray_percent", "noise_percent"}};
   Worst own{0, 0, 0, 0};
   Section section{"Scenes", "", {}, {}};
   Plot plot{"worst error of the magnitude, by scene", {"scene"}, {"error (%)", true}, {}};
@@ -134,8 +138,8 @@ Outcome wrench(const Work& work) {
                std::max(own.noise, w.noise)};
       for (std::size_t p = 0; p < all[r][s].size(); ++p) {
         const Reading& x = all[r][s][p];
-        csv.rows.push_back({names[r], scenes[s].name, p, x.expected, x.measured, 100 * x.magnitude, 180 / M_PI * x.direction,
-                            100 * x.stray, 100 * x.noise});
+        csv.rows.push_back({names[r], scenes[s].name, p, x.expected, x.measured, 100 * x.magnitude,
+                            180 / M_PI * x.direction, 100 * x.stray, 100 * x.noise});
       }
     }
     section.tables.push_back(t);

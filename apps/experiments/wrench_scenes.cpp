@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kPlay = 1e-4;  // from the middle to either side, m
-// Pushed farther than the square of its radius of gyration by the contact's distance (4 mm of the sphere's 10, 2.4 mm of
-// the cone's 30) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.
+// Pushed farther than the square of its radius of gyration by the contact's distance (4 mm of the sphere's 10, 2.4 mm
+// of the cone's 30) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.
 
 constexpr double kLMin = 4e-6;  // m: contacts keep half of it
 
@@ -111,9 +111,9 @@ WrenchScene cone_on_block(int probes) {
                            (kTip * std::cos(theta) - z) * kTip * std::cos(theta) + rho2;
       theta -= f / slope;
     }
-    w.probes.push_back({{rotation(tilt * axis), Vec3(0, 0, z)},
-                        {Vec3(0, 0, c.stiffness * (kTip * std::cos(theta) - z)),
-                         c.torsional_stiffness * (theta - tilt) * axis}});
+    w.probes.push_back(
+        {{rotation(tilt * axis), Vec3(0, 0, z)},
+         {Vec3(0, 0, c.stiffness * (kTip * std::cos(theta) - z)), c.torsional_stiffness * (theta - tilt) * axis}});
   }
   return w;
 }
@@ -147,7 +147,8 @@ WrenchScene pin_pushed(int probes) {
 double free_turn(double length, double width) {
   double t = 0;  // length sin t + width cos t = width + 2 kPlay, by Newton's method
   for (int n = 0; n < 50; ++n)
-    t -= (length * std::sin(t) + width * std::cos(t) - width - 2 * kPlay) / (length * std::cos(t) - width * std::sin(t));
+    t -=
+        (length * std::sin(t) + width * std::cos(t) - width - 2 * kPlay) / (length * std::cos(t) - width * std::sin(t));
   return t;
 }
 
@@ -155,13 +156,14 @@ void turn(WrenchScene& w, double free, int probes) {
   const double k = w.scene.coupling.torsional_stiffness;
   for (int i = 0; i < probes; ++i) {
     const double side = i % 2 == 0 ? 1 : -1, angle = side * (0.1 + 0.3 * i / probes);
-    w.probes.push_back({{rotation({0, 0, angle}), Vec3::Zero()},
-                        {Vec3::Zero(), Vec3(0, 0, -k * (angle - side * free))}});
+    w.probes.push_back(
+        {{rotation({0, 0, angle}), Vec3::Zero()}, {Vec3::Zero(), Vec3(0, 0, -k * (angle - side * free))}});
   }
 }
 
 WrenchScene pin_turned(int probes) {
-  WrenchScene w = slot("pin turned in a slot", "T = −k_t (φ − φ*), L sin φ* + b cos φ* = w, F = 0", kPinLength, kPinWidth);
+  WrenchScene w =
+      slot("pin turned in a slot", "T = −k_t (φ − φ*), L sin φ* + b cos φ* = w, F = 0", kPinLength, kPinWidth);
   turn(w, free_turn(kPinLength, kPinWidth), probes);
   return w;
 }
@@ -183,8 +185,7 @@ WrenchScene shaft_turned(int probes) {
 
 std::vector<WrenchScene> wrench_scenes(int probes) {
   std::vector<WrenchScene> all;
-  for (const auto make : {ball_in_sphere, ball_in_tube, cone_on_block, pin_pushed, pin_turned, shaft_turned})
-{
+  for (const auto make : {ball_in_sphere, ball_in_tube, cone_on_block, pin_pushed, pin_turned, shaft_turned}) {
     all.push_back(make(probes));
     all.back().scene.contact.l_min = kLMin;
   }

@@ -60,6 +60,10 @@ TEST_CASE("every job is done once on any number of threads, and a failure comes 
     std::vector<int> done(100, 0);
     work.each("count", 100, [&](int i) { ++done[static_cast<std::size_t>(i)]; });
     CHECK(done == std::vector<int>(100, 1));
-    CHECK_THROWS_AS(work.each("fail", 10, [](int i) { if (i == 3) throw std::runtime_error("three"); }), std::runtime_error);
+    CHECK_THROWS_AS(work.each("fail", 10,
+                              [](int i) {
+                                if (i == 3) throw std::runtime_error("three");
+                              }),
+                    std::runtime_error);
   }
 }

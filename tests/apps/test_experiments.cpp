@@ -63,7 +63,8 @@ TEST_CASE("results do not depend on the number of threads", "[experiment]") {
 }
 
 TEST_CASE("what an experiment cannot be is told in one line", "[experiment]") {
-  for (const char* arguments : {"experiment", "experiment wal", "experiment hold --seeds 0", "experiment hold --seeds -3"}) {
+  for (const char* arguments :
+       {"experiment", "experiment wal", "experiment hold --seeds 0", "experiment hold --seeds -3"}) {
     const Output o = run_program("tegotae", arguments);
     CAPTURE(arguments, o.err);
     CHECK(o.code == 2);
