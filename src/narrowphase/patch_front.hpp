@@ -47,7 +47,7 @@ struct BlockingPair {
 
 /// The path certificate of one pair of parts (mutable scratch; the trees are shared): keeps a front of node pairs that
 /// covers all pairs of triangles, each pair with the plane that separated it last. A motion is free when every pair of
-/// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see patch_separate.cpp).
+/// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see moving_plane.hpp).
 /// No call but the constructor allocates.
 class PatchFront {
  public:
@@ -99,6 +99,10 @@ class PatchFront {
     std::vector<std::uint32_t> owner;
     std::uint32_t count = 0;
   };
+
+  static constexpr std::uint32_t kNoPair = 0xffffffffu;
+  /// Most children of a pair: all triangle pairs of two leaves.
+  static constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
 
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 

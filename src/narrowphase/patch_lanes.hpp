@@ -1,12 +1,20 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 
 namespace tegotae {
+
+/// `x` or the next larger number of the precision.
+template <typename Real>
+Real round_up(double x) {
+  return std::nextafter(static_cast<Real>(x), std::numeric_limits<Real>::infinity());
+}
 
 /// A motion for the wide check of a front (see Sweep): rotations row by row, m.
 template <typename Real>

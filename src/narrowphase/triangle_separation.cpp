@@ -1,54 +1,21 @@
-#include "narrowphase/patch_separate.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "narrowphase/moving_plane.hpp"
 
 namespace tegotae {
 namespace {
 
 constexpr int kTimeHalvings = 4;
-/// Normals are kept in single precision, so their length may exceed 1 by 1e-7 and the bulge along them with it.
-constexpr double kUnitSlack = 1 + 1e-6;
 /// Products of unit vectors shorter than this have no reliable direction.
 constexpr double kParallel = 1e-6;
 
-/// The part of a motion between s0 and s1, seen by a body whose points are up to `reach` from the center of mass.
-///
-/// With the plane going linearly from (n0, c0) to (n1, c1), the gap of a point that goes linearly is the quadratic
-/// α(1−t)² + 2γt(1−t) + βt². The turning path leaves the chord by at most ρθ²Δs²t(1−t)/2, and the path with a linear
-/// file-frame origin leaves the one with a linear center of mass by at most |c|θ²s(1−s)/2 (the rotation is the same,
-/// the second derivative of R(sθ)r is at most ρθ²). Both are across the axis of rotation: a plane across it sees none.
-/// Both terms are quadratics of the same form and are taken off.
-struct Bulge {
-  double at_start, at_end, between;
-  Vec3 axis;
-
-  Bulge(const Sweep& sweep, double reach, double s0, double s1) {
-    axis = sweep.axis;
-    const double k = 0.5 * kUnitSlack * sweep.theta2;
-    const double paths = k * sweep.center_distance, turn = k * reach * (s1 - s0) * (s1 - s0);
-    at_start = paths * s0 * (1 - s0);
-    at_end = paths * s1 * (1 - s1);
-    between = paths * (s0 * (1 - s1) + s1 * (1 - s0)) + turn;  // of 2γ
-  }
-
-  /// The part of the bulge that planes between n0 and n1 see.
-  double share(const Vec3& n0, const Vec3& n1) const {
-    return std::sqrt(std::max(axis.cross(n0).squaredNorm(), axis.cross(n1).squaredNorm()));
-  }
-};
-
-template <typename Pair>
-bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep,
-                 double spare) {
-  const double share = bulge.share(n0, n1);
-  const double alpha = pair.start(n0) - share * bulge.at_start - spare - sweep.start_floor;
-  if (!(alpha >= 0)) return false;
-  const double beta = pair.end(n1) - share * bulge.at_end - spare - sweep.floor;
-  if (!(beta >= 0)) return false;
-  const double gamma = 0.5 * (pair.mixed(n0, n1) - share * bulge.between) - spare - sweep.floor;
-  return gamma + std::sqrt(alpha * beta) >= 0;
+double least(const Vec3& n, const std::array<Vec3, 3>& p) {
+  return std::min(std::min(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
+}
+double largest(const Vec3& n, const std::array<Vec3, 3>& p) {
+  return std::max(std::max(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
 }
 
 struct Span {
@@ -104,35 +71,6 @@ class Search {
   MovingPlane best_{Vec3::Zero(), Vec3::Zero()};
   MovingPlane together_{Vec3::Zero(), Vec3::Zero()};
 };
-
-/// Separation of two boxes along the normals of their faces, negative signs folded in: sep[i] along sign[i] · axis i,
-/// B's axes first.
-struct BoxFaces {
-  std::array<double, 6> sep;
-  std::array<double, 6> sign;
-
-  BoxFaces(const Vec3& d, const std::array<Vec3, 3>& a, const std::array<double, 3>& ha, const std::array<Vec3, 3>& b,
-           const std::array<double, 3>& hb) {
-    std::array<std::array<double, 3>, 3> m;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) m[i][j] = std::abs(b[i].dot(a[j]));
-    }
-    for (int i = 0; i < 3; ++i) {
-      set(i, d.dot(b[i]), hb[i] + ha[0] * m[i][0] + ha[1] * m[i][1] + ha[2] * m[i][2]);
-      set(3 + i, d.dot(a[i]), ha[i] + hb[0] * m[0][i] + hb[1] * m[1][i] + hb[2] * m[2][i]);
-    }
-  }
-
- private:
-  void set(int k, double along, double span) {
-    sep[k] = std::abs(along) - span;
-    sign[k] = along < 0 ? -1 : 1;
-  }
-};
-
-const Vec3& box_axis(int k, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return k < 3 ? b[k] : a[k - 3];
-}
 
 /// Closest points of the segments p + s u and q + t v, s, t in [0, 1]; returns the vector from the second to the first
 /// (Ericson, "Real-Time Collision Detection", 5.1.9).
@@ -263,48 +201,6 @@ Placement Sweep::at(double s) const {
   return {rotation(s * dr).toRotationMatrix() * start.R, start.t + s * dp};
 }
 
-BoxPair::BoxPair(const PatchNode& a, const Vec3& center_a, const PatchNode& b_node, const Sweep& sweep) {
-  d0 = sweep.start.R * center_a + sweep.start.t - b_node.center_vec();
-  d1 = sweep.end.R * center_a + sweep.end.t - b_node.center_vec();
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 u = a.axis_vec(i);
-    a0[i] = sweep.start.R * u;
-    a1[i] = sweep.end.R * u;
-    b[i] = b_node.axis_vec(i);
-    ha[i] = a.half[i];
-    hb[i] = b_node.half[i];
-  }
-}
-
-double BoxPair::start(const Vec3& n) const {
-  double s = n.dot(d0);
-  for (int i = 0; i < 3; ++i) s -= ha[i] * std::abs(n.dot(a0[i])) + hb[i] * std::abs(n.dot(b[i]));
-  return s;
-}
-
-double BoxPair::end(const Vec3& n) const {
-  double s = n.dot(d1);
-  for (int i = 0; i < 3; ++i) s -= ha[i] * std::abs(n.dot(a1[i])) + hb[i] * std::abs(n.dot(b[i]));
-  return s;
-}
-
-double BoxPair::mixed(const Vec3& n0, const Vec3& n1) const {
-  double s = n0.dot(d1) + n1.dot(d0);
-  for (int i = 0; i < 3; ++i) {
-    s -= ha[i] * std::abs(n0.dot(a1[i]) + n1.dot(a0[i])) + hb[i] * (std::abs(n0.dot(b[i])) + std::abs(n1.dot(b[i])));
-  }
-  return s;
-}
-
-namespace {
-double least(const Vec3& n, const std::array<Vec3, 3>& p) {
-  return std::min(std::min(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
-}
-double largest(const Vec3& n, const std::array<Vec3, 3>& p) {
-  return std::max(std::max(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
-}
-}  // namespace
-
 TrianglePair::TrianglePair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Placement& from,
                            const Placement& to)
     : q(b) {
@@ -324,33 +220,6 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
   double s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) s = std::min(s, n0.dot(p1[i]) + n1.dot(p0[i]));
   return s - largest(n0, q) - largest(n1, q);
-}
-
-bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
-  const Bulge bulge(sweep, reach, 0, 1);
-  if (stays_apart(pair, plane, plane, bulge, sweep, spare)) return true;
-  const BoxFaces at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
-  int first = 0;
-  for (int k = 1; k < 6; ++k) {
-    if (at_start.sep[k] > at_start.sep[first]) first = k;
-  }
-  if (!(at_start.sep[first] > 0)) return false;
-  const BoxFaces at_end(pair.d1, pair.a1, pair.ha, pair.b, pair.hb);
-  int last = 0, together = -1;
-  double both = 0;
-  for (int k = 0; k < 6; ++k) {
-    if (at_end.sep[k] > at_end.sep[last]) last = k;
-    const double s = std::min(at_start.sep[k], at_end.sep[k]);
-    if (at_start.sign[k] == at_end.sign[k] && s > both) both = s, together = k;
-  }
-  auto try_pair = [&](int i, int j) {
-    const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
-    const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
-    if (!stays_apart(pair, n0, n1, bulge, sweep, spare)) return false;
-    plane = n1;
-    return true;
-  };
-  return (together >= 0 && try_pair(together, together)) || (at_end.sep[last] > 0 && try_pair(first, last));
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
