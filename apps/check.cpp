@@ -1,11 +1,13 @@
 #include "check.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
 
 #include "run_options.hpp"
+#include "status_line.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -32,7 +34,7 @@ void check_mesh(const std::string& file) {
 }
 
 void check_scene(const std::string& path) {
-  const SceneFile file = load_scene(path);
+  const SceneFile file = load_with_progress(path, {"", false, {}});
   std::cout << path << "\n" << std::flush;
   std::map<const TriangleMesh*, std::string> seen;
   for (const Part& part : file.scene.parts) {
@@ -42,6 +44,11 @@ void check_scene(const std::string& path) {
       print_mesh(report(*part.mesh), 1e-3, "mm");
     else
       std::printf("  as %s\n", first->second.c_str());
+  }
+  const auto& parts = file.scene.parts;
+  if (std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.held; })) {
+    std::printf("no part is held: name one with --hold NAME when running, or give it held = true\n");
+    return;
   }
   std::printf("script: %.3g s\n", file.script.end() - file.script.begin());
   std::fflush(stdout);

@@ -1,0 +1,33 @@
+#include "status_line.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace tegotae::apps {
+
+StatusLine::StatusLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
+
+StatusLine::~StatusLine() {
+  if (terminal_ && !last_what_.empty()) std::fputs("\r\033[K", stderr);
+}
+
+void StatusLine::show(const std::string& what, std::size_t done, std::size_t total) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ || (what == last_what_ && now < next_)) return;
+  last_what_ = what;
+  next_ = now + std::chrono::milliseconds(100);
+  if (total > 0)
+    std::fprintf(stderr, "\r\033[K%s %zu / %zu", what.c_str(), done, total);
+  else
+    std::fprintf(stderr, "\r\033[K%s", what.c_str());
+  std::fflush(stderr);
+}
+
+SceneFile load_with_progress(const std::string& path, SceneOptions options) {
+  StatusLine status;
+  options.progress = [&](std::size_t done, std::size_t total) { status.show("reading meshes of part", done, total); };
+  return load_scene(path, options);
+}
+
+}  // namespace tegotae::apps

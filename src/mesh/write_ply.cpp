@@ -1,0 +1,42 @@
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/write.hpp"
+
+namespace tegotae {
+namespace {
+
+/// The four bytes of a float or an integer, lowest first.
+template <typename T>
+void append(std::string& bytes, T value) {
+  static_assert(sizeof(T) == 4);
+  std::uint32_t word = 0;
+  std::memcpy(&word, &value, 4);
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<char>(word >> (8 * i)));
+}
+
+}  // namespace
+
+void write_ply(const TriangleMesh& mesh, const std::string& path, double unit_in_m) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                      std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
+  bytes.reserve(bytes.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  for (const Vec3& p : mesh.vertices) {
+    for (int k = 0; k < 3; ++k) append(bytes, static_cast<float>(p[k] / unit_in_m));
+  }
+  for (const auto& t : mesh.triangles) {
+    bytes.push_back(3);
+    for (const std::uint32_t v : t) append(bytes, v);
+  }
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) throw Error(path + ": cannot be written: " + std::strerror(errno));
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  if (std::fclose(file) != 0 || !written) throw Error(path + ": cannot be written: " + std::strerror(errno));
+}
+
+}  // namespace tegotae
