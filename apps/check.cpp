@@ -1,6 +1,7 @@
 #include "check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -11,6 +12,7 @@
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
+#include "tegotae/sim/clash.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::apps {
@@ -61,13 +63,56 @@ void check_scene(const std::string& path) {
   }
 }
 
+void print_clash(const Clash& c, const Scene& scene) {
+  char how[64];
+  if (c.kind == ClashKind::near || c.gap > 0)
+    std::snprintf(how, sizeof how, "%s, gap %.4g mm", c.kind == ClashKind::near ? "near" : "touch", 1e3 * c.gap);
+  else if (std::isnan(c.depth))
+    std::snprintf(how, sizeof how, "overlap, open surfaces cross");
+  else
+    std::snprintf(how, sizeof how, "%s, depth %.4g mm", c.kind == ClashKind::overlap ? "overlap" : "touch",
+                  1e3 * c.depth);
+  const Vec3 p = 1e3 * c.place_W;
+  std::printf("%s and %s: %s, at %.6g %.6g %.6g mm\n", scene.parts[c.a].name.c_str(), scene.parts[c.b].name.c_str(),
+              how, p.x(), p.y(), p.z());
+}
+
+void check_clashes(const std::string& path, double within) {
+  const SceneFile file = load_with_progress(path, {"", false, {}});
+  ClashOptions options;
+  options.within = within;
+  std::vector<Clash> clashes;
+  {
+    StatusLine status;
+    options.progress = [&](std::size_t done, std::size_t total) { status.show("pair", done, total); };
+    clashes = find_clashes(file.scene, options);
+  }
+  std::map<ClashKind, std::size_t> counts;
+  for (const Clash& c : clashes) {
+    print_clash(c, file.scene);
+    ++counts[c.kind];
+  }
+  std::printf("%s: of %zu parts %zu pairs overlap, %zu touch", path.c_str(), file.scene.parts.size(),
+              counts[ClashKind::overlap], counts[ClashKind::touch]);
+  if (within > 0) std::printf(", %zu are within %.4g mm", counts[ClashKind::near], 1e3 * within);
+  std::printf("\n");
+}
+
+bool is_scene(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".toml";
+}
+
 }  // namespace
 
-int check_files(const std::vector<std::string>& files) {
+int check_files(const CheckOptions& options) {
   int code = kDone;
-  for (const std::string& file : files) {
+  for (const std::string& file : options.files) {
     try {
-      if (std::filesystem::path(file).extension() == ".toml")
+      if (options.clash && !is_scene(file))
+        throw Error(file + ": --clash needs a scene file (.toml); `tegotae import` makes one");
+      if (options.clash)
+        check_clashes(file, options.within);
+      else if (is_scene(file))
         check_scene(file);
       else
         check_mesh(file);

@@ -7,6 +7,7 @@
 #include "bench/scenes.hpp"
 #include "check.hpp"
 #include "import.hpp"
+#include "length_option.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
 
@@ -36,9 +37,13 @@ int main(int argc, char** argv) {
       })
       ->type_name("S");
 
-  std::vector<std::string> files;
+  CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+
+  check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
+  add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
+      ->needs("--clash");
 
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
@@ -59,7 +64,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
 
   return guarded_main(app, argc, argv, [&] {
-    if (check->parsed()) return check_files(files);
+    if (check->parsed()) return check_files(check_options);
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (import->parsed()) return import_file(import_options);
     return run_and_report(load_with_progress(scene, {hold, true, {}}), options, scene);

@@ -43,8 +43,11 @@ double srgb(double linear) {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
+/// `linear`: of a glTF file, whose colors are linear.
 std::optional<Color> color_of(const aiScene& scene, const aiMesh& mesh, bool linear) {
   if (mesh.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
+  // For meshes without a material assimp adds one: to glTF always, as the last; to others by its name.
+  if (linear && mesh.mMaterialIndex + 1 == scene.mNumMaterials) return std::nullopt;
   const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
   aiString name;
   if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME)

@@ -51,7 +51,7 @@ TopoDS_Shape cover(const StepSizes& s) {
   TopoDS_Shape body =
       BRepPrimAPI_MakeBox(gp_Pnt(-s.plate_x / 2, -s.plate_y / 2, 0), s.plate_x, s.plate_y, s.cover_z).Shape();
   for (const double side : {-1.0, 1.0}) {
-    body = cut(body, cylinder(side * s.bore_at, -1, s.bore, s.cover_z + 2));
+    body = cut(body, cylinder(side * s.bore_at, -1, s.window, s.cover_z + 2));
     body = cut(body, cylinder(side * s.dowel_at, -1, s.dowel_hole, s.cover_z + 2));
   }
   return body;
