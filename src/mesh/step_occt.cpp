@@ -6,6 +6,7 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -30,6 +31,7 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -299,6 +301,10 @@ class StepReader {
     reader.SetNameMode(true);
     reader.SetColorMode(true);
     if (reader.ReadFile(path_.c_str()) != IFSelect_RetDone) throw Error(path_ + ": damaged: not a readable STEP file");
+    // Of entities that do not fit together OpenCASCADE makes null handles, which its own transfer then follows.
+    const Interface_CheckIterator checks = reader.ChangeReader().WS()->ModelCheckList(true);
+    if (!checks.IsEmpty(true))
+      throw Error(path_ + ": damaged: OpenCASCADE finds entities that cannot be (wrong or missing references)");
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
