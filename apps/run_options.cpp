@@ -9,6 +9,7 @@
 #include "progress_line.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/narrowphase/hierarchy_cache.hpp"
 
 namespace tegotae::apps {
 
@@ -48,6 +49,7 @@ int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION);
   try {
     app.parse(argc, argv);
+    set_hierarchy_cache(default_cache_folder());
     return body();
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);

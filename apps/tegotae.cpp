@@ -1,4 +1,4 @@
-// tegotae: runs scenes, looks at part files, measures itself.
+// tegotae: runs scenes, imports assemblies, looks at part files, measures itself.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,7 +7,10 @@
 #include "bench/scenes.hpp"
 #include "check.hpp"
 #include "experiments/experiments.hpp"
+#include "import.hpp"
+#include "length_option.hpp"
 #include "run_options.hpp"
+#include "status_line.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -24,6 +27,8 @@ int main(int argc, char** argv) {
   std::string scene;
   CLI::App* run = app.add_subcommand("run", "Run a scene: its pen, servo and contact loop");
   run->add_option("SCENE", scene, "Scene file (TOML)")->required();
+  std::string hold;
+  run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
       ->check([](const std::string& text) -> std::string {
@@ -33,9 +38,16 @@ int main(int argc, char** argv) {
       })
       ->type_name("S");
 
-  std::vector<std::string> files;
+  CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+
+  check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
+  add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
+      ->needs("--clash");
+
+  ImportOptions import_options;
+  const CLI::App* import = add_import(app, import_options);
 
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
@@ -68,9 +80,10 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
-    if (check->parsed()) return check_files(files);
+    if (check->parsed()) return check_files(check_options);
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (experiment->parsed()) return experiments::run(trials);
-    return run_and_report(load_scene(scene), options, scene);
+    if (import->parsed()) return import_file(import_options);
+    return run_and_report(load_with_progress(scene, {hold, true, {}}), options, scene);
   });
 }

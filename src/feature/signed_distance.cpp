@@ -54,6 +54,7 @@ SignedDistance::SignedDistance(std::shared_ptr<const Surface> surface, std::shar
 }
 
 void SignedDistance::try_face(const Vec3& p, std::uint32_t face, Best& best) const {
+  if (surface_->topology.face_normals[face].isZero(0)) return;  // collapsed: its corners belong to others too
   const ClosestPoints c =
       closest_points({1, {p}}, {3, {tree_->corner(face, 0), tree_->corner(face, 1), tree_->corner(face, 2)}});
   if (c.squared_distance < best.squared) best = {c.squared_distance, c.b, face, c.mask_b};

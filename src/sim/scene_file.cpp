@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -65,20 +66,36 @@ Pose read_pose(const TomlTable& t) {
   return X;
 }
 
-void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene& scene) {
+std::optional<Color> read_color(const TomlTable& t) {
+  if (!t.has("color")) return std::nullopt;
+  const std::vector<double> given = t.numbers("color", 3, 4);
+  Color color = {0, 0, 0, 1};
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!(given[i] >= 0 && given[i] <= 1)) t.fail("color", "each number must be between 0 and 1");
+    color[i] = given[i];
+  }
+  return color;
+}
+
+void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene) {
   const double default_unit = read_unit(top, "m");
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
   std::string held;
-  for (const TomlTable& t :
-       top.tables("part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg"})) {
+  const std::vector<TomlTable> tables = top.tables(
+      "part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color"});
+  for (const TomlTable& t : tables) {
+    if (options.progress) options.progress(scene.parts.size(), tables.size());
     Part part;
     part.name = t.text("name");
     if (!names.insert(part.name).second) t.fail("name", "another part is named " + part.name);
     part.held = t.flag("held", false);
+    if (!options.hold.empty()) part.held = part.name == options.hold;
     if (part.held && !held.empty()) t.fail("held", "part " + held + " is held already; exactly one part is");
     if (part.held) held = part.name;
     part.pose = read_pose(t);
+    part.path = t.texts("path");
+    part.color = read_color(t);
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder);
     auto& mesh = meshes[{file, unit}];
@@ -87,7 +104,9 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene
     scene.parts.push_back(std::move(part));
   }
   if (scene.parts.empty()) top.fail("part", "the scene has no [[part]]");
-  if (held.empty()) top.fail("part", "no part is held; give one of them held = true");
+  if (held.empty() && !options.hold.empty()) top.fail("part", "no part is named " + options.hold);
+  if (held.empty() && options.held_needed)
+    top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME");
 }
 
 std::string one_of(const TomlTable& t, const char* key, const std::string& otherwise,
@@ -155,9 +174,15 @@ SimulatedDeviceSettings read_device(const TomlTable& t) {
   return s;
 }
 
+/// A script of a hand that stays where the held part starts.
+StylusScript rest(const Scene& scene) {
+  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  return StylusScript({{0, held == scene.parts.end() ? Pose() : held->pose}});
+}
+
 }  // namespace
 
-SceneFile load_scene(const std::string& path) {
+SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_toml(path);
   const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -174,10 +199,14 @@ SceneFile load_scene(const std::string& path) {
               safety);
   const TomlTable device = top.table("device", {"type", "hand", "script", "scale"});
   const SimulatedDeviceSettings settings = read_device(device);
-  const std::string script_file = file_under(device, "script", folder);
-  StylusScript script = about(device, "script", [&] { return read_script(script_file); });
-  read_parts(top, folder, scene);
-  return {path, std::move(scene), settings, std::move(script), safety, read_scale(device)};
+  std::optional<StylusScript> script;
+  if (device.has("script")) {
+    const std::string script_file = file_under(device, "script", folder);
+    script = about(device, "script", [&] { return read_script(script_file); });
+  }
+  read_parts(top, folder, options, scene);
+  if (!script) script = rest(scene);
+  return {path, std::move(scene), settings, std::move(*script), safety, read_scale(device)};
 }
 
 }  // namespace tegotae

@@ -251,7 +251,14 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {replaced(good, "tet.obj", "none.obj"), "scene.toml:4: part.mesh: none.obj: no such file"},
       {replaced(good, "tet.obj", "meshes"), "scene.toml:4: part.mesh: meshes: not a file"},
       {replaced(good, "tet.obj", "empty.obj"), "scene.toml:4: part.mesh: "},
-      {kParts, "scene.toml: device.script: missing"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\npath = \"a\"\n",
+       "scene.toml:15: part.path: must be a list of strings"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\npath = [\"a\", 1]\n",
+       "scene.toml:15: part.path: must be a list of strings"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\ncolor = [1, 0]\n",
+       "scene.toml:15: part.color: must be a list of 3 to 4 numbers"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\ncolor = [1, 0, 1.5]\n",
+       "scene.toml:15: part.color: each number must be between 0 and 1"},
       {replaced(good, "insert.csv", "none.csv"), "scene.toml:11: device.script: none.csv: no such file"},
       {replaced(good, "insert.csv", "bad.csv"), "scene.toml:11: device.script: bad.csv:2"},
   };
@@ -263,6 +270,46 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
     CHECK(starts_with(error, c.error));
     CHECK(error.find('\n') == std::string::npos);
   }
+}
+
+TEST_CASE("groups and colors of parts are kept", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(kParts + kDevice +
+                                     "[[part]]\nname = \"cover\"\nmesh = \"tet.obj\"\n"
+                                     "path = [\"pump\", \"lid / top\"]\ncolor = [0.25, 0.5, 1]\n"
+                                     "[[part]]\nname = \"glass\"\nmesh = \"tet.obj\"\ncolor = [0, 0, 0, 0.5]\n");
+  REQUIRE(file.scene.parts.size() == 4);
+  CHECK(file.scene.parts[0].path.empty());
+  CHECK(!file.scene.parts[0].color);
+  CHECK(file.scene.parts[2].path == std::vector<std::string>{"pump", "lid / top"});
+  CHECK(file.scene.parts[2].color == Color{0.25, 0.5, 1, 1});
+  CHECK(file.scene.parts[3].color == Color{0, 0, 0, 0.5});
+}
+
+TEST_CASE("the part to hold can be named when loading", "[scene_file]") {
+  const Folder folder;
+  folder.load(kParts + kDevice);
+  SceneOptions options;
+  options.hold = "block";
+  const SceneFile file = load_scene(folder.scene_path(), options);
+  CHECK(file.scene.parts[0].held);
+  CHECK(!file.scene.parts[1].held);
+  options.hold = "lid";
+  CHECK_THROWS_WITH(load_scene(folder.scene_path(), options), Catch::Contains("no part is named lid"));
+  const auto at = kParts.find("held = true");
+  REQUIRE(at != std::string::npos);
+  const std::string nothing_held = kParts.substr(0, at) + "held = false" + kParts.substr(at + 11);
+  CHECK(folder.error(nothing_held).find("--hold NAME") != std::string::npos);
+  CHECK_NOTHROW(load_scene(folder.scene_path(), {"block", true, {}}));
+  CHECK_NOTHROW(load_scene(folder.scene_path(), {"", false, {}}));
+}
+
+TEST_CASE("without a script the hand stays where the held part starts", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(kParts);
+  CHECK(file.script.begin() == file.script.end());
+  for (const Part& part : file.scene.parts)
+    if (part.held) CHECK(file.script.pose(0).p == part.pose.p);
 }
 
 TEST_CASE("a scene file that is not there is an error", "[scene_file]") {

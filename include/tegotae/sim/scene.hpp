@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tegotae/core/pose.hpp"
 #include "tegotae/coupling/coupling.hpp"
+#include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
 namespace tegotae {
@@ -16,6 +18,8 @@ struct Part {
   std::shared_ptr<const TriangleMesh> mesh;  ///< welded (load_mesh does it), file frame, m
   Pose pose;                                 ///< X_WF of the file frame in the world; of the held part, where it starts
   bool held = false;                         ///< exactly one part of a scene is held
+  std::vector<std::string> path = {};        ///< groups of the assembly that it is in, the outermost first
+  std::optional<Color> color = {};           ///< to show it in
 };
 
 /// Settings of the resolver "impulse".
