@@ -1,4 +1,6 @@
 // tegotae-device and the programs that attach to it, as a user runs them.
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -20,6 +22,13 @@ using nlohmann::json;
 namespace {
 
 const std::string kName = "tegotae-program-" + std::to_string(getpid());
+/// Killed devices leave their names.
+struct Tidy {
+  ~Tidy() {
+    for (const char* side : {"", "-left", "-right"}) shm_unlink(("/" + kName + side).c_str());
+  }
+} const tidy;
+
 const std::string kDevice = TEGOTAE_BIN_DIR "/tegotae-device";
 
 /// A running device, after its greeting.

@@ -1,6 +1,7 @@
 // Processes that die: the application in contact, and the device. Everything is judged by the time stamps in the
 // segment and by the clock readings that the application says, not by when this test was woken.
 #include <signal.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <fstream>
@@ -28,6 +29,11 @@ constexpr std::int64_t kZeroWithin = 25 * kMs;
 constexpr double kForceLimit = 8.5, kTorqueLimit = 0.188;  // of the simulated device
 
 const std::string kName = "tegotae-fault-" + std::to_string(getpid());
+
+/// The last device of a test is killed and leaves its name.
+struct Tidy {
+  ~Tidy() { shm_unlink(("/" + kName).c_str()); }
+} const tidy;
 
 /// A hand that goes 4 mm down and up four times a second and sways, for ten minutes.
 void write_press_script(const std::string& path) {
