@@ -2,15 +2,12 @@
 
 #include <cstdarg>
 #include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "latency_json.hpp"
 
 namespace tegotae::apps {
 
 namespace {
-
-nlohmann::ordered_json to_json(const LatencySummary& p) {
-  return {{"p50", p.p50}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
-}
 
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
