@@ -1,16 +1,11 @@
 #include "summary.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "format.hpp"
+#include "latency_json.hpp"
 
 namespace tegotae::apps {
 
 namespace {
-
-nlohmann::ordered_json to_json(const LatencySummary& p) {
-  return {{"p50", p.p50}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
-}
 
 std::string row(const char* what, const LatencySummary& us) {
   return format("  %-12s median %.0f us, 99 %% %.0f us, 99.9 %% %.0f us, longest %.0f us\n", what, us.p50, us.p99,
