@@ -1,14 +1,18 @@
 #include "check.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
 
 #include "run_options.hpp"
+#include "status_line.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
+#include "tegotae/sim/clash.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::apps {
@@ -32,7 +36,7 @@ void check_mesh(const std::string& file) {
 }
 
 void check_scene(const std::string& path) {
-  const SceneFile file = load_scene(path);
+  const SceneFile file = load_with_progress(path, {"", false, {}});
   std::cout << path << "\n" << std::flush;
   std::map<const TriangleMesh*, std::string> seen;
   for (const Part& part : file.scene.parts) {
@@ -42,6 +46,11 @@ void check_scene(const std::string& path) {
       print_mesh(report(*part.mesh), 1e-3, "mm");
     else
       std::printf("  as %s\n", first->second.c_str());
+  }
+  const auto& parts = file.scene.parts;
+  if (std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.held; })) {
+    std::printf("no part is held: name one with --hold NAME when running, or give it held = true\n");
+    return;
   }
   std::printf("script: %.3g s\n", file.script.end() - file.script.begin());
   std::fflush(stdout);
@@ -54,13 +63,56 @@ void check_scene(const std::string& path) {
   }
 }
 
+void print_clash(const Clash& c, const Scene& scene) {
+  char how[64];
+  if (c.kind == ClashKind::near || c.gap > 0)
+    std::snprintf(how, sizeof how, "%s, gap %.4g mm", c.kind == ClashKind::near ? "near" : "touch", 1e3 * c.gap);
+  else if (std::isnan(c.depth))
+    std::snprintf(how, sizeof how, "overlap, open surfaces cross");
+  else
+    std::snprintf(how, sizeof how, "%s, depth %.4g mm", c.kind == ClashKind::overlap ? "overlap" : "touch",
+                  1e3 * c.depth);
+  const Vec3 p = 1e3 * c.place_W;
+  std::printf("%s and %s: %s, at %.6g %.6g %.6g mm\n", scene.parts[c.a].name.c_str(), scene.parts[c.b].name.c_str(),
+              how, p.x(), p.y(), p.z());
+}
+
+void check_clashes(const std::string& path, double within) {
+  const SceneFile file = load_with_progress(path, {"", false, {}});
+  ClashOptions options;
+  options.within = within;
+  std::vector<Clash> clashes;
+  {
+    StatusLine status;
+    options.progress = [&](std::size_t done, std::size_t total) { status.show("pair", done, total); };
+    clashes = find_clashes(file.scene, options);
+  }
+  std::map<ClashKind, std::size_t> counts;
+  for (const Clash& c : clashes) {
+    print_clash(c, file.scene);
+    ++counts[c.kind];
+  }
+  std::printf("%s: of %zu parts %zu pairs overlap, %zu touch", path.c_str(), file.scene.parts.size(),
+              counts[ClashKind::overlap], counts[ClashKind::touch]);
+  if (within > 0) std::printf(", %zu are within %.4g mm", counts[ClashKind::near], 1e3 * within);
+  std::printf("\n");
+}
+
+bool is_scene(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".toml";
+}
+
 }  // namespace
 
-int check_files(const std::vector<std::string>& files) {
+int check_files(const CheckOptions& options) {
   int code = kDone;
-  for (const std::string& file : files) {
+  for (const std::string& file : options.files) {
     try {
-      if (std::filesystem::path(file).extension() == ".toml")
+      if (options.clash && !is_scene(file))
+        throw Error(file + ": --clash needs a scene file (.toml); `tegotae import` makes one");
+      if (options.clash)
+        check_clashes(file, options.within);
+      else if (is_scene(file))
         check_scene(file);
       else
         check_mesh(file);

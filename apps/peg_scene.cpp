@@ -19,11 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Finer fits get more facets, so that the facets' height stays below the clearance.
-int facets(double ratio) {
-  return ratio <= 0.99 ? 64 : ratio <= 0.995 ? 128 : 256;
-}
-
 void write_text(const fs::path& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
@@ -80,6 +75,10 @@ class TempFolder {
 };
 
 }  // namespace
+
+int facets(double ratio) {
+  return ratio <= 0.99 ? 64 : ratio <= 0.995 ? 128 : 256;
+}
 
 std::string ratio_text(double ratio) {
   char text[32];

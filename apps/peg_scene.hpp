@@ -12,6 +12,9 @@ inline constexpr double kTightestRatio = 0.9995;
 /// Height of the peg's tip above the block's top face where the script starts, m.
 inline constexpr double kStartHeight = 0.02;
 
+/// Facets around peg and hole: finer fits get more, so that the facets' height stays below the clearance.
+int facets(double ratio);
+
 /// "0.94"
 std::string ratio_text(double ratio);
 

@@ -9,6 +9,7 @@
 #include "progress_line.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/narrowphase/hierarchy_cache.hpp"
 
 namespace tegotae::apps {
 
@@ -29,10 +30,18 @@ std::string first_line(const std::string& text) {
 }  // namespace
 
 void add_run_options(CLI::App& app, RunOptions& options) {
-  app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
+  app.add_option("--resolver", options.resolver,
+                 "Contact resolver: qp or lp, or for comparison impulse or penalty; overrides the scene's")
       ->type_name("NAME");
-  app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
-  app.add_option("--record", options.record, "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")->type_name("FILE");
+  CLI::Option* device =
+      app.add_option("--device", options.device, "shm:NAME: the pen of a running tegotae-device, until Ctrl-C")
+          ->type_name("DEVICE");
+  CLI::Option* fast =
+      app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
+  fast->excludes(device);
+  app.add_option("--record", options.record,
+                 "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
+      ->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
 }
 
@@ -40,6 +49,7 @@ int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION);
   try {
     app.parse(argc, argv);
+    set_hierarchy_cache(default_cache_folder());
     return body();
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
@@ -59,6 +69,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   if (!options.resolver.empty()) file.scene.contact.resolver = options.resolver;
   RunProgress progress;
   RunSettings settings;
+  settings.device = options.device;
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
@@ -78,10 +89,11 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   if (options.json)
     std::cout << json_line(summary, file) << std::endl;
   else
-    std::cout << summary_text(summary, options, goal, interrupted.load()) << std::flush;
-  // A run that was asked to be short is done when its time is over.
-  const bool done = summary.completed || (options.seconds > 0 && !interrupted.load());
-  return done && summary.penetrating == 0 ? kDone : kRunFailed;
+    std::cout << summary_text(summary, options, goal, file.scene.contact.resolver, interrupted.load()) << std::flush;
+  // A run that was asked to be short is done when its time is over, one with another process's pen when it is ended.
+  const bool done = summary.completed || !options.device.empty() || (options.seconds > 0 && !interrupted.load());
+  const bool clean = summary.penetrating == 0 || file.scene.contact.resolver == "penalty";
+  return done && clean ? kDone : kRunFailed;
 }
 
 }  // namespace tegotae::apps

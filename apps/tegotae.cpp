@@ -1,4 +1,4 @@
-// tegotae: runs scenes, looks at part files, measures itself.
+// tegotae: runs scenes, imports assemblies, looks at part files, measures itself.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -6,7 +6,11 @@
 #include "bench/bench.hpp"
 #include "bench/scenes.hpp"
 #include "check.hpp"
+#include "experiments/experiments.hpp"
+#include "import.hpp"
+#include "length_option.hpp"
 #include "run_options.hpp"
+#include "status_line.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -23,6 +27,8 @@ int main(int argc, char** argv) {
   std::string scene;
   CLI::App* run = app.add_subcommand("run", "Run a scene: its pen, servo and contact loop");
   run->add_option("SCENE", scene, "Scene file (TOML)")->required();
+  std::string hold;
+  run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
       ->check([](const std::string& text) -> std::string {
@@ -32,9 +38,16 @@ int main(int argc, char** argv) {
       })
       ->type_name("S");
 
-  std::vector<std::string> files;
+  CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+
+  check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
+  add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
+      ->needs("--clash");
+
+  ImportOptions import_options;
+  const CLI::App* import = add_import(app, import_options);
 
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
@@ -51,9 +64,27 @@ int main(int argc, char** argv) {
   bench_options.command = "tegotae";
   for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
 
+  experiments::Options trials;
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
+  experiment->add_option("NAME", trials.name, "Which one, or all")
+      ->required()
+      ->check(CLI::IsMember(experiments::names()));
+  experiment->add_option("--out", trials.out, "Folder for what it writes")->capture_default_str()->type_name("DIR");
+  experiment->add_option("--seeds", trials.seeds, "Runs of each kind (each experiment has its own number)")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  experiment->add_option("--threads", trials.threads, "Threads (all processors unless told); no result depends on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
+
   return guarded_main(app, argc, argv, [&] {
-    if (check->parsed()) return check_files(files);
+    if (check->parsed()) return check_files(check_options);
     if (measure->parsed()) return bench::run_bench(bench_options);
-    return run_and_report(load_scene(scene), options, scene);
+    if (experiment->parsed()) return experiments::run(trials);
+    if (import->parsed()) return import_file(import_options);
+    const SceneOptions how{hold, true, {}};
+    return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
   });
 }

@@ -1,14 +1,12 @@
 #include "bench/bench.hpp"
 
-#include <unistd.h>
-
-#include <cstdio>
 #include <iostream>
 #include <set>
 
 #include "bench/results.hpp"
 #include "narrowphase/patch_tree.hpp"
 #include "run_options.hpp"
+#include "status_line.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae::bench {
@@ -19,18 +17,6 @@ constexpr int kRounds = 3, kFastRounds = 12;
 constexpr int kJams = 200, kQuickJams = 20;
 // Other budgets than the default one, s.
 constexpr double kBudgets[] = {0.1e-3, 0.3e-3};
-
-/// One line on the terminal, replaced as the work goes on.
-class Progress {
- public:
-  void say(const std::string& what) const {
-    if (shown_) std::fprintf(stderr, "\r\033[K%s", what.c_str());
-  }
-  ~Progress() { say(""); }
-
- private:
-  const bool shown_ = isatty(STDERR_FILENO) != 0;
-};
 
 BuildFigures measure_build(const Scene& scene) {
   std::set<const TriangleMesh*> seen;
@@ -56,7 +42,7 @@ BudgetFigures measure_budget(const BenchScene& scene, double budget) {
   return f;
 }
 
-SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const Progress& progress) {
+SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const apps::StatusLine& progress) {
   const int jams = options.quick ? kQuickJams : kJams;
   progress.say(name + ": building");
   BenchScene scene = make_scene(name, jams);
@@ -99,7 +85,7 @@ int run_bench(const BenchOptions& options) {
   Results results;
   bool free = true;
   {
-    const Progress progress;
+    const apps::StatusLine progress;
     for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) {
       results.rows.push_back(measure_scene(name, options, progress));
       const SceneFigures& row = results.rows.back();

@@ -1,24 +1,16 @@
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "bench/results.hpp"
+#include "latency_json.hpp"
 
 namespace tegotae::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-Json to_json(const Percentiles& p) {
-  return {{"p50", number(p.p50)}, {"p99", number(p.p99)}, {"p999", number(p.p999)}, {"max", number(p.max)}};
-}
+using apps::json_number;
 
 void add(const LoopFigures& f, Json& j) {
-  j["tick_us"] = to_json(f.tick_us);
-  j["tick_cpu_us"] = to_json(f.tick_cpu_us);
+  j["tick_us"] = apps::to_json(f.tick_us);
+  j["tick_cpu_us"] = apps::to_json(f.tick_cpu_us);
   j["contacts"] = f.contacts;
   j["contacts_max"] = f.contacts_max;
   j["limits"] = f.limits;
@@ -28,7 +20,7 @@ void add(const LoopFigures& f, Json& j) {
   j["overflow"] = f.overflow;
   j["ticks"] = f.ticks;
   j["ticks_in_contact"] = f.in_contact;
-  j["depth_m"] = number(f.depth);
+  j["depth_m"] = json_number(f.depth);
   j["fifo"] = f.fifo;
 }
 
@@ -37,7 +29,7 @@ Json to_json(const SceneFigures& s) {
   j["scene"] = s.scene;
   j["triangles"] = {s.held_triangles, s.fixed_triangles};
   add(s.hand, j);
-  j["fcl_us"] = {{"p50", number(s.fcl.us.p50)}, {"p99", number(s.fcl.us.p99)}};
+  j["fcl_us"] = {{"p50", json_number(s.fcl.us.p50)}, {"p99", json_number(s.fcl.us.p99)}};
   j["fcl_poses"] = s.fcl.poses;
   j["fcl_overlapping"] = s.fcl.overlap;
   j["fcl_pairs"] = s.fcl.pairs;
@@ -58,8 +50,12 @@ Json to_json(const SceneFigures& s) {
 }
 
 Json to_json(const LpTimes& t) {
-  return {{"us", number(t.us)}, {"qp_us", number(t.qp_us)}, {"glpk_us", number(t.glpk_us)}, {"pivots", t.iterations},
-          {"gap", t.gap},       {"failed", t.failed}};
+  return {{"us", json_number(t.us)},
+          {"qp_us", json_number(t.qp_us)},
+          {"glpk_us", json_number(t.glpk_us)},
+          {"pivots", t.iterations},
+          {"gap", t.gap},
+          {"failed", t.failed}};
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace tegotae::bench {
 /// FCL's collide with all contacts: every intersecting pair of triangles, without contact points or normals, which is
 /// the cheapest way to ask for all.
 struct FclFigures {
-  Percentiles us{};
+  LatencySummary us{};
   double pairs = 0;         ///< intersecting triangle pairs, mean
   std::size_t poses = 0;    ///< asked
   std::size_t overlap = 0;  ///< of them, how many do intersect

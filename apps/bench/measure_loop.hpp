@@ -14,9 +14,9 @@ namespace tegotae::bench {
 /// A closed-loop run along the scene's way. Times and counts are of the ticks in contact; one that was cut counts as in
 /// contact, or a loop that freezes near a contact would look fast.
 struct LoopFigures {
-  Percentiles tick_us{};      ///< wall clock
-  Percentiles tick_cpu_us{};  ///< CPU time of the loop's thread
-  std::size_t ticks = 0;      ///< all
+  LatencySummary tick_us{};      ///< wall clock
+  LatencySummary tick_cpu_us{};  ///< CPU time of the loop's thread
+  std::size_t ticks = 0;         ///< all
   std::size_t in_contact = 0;
   double contacts = 0;  ///< mean
   int contacts_max = 0;

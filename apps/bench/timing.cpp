@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kRest(3);
 
 }  // namespace
 
-Percentiles percentiles(std::vector<std::int64_t>& times_ns) {
+LatencySummary percentiles(std::vector<std::int64_t>& times_ns) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (times_ns.empty()) return {kNone, kNone, kNone, kNone};
   std::sort(times_ns.begin(), times_ns.end());

@@ -4,14 +4,13 @@
 #include <functional>
 #include <vector>
 
+#include "tegotae/servo/latency_histogram.hpp"
+
 namespace tegotae::bench {
 
-/// Percentiles of a set of times, µs; all NaN when there were none.
-struct Percentiles {
-  double p50, p99, p999, max;
-};
-/// Of times in ns, which are sorted for it. A percentile is the smallest time that at least that share does not exceed.
-Percentiles percentiles(std::vector<std::int64_t>& times_ns);
+/// Percentiles (µs) of times in ns, which are sorted for it; all NaN when there are none. A percentile is the smallest
+/// time that at least that share does not exceed.
+LatencySummary percentiles(std::vector<std::int64_t>& times_ns);
 
 /// CPU time of the calling thread, ns: without what other programs and the host took meanwhile.
 std::int64_t thread_cpu_ns() noexcept;

@@ -7,6 +7,12 @@
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
+namespace {
+
+// Pairs followed between two looks at the clock (about 1 µs each).
+constexpr std::size_t kClockStride = 8;
+
+}  // namespace
 
 ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSurface> fixed, const Vec3& center,
                        int capacity)
@@ -14,6 +20,8 @@ ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSur
   pairs_.reserve(capacity);
   next_.reserve(capacity);
   limits_.reserve(capacity);
+  next_limits_.reserve(capacity);
+  taken_.reserve(capacity);
   std::size_t size = 16;
   while (size < 4 * static_cast<std::size_t>(capacity)) size *= 2;
   table_.assign(size, -1);
@@ -38,7 +46,9 @@ bool ContactSet::known(std::uint32_t part, Feature a, Feature b) const {
 }
 
 void ContactSet::remember(const Pair& pair) {
-  table_[slot(pair.part, pair.a, pair.b)] = static_cast<std::int32_t>(next_.size());
+  const std::size_t place = slot(pair.part, pair.a, pair.b);
+  table_[place] = static_cast<std::int32_t>(next_.size());
+  taken_.push_back(place);
   next_.push_back(pair);
 }
 
@@ -54,22 +64,40 @@ bool ContactSet::redundant(std::uint32_t part, Feature a, Feature b) const {
   return a.kind == FeatureKind::vertex ? flat(*held_, a) : flat(B, b);
 }
 
-void ContactSet::track(const Pose& X, double reach) {
+void ContactSet::begin_track(const Pose& X, double reach) {
   X_ = X;
   reach_ = reach;
-  limits_.clear();
+  followed_ = 0;
   overflow_ = 0;
   next_.clear();
-  std::fill(table_.begin(), table_.end(), -1);
-  for (const Pair& old : pairs_) {
+  next_limits_.clear();
+  for (const std::size_t place : taken_) table_[place] = -1;
+  taken_.clear();
+}
+
+void ContactSet::clear() {
+  begin_track(X_, 0);
+  pairs_.clear();
+  limits_.clear();
+}
+
+bool ContactSet::track(const Pose& X, double reach, std::int64_t deadline_ns) {
+  const bool goes_on = followed_ > 0 && X.p == X_.p && X.q.coeffs() == X_.q.coeffs() && reach == reach_;
+  if (!goes_on) begin_track(X, reach);
+  for (; followed_ < pairs_.size(); ++followed_) {
+    if (followed_ % kClockStride == kClockStride - 1 && past(deadline_ns)) return false;
+    const Pair& old = pairs_[followed_];
     const FixedSurface& B = fixed_[old.part];
     const FeaturePair at = walk_to_minimum(*held_, *B.surface, B.X_WB.inverse() * X, old.a, old.b);
     if (at.distance > reach || redundant(old.part, at.a, at.b) || known(old.part, at.a, at.b)) continue;
     const Pair pair{old.part, at.a, at.b, old.age + 1};
     remember(pair);
-    add_limits(pair, at);
+    add_limits(pair, at, next_limits_);
   }
+  followed_ = 0;
   pairs_.assign(next_.begin(), next_.end());
+  limits_.swap(next_limits_);
+  return true;
 }
 
 int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns) {
@@ -93,14 +121,15 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near,
     if (at.distance > reach_ || redundant(t.part, at.a, at.b) || known(t.part, at.a, at.b)) continue;
     const Pair pair{t.part, at.a, at.b, 0};
     remember(pair);
-    add_limits(pair, at);
+    add_limits(pair, at, limits_);
     ++fresh;
   }
   if (fresh > 0) pairs_.assign(next_.begin(), next_.end());
   return fresh;
 }
 
-int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, std::int64_t deadline_ns) {
+int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
+                    std::int64_t deadline_ns) {
   int added = 0;
   const Vec3 c = X_ * center_;
   for (const FacePair& t : triangles) {
@@ -112,9 +141,9 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
       b[k] = B.X_WB * B.surface->mesh->vertices[B.surface->mesh->triangles[t.b][k]];
       motion[k] = d.dp + d.dr.cross(a[k] - c);
     }
-    const AxisLimit axis = least_limiting_axis(a, b, motion);
+    const AxisLimit axis = least_limiting_axis(a, b, motion, clearance);
     if (!axis.found) continue;
-    add({axis.n, a[axis.corner] - c, axis.gap, t.part, 0});
+    add({axis.n, a[axis.corner] - c, axis.gap, t.part, kCutAge}, limits_);
     ++added;
   }
   return added;
@@ -145,13 +174,13 @@ Vec3 ContactSet::normal_B(std::uint32_t part, const FeaturePair& at) const {
   return out.squaredNorm() > 0 ? Vec3(out.normalized()) : Vec3::UnitZ();
 }
 
-void ContactSet::add_limits(const Pair& pair, const FeaturePair& at) {
+void ContactSet::add_limits(const Pair& pair, const FeaturePair& at, std::vector<Contact>& limits) {
   const Pose& X_WB = fixed_[pair.part].X_WB;
-  add({X_WB.q * normal_B(pair.part, at), X_WB * at.p_a - X_ * center_, at.distance, pair.part, pair.age});
-  add_reflex_limits(pair, at);
+  add({X_WB.q * normal_B(pair.part, at), X_WB * at.p_a - X_ * center_, at.distance, pair.part, pair.age}, limits);
+  add_reflex_limits(pair, at, limits);
 }
 
-void ContactSet::add_reflex_limits(const Pair& pair, const FeaturePair& at) {
+void ContactSet::add_reflex_limits(const Pair& pair, const FeaturePair& at, std::vector<Contact>& limits) {
   // A corner that hovers over one side of a concave edge is limited by the face on the other side too, although its
   // projection on that face lies just outside: without that limit it slides along its face into the other one.
   const bool corner_of_a = at.a.kind == FeatureKind::vertex && at.b.kind == FeatureKind::face;
@@ -180,16 +209,16 @@ void ContactSet::add_reflex_limits(const Pair& pair, const FeaturePair& at) {
     if (c.squared_distance > reach_ * reach_ || (c.mask_b != 7 && c.mask_b != shared_edge)) continue;
     const Vec3 n_W = corner_of_a ? Vec3(B.X_WB.q * n) : Vec3(-(X_.q * n));
     const Vec3 on_a_W = corner_of_a ? Vec3(B.X_WB * corner) : Vec3(X_ * foot);
-    add({n_W, on_a_W - X_ * center_, height, pair.part, pair.age});
+    add({n_W, on_a_W - X_ * center_, height, pair.part, pair.age}, limits);
   }
 }
 
-void ContactSet::add(const Contact& contact) {
-  if (static_cast<int>(limits_.size()) >= capacity_) {
+void ContactSet::add(const Contact& contact, std::vector<Contact>& limits) {
+  if (static_cast<int>(limits.size()) >= capacity_) {
     ++overflow_;
     return;
   }
-  limits_.push_back(contact);
+  limits.push_back(contact);
 }
 
 }  // namespace tegotae

@@ -13,7 +13,7 @@ constexpr double kParallel = 1e-9;
 }  // namespace
 
 AxisLimit least_limiting_axis(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                              const std::array<Vec3, 3>& motion) {
+                              const std::array<Vec3, 3>& motion, double clearance) {
   AxisLimit best;
   double best_end = -1e300;
   const auto consider = [&](const Vec3& axis) {
@@ -33,7 +33,7 @@ AxisLimit least_limiting_axis(const std::array<Vec3, 3>& a, const std::array<Vec
           gap = g;
         }
       }
-      if (start >= 0 && end > best_end) {
+      if (start >= clearance && end > best_end) {
         best_end = end;
         best = {true, n, corner, gap};
       }

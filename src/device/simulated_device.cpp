@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "device/pen_body.hpp"
+#include "device/script_hand.hpp"
+#include "device/velocity_filter.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -18,8 +20,6 @@ constexpr std::int64_t kMaxStepNs = 100'000;
 
 // A servo that was held up for longer does not find the hand far away: the script waits.
 constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
-
-constexpr double kTwoPi = 6.283185307179586;
 
 void require(bool good, const char* setting) {
   if (!good) throw Error(std::string("simulated device: ") + setting + " is out of range");
@@ -67,32 +67,40 @@ Vec3 rounded(const Vec3& value, double resolution) {
 }  // namespace
 
 struct SimulatedDevice::Impl {
-  Impl(const SimulatedDeviceSettings& settings_in, StylusScript script_in)
-      : settings(settings_in), script(std::move(script_in)), body_constants(body_settings(settings)) {}
+  Impl(const SimulatedDeviceSettings& settings_in, HandIntent& hand_in, std::unique_ptr<HandIntent> owned_in)
+      : settings(settings_in),
+        owned(std::move(owned_in)),
+        hand(hand_in),
+        body_constants(body_settings(settings)),
+        velocity(settings.velocity_cutoff_hz) {}
+
+  static std::unique_ptr<Impl> with(const SimulatedDeviceSettings& settings, std::unique_ptr<HandIntent> hand) {
+    HandIntent& it = *hand;
+    return std::make_unique<Impl>(settings, it, std::move(hand));
+  }
 
   SimulatedDeviceSettings settings;
-  StylusScript script;
+  std::unique_ptr<HandIntent> owned;  // null when the caller owns the hand
+  HandIntent& hand;
   PenBodySettings body_constants;
   PenBody body;
   Quat encoder_zero = Quat::Identity();  // rotations are counted from where the pen started
   Wrench rendered;
   std::atomic<std::int64_t> time_ns{0};  // since the script's begin; atomic for script_time()
   std::int64_t last_read_clock_ns = -1;  // wall clock
+  bool waiting = settings.wait_for_application;
   DeviceStatus status = DeviceStatus::uninitialized;
 
   // What was read last.
-  bool sampled = false;
-  std::int64_t sampled_at_ns = 0;
   Vec3 sampled_center = Vec3::Zero();
   Quat sampled_rotation = Quat::Identity();
-  Twist filtered;
+  VelocityFilter velocity;
   std::uint64_t sequence = 0;
 
-  double script_time(std::int64_t ns) const { return script.begin() + 1e-9 * static_cast<double>(ns); }
+  double script_time(std::int64_t ns) const { return hand.begin() + 1e-9 * static_cast<double>(ns); }
 
-  PenTarget target(double t, const Vec3& center) const {
-    const Pose pose = script.pose(t);
-    const Twist rate = script.velocity(t);
+  PenTarget target(double t, const Vec3& center) {
+    const auto [pose, rate] = hand.target(t, {body.rotation, body.center - body.rotation * center});
     const Vec3 arm = pose.q * center;
     return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
   }
@@ -111,35 +119,44 @@ struct SimulatedDevice::Impl {
 
   /// The encoders' view of the body, and the velocity that a driver would make of it.
   void sample() {
-    const std::int64_t now = time_ns.load(std::memory_order_relaxed);
-    const Vec3 position = rounded(body.center, settings.position_resolution);
+    sampled_center = rounded(body.center, settings.position_resolution);
     const Vec3 angles =
         rounded(rotation_vector(body.rotation * encoder_zero.conjugate()), settings.rotation_resolution);
-    const Quat turned = (rotation(angles) * encoder_zero).normalized();
-    if (sampled && now > sampled_at_ns) {
-      const double dt = 1e-9 * static_cast<double>(now - sampled_at_ns);
-      const double gain = 1.0 - std::exp(-kTwoPi * settings.velocity_cutoff_hz * dt);
-      filtered.v += gain * ((position - sampled_center) / dt - filtered.v);
-      filtered.w += gain * (rotation_vector(turned * sampled_rotation.conjugate()) / dt - filtered.w);
-    }
-    sampled = true;
-    sampled_at_ns = now;
-    sampled_center = position;
-    sampled_rotation = turned;
+    sampled_rotation = (rotation(angles) * encoder_zero).normalized();
+    velocity.add(sampled_center, sampled_rotation, time_ns.load(std::memory_order_relaxed));
   }
 };
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
-    : impl_((check(settings), std::make_unique<Impl>(settings, std::move(script)))) {
+SimulatedDevice::SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center) : impl_(std::move(impl)) {
+  check(impl_->settings);
   require(center.allFinite(), "center");
   Device::set_center(center);
-  const Pose start = impl_->script.pose(impl_->script.begin());
+  const Pose start = impl_->hand.start();
   impl_->body.center = start * center;
   impl_->body.rotation = start.q;
   impl_->encoder_zero = start.q;
 }
 
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
+    : SimulatedDevice(Impl::with(settings, std::make_unique<ScriptHand>(std::move(script))), center) {}
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center)
+    : SimulatedDevice(std::make_unique<Impl>(settings, hand, nullptr), center) {}
+
 SimulatedDevice::~SimulatedDevice() = default;
+
+DeviceInfo SimulatedDevice::info() const {
+  const SimulatedDeviceSettings& s = impl_->settings;
+  DeviceInfo info;
+  info.name = "simulated";
+  info.limits = s.limits;
+  info.continuous_force = s.continuous_force;
+  info.damping = s.hand.damping;
+  info.torsional_damping = s.hand.torsional_damping;
+  info.friction = s.friction;
+  info.position_resolution = s.position_resolution;
+  return info;
+}
 
 void SimulatedDevice::start() {
   impl_->rendered = {};
@@ -156,13 +173,13 @@ DeviceState SimulatedDevice::read() noexcept {
   std::int64_t stamp = impl_->time_ns.load(std::memory_order_relaxed);
   if (impl_->settings.wall_clock) {
     stamp = monotonic_ns();
-    if (impl_->last_read_clock_ns >= 0)
+    if (impl_->last_read_clock_ns >= 0 && !impl_->waiting)
       impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs), center());
     impl_->last_read_clock_ns = stamp;
   }
   impl_->sample();
   const Quat& q = impl_->sampled_rotation;
-  return {{q, impl_->sampled_center - q * center()}, impl_->filtered, 0, stamp, impl_->sequence++};
+  return {{q, impl_->sampled_center - q * center()}, impl_->velocity.velocity(), 0, stamp, impl_->sequence++};
 }
 
 void SimulatedDevice::write(const Wrench& wrench) noexcept {
@@ -183,8 +200,12 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   body.center += arm;
   body.velocity += body.angular_velocity(impl_->body_constants).cross(arm);
   // The difference to the last sample would be a jump of the point, not a motion.
-  impl_->sampled = false;
+  impl_->velocity.forget();
   Device::set_center(center_now);
+}
+
+void SimulatedDevice::set_lead(const Displacement&) noexcept {
+  impl_->waiting = false;
 }
 
 void SimulatedDevice::advance(double dt) noexcept {

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "mesh/gltf_check.hpp"
 #include "mesh/ply_check.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -22,24 +23,6 @@ constexpr std::string_view kBlank = " \t\r\n";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw Error(path + ": " + why);
-}
-
-std::string read_bytes(const std::string& path) {
-  std::error_code status;
-  if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
-    refuse(path, "is not a regular file");  // a device or pipe might have no end
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) refuse(path, "cannot be read to its end");
-  return bytes;
-}
-
-std::string extension_of(const std::string& path) {
-  std::string e = std::filesystem::path(path).extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return e;
 }
 
 std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
@@ -148,20 +131,33 @@ void check_off(const std::string& path, std::string_view bytes) {
   }
 }
 
-void check_glb(const std::string& path, std::string_view bytes) {
-  if (bytes.size() < 12 || bytes.substr(0, 4) != "glTF") refuse(path, "damaged: no glTF binary header");
-  if (little_endian_32(bytes, 8) > bytes.size()) refuse(path, "truncated: shorter than its header says");
+}  // namespace
+
+std::string read_bytes(const std::string& path) {
+  std::error_code status;
+  if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
+    refuse(path, "is not a regular file");  // a device or pipe might have no end
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) refuse(path, "cannot be read to its end");
+  return bytes;
 }
 
-}  // namespace
+std::string lower_extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
 
 void check_mesh_file(const std::string& path) {
   const std::string bytes = read_bytes(path);
   if (bytes.find_first_not_of(kBlank) == std::string::npos) refuse(path, "empty file");
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   const std::string_view start = std::string_view(bytes).substr(bytes.find_first_not_of(kBlank));
   if (start.substr(0, 12) == "ISO-10303-21" || extension == ".step" || extension == ".stp") {
-    refuse(path, "a STEP file has no triangles: tessellate it first (export STL or OBJ from the CAD program)");
+    refuse(path, "a STEP file has no triangles: turn it into a scene first (tegotae import FILE -o DIR)");
   }
   if (extension == ".stl") {
     check_stl(path, bytes);
@@ -171,9 +167,9 @@ void check_mesh_file(const std::string& path) {
     check_off(path, bytes);
   } else if (extension == ".ply") {
     check_ply(path, bytes);
-  } else if (extension == ".glb") {
-    check_glb(path, bytes);
-  } else if (extension != ".gltf") {
+  } else if (extension == ".glb" || extension == ".gltf") {
+    check_gltf(path, bytes);
+  } else {
     refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb)");
   }
 }

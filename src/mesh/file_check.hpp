@@ -9,4 +9,10 @@ namespace tegotae {
 /// reason; returns if nothing speaks against reading it.
 void check_mesh_file(const std::string& path);
 
+/// All bytes of the regular file `path`. Throws Error with the file and the reason.
+std::string read_bytes(const std::string& path);
+
+/// The extension of `path` with its dot, in small letters.
+std::string lower_extension(const std::string& path);
+
 }  // namespace tegotae

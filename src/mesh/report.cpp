@@ -1,39 +1,13 @@
 #include "tegotae/mesh/report.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "mesh/components.hpp"
 #include "mesh/precision.hpp"
 #include "mesh/topology.hpp"
 
 namespace tegotae {
 namespace {
-
-std::size_t count_components(const TriangleMesh& mesh, const Topology& topology) {
-  std::vector<std::uint32_t> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t f) {
-    while (parent[f] != f) f = parent[f] = parent[parent[f]];
-    return f;
-  };
-  std::size_t components = 0;
-  std::vector<std::uint32_t> first_face(topology.edges.size(), kNone);
-  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    if (is_collapsed(mesh.triangles[f])) continue;
-    ++components;
-    for (const std::uint32_t e : topology.face_edges[f]) {
-      if (first_face[e] == kNone) {
-        first_face[e] = f;
-        continue;
-      }
-      const std::uint32_t a = root(f), b = root(first_face[e]);
-      if (a == b) continue;
-      parent[a] = b;
-      --components;
-    }
-  }
-  return components;
-}
 
 std::size_t count_duplicates(const TriangleMesh& mesh) {
   std::vector<std::array<std::uint32_t, 3>> faces;
@@ -54,7 +28,7 @@ MeshReport report(const TriangleMesh& mesh) {
   MeshReport out;
   out.vertices = mesh.vertices.size();
   out.triangles = mesh.triangles.size();
-  out.components = count_components(mesh, topology);
+  out.components = components(mesh, topology).count;
   out.duplicate_faces = count_duplicates(mesh);
 
   const double step = rounding_step(mesh);

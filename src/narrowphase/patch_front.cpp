@@ -8,23 +8,18 @@
 namespace tegotae {
 namespace {
 
-constexpr std::uint32_t kNoPair = 0xffffffffu;
-/// Most children of a pair: all triangle pairs of two leaves.
-constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
-/// A leaf is taken apart for a patch on the other side of less than this part of its second extent: without it, a
-/// coarse mesh against a fine one is refined on the fine side only, down to its faces; with 1, leaves come apart too
-/// often.
-constexpr float kLeafWorth = 0.5f;
 /// Separations below this times the size of the scene are rounding (double precision, some dozens of operations on
 /// coordinates of that size, and a pose that was composed anew).
 constexpr double kFloor = 1e-12;
 /// Rounding of one gap in single precision: 32 units in the last place of the largest terms (about 20 from turning the
 /// normal and the products, 7 from the sums).
 constexpr double kLaneError = 1.0 / (1 << 19);
-/// A patch faces a plane when its normal is within 26° of the plane's.
-constexpr double kFacing = 0.9;
-/// Searches between two looks at the clock.
-constexpr int kClockStride = 16;
+/// The same in double precision: what the stored single-precision offset, center and edges are rounded by (half a unit
+/// in the last place each; doubled).
+constexpr double kFineError = 1.0 / (1 << 23);
+/// Searches of boxes, and splits undone, between two looks at the clock; pairs of the wide check.
+constexpr int kClockStride = 16, kRollBackStride = 64;
+constexpr std::uint32_t kChunk = 1024;
 /// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
 constexpr std::size_t kBlocksPerPair = 2;
 /// More splits than this are undone when the motion turns out to be blocked.
@@ -35,15 +30,15 @@ constexpr std::size_t kKeepSplits = 512;
 constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
-/// Tries to raise when time ran out (about 40 µs): without them a front that takes longer than a tick never shrinks.
-constexpr int kLateTries = 128;
+/// Tries to raise in one call: fewer than the least share come off, and the next call tries half as many; more than the
+/// good share, twice as many. Never less than the fewest, and one for so many pairs.
+constexpr int kFewestTries = 8, kPairsPerTry = 256, kMostTries = 256, kPoorShare = 8, kGoodShare = 3;
+/// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
+constexpr int kLateTries = 32;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
-/// motion of late counts, since a blocked part stands still between two pushes.
-constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9;
-
-float round_up(double x) {
-  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
-}
+/// motion of late counts, since a blocked part stands still between two pushes. Not more than this (m), under the gap
+/// that motions leave: a part that is pressed to that gap could raise nothing at all.
+constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9, kMostSpare = 3e-7;
 
 }  // namespace
 
@@ -54,15 +49,10 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
       pool_(4 * std::size_t{capacity.pairs} + kFan),
       boxes_{LaneBlocks(capacity.pairs, kBoxFields), std::vector<std::uint32_t>(capacity.pairs), 0},
       triangles_{LaneBlocks(capacity.pairs, kTriFields), std::vector<std::uint32_t>(capacity.pairs), 0},
-      margins_(static_cast<float*>(std::aligned_alloc(kLanes * sizeof(float),
-                                                      (capacity.pairs + kLanes) / kLanes * kLanes * sizeof(float))),
-               std::free) {
-  failures_.reserve(capacity.pairs);
+      failures_(capacity.pairs) {
   stack_.reserve(capacity.pairs);
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
-  near_.reserve(capacity.pairs);
-  seeds_.reserve(capacity.seeds);
 }
 
 void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {
@@ -77,8 +67,9 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
   debt_ = 0;
+  effort_ = kMostTries;
   motion_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}, 0};
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}};
   enter(0);
 }
 
@@ -88,14 +79,12 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
   blocking_.clear();
   splits_.clear();
   set_sweep(X_BA, d);
-  collect_failures();
-  for (std::uint32_t id : failures_) {
-    const Outcome outcome = settle(id);
+  report_.exhausted = !collect_failures();
+  for (std::size_t i = 0; i < failure_count_ && !report_.exhausted; ++i) {
+    const Outcome outcome = settle(failures_[i]);
     if (outcome == Outcome::out_of_work) {
       report_.exhausted = true;
-      break;
-    }
-    if (outcome == Outcome::blocked && blocking_.size() == capacity_.blocking) {
+    } else if (outcome == Outcome::blocked && blocking_.size() == capacity_.blocking) {
       report_.overflow = true;
       break;
     }
@@ -135,48 +124,48 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
 
 LaneSweep PatchFront::lane_sweep() const {
   LaneSweep s;
-  for (int i = 0; i < 3; ++i) {
-    s.t0[i] = static_cast<float>(sweep_.start.t[i]);
-    s.t1[i] = static_cast<float>(sweep_.end.t[i]);
-    for (int j = 0; j < 3; ++j) {
-      s.R0[3 * i + j] = static_cast<float>(sweep_.start.R(i, j));
-      s.R1[3 * i + j] = static_cast<float>(sweep_.end.R(i, j));
+  auto fill = [this](auto& m) {
+    using Real = std::decay_t<decltype(m.bulge)>;
+    for (int i = 0; i < 3; ++i) {
+      m.t0[i] = static_cast<Real>(sweep_.start.t[i]);
+      m.t1[i] = static_cast<Real>(sweep_.end.t[i]);
+      for (int j = 0; j < 3; ++j) {
+        m.R0[3 * i + j] = static_cast<Real>(sweep_.start.R(i, j));
+        m.R1[3 * i + j] = static_cast<Real>(sweep_.end.R(i, j));
+      }
     }
-  }
-  s.bulge = round_up(1.00001 * sweep_.theta2 / 8);
-  s.bulge_offset = round_up(1.00001 * sweep_.center_distance * sweep_.theta2 / 8);
+    m.bulge = round_up<Real>(1.00001 * sweep_.theta2 / 8);
+    m.bulge_offset = round_up<Real>(1.00001 * sweep_.center_distance * sweep_.theta2 / 8);
+  };
+  fill(s.coarse);
+  fill(s.fine);
   const double box_size = node_reach(a_->nodes()[0]);
   const double terms = std::max(sweep_.start.t.norm(), sweep_.end.t.norm()) + 3 * box_size + 2 * b_->radius();
-  s.error = round_up(kLaneError * terms + sweep_.floor);
+  s.coarse.error = round_up<float>(kLaneError * terms + sweep_.floor);
+  s.fine.error = kFineError * terms + sweep_.floor;
   return s;
 }
 
-const float* PatchFront::margins(const Group& group, const LaneSweep& sweep) {
-  if (&group == &boxes_) {
-    box_margins(group.lanes, group.count, sweep, margins_.get());
-  } else {
-    triangle_margins(group.lanes, group.count, sweep, margins_.get());
-  }
-  return margins_.get();
-}
-
-void PatchFront::collect_failures() {
+bool PatchFront::collect_failures() {
   const LaneSweep sweep = lane_sweep();
-  failures_.resize(capacity_.pairs);
-  std::size_t n = 0;
+  failure_count_ = 0;
   for (const Group* g : {&triangles_, &boxes_}) {
-    const float* margin = margins(*g, sweep);
-    for (std::uint32_t i = 0; i < g->count; ++i) {
-      failures_[n] = g->owner[i];
-      n += !(margin[i] > 0);
+    const auto check = g == &boxes_ ? box_failures : triangle_failures;
+    for (std::uint32_t first = 0; first < g->count; first += kChunk) {
+      if (past(limit_.deadline_ns)) return false;
+      std::uint32_t* failed = failures_.data() + failure_count_;
+      const std::size_t n = check(g->lanes, first, std::min(g->count, first + kChunk), sweep, failed);
+      for (std::size_t i = 0; i < n; ++i) failed[i] = g->owner[failed[i]];
+      failure_count_ += n;
     }
   }
-  failures_.resize(n);
+  return true;
 }
 
-bool PatchFront::spend() {
+bool PatchFront::spend(bool triangles) {
   if (++report_.searches > limit_.searches) return false;
-  return report_.searches % kClockStride != 0 || !past(limit_.deadline_ns);
+  // A triangle pair may halve its time and cost as much as all boxes of a stride.
+  return (!triangles && report_.searches % kClockStride != 0) || !past(limit_.deadline_ns);
 }
 
 PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
@@ -186,18 +175,17 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
   while (!stack_.empty()) {
     const std::uint32_t id = stack_.back();
     stack_.pop_back();
-    if (!spend()) return Outcome::out_of_work;
     const PairNode& p = pool_[id];
+    if (!spend(faces(p))) return Outcome::out_of_work;
     Vec3 n = plane(id);
     if (faces(p)) {
       const auto a = face_a(p.a), b = face_b(p.b);
       const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
-      TriangleBlock block;
-      if (separate_triangles(a, b, sweep_, reach, n, block)) {
+      if (separate_triangles(a, b, sweep_, reach, n)) {
         set_plane(id, n);
         continue;
       }
-      report_block(p, a, b, block);
+      blocking_.push_back({p.a, p.b});
       if (blocking_.size() == capacity_.blocking || blocking_.size() - before == kBlocksPerPair)
         return Outcome::blocked;
       continue;
@@ -218,116 +206,33 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
   return blocking_.size() > before ? Outcome::blocked : Outcome::free;
 }
 
-void PatchFront::report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                              const TriangleBlock& block) {
-  BlockingPair out{p.a, p.b, block.overlap_at_end, block.normal, block.gap, Vec3::Zero(), 0};
-  double support = -std::numeric_limits<double>::infinity();
-  for (const Vec3& v : b) support = std::max(support, block.normal.dot(v));
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& v : a) {
-    const double depth = block.normal.dot(sweep_.end.R * v + sweep_.end.t) - support;
-    if (depth >= least) continue;
-    least = depth;
-    const Vec3 start = sweep_.start.R * v + sweep_.start.t;
-    out.point_A = start + b_->origin();
-    out.point_gap = block.normal.dot(start) - support;
-  }
-  blocking_.push_back(out);
-}
-
-std::uint32_t PatchFront::allocate(std::uint32_t children) {
-  const bool two = children <= 2;
-  std::uint32_t& head = two ? free_twos_ : free_fans_;
-  if (head != kNoPair) {
-    const std::uint32_t id = head;
-    head = pool_[id].child;
-    return id;
-  }
-  const std::uint32_t size = two ? 2 : kFan;
-  if (pool_used_ + size > pool_.size()) return kNoPair;
-  pool_used_ += size;
-  return pool_used_ - size;
-}
-
-bool PatchFront::split(std::uint32_t id) {
-  const PairNode p = pool_[id];
-  PatchNode scratch_a, scratch_b;
-  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-  // The side with the larger second extent: a long strip is as good as a short one while it is narrow.
-  const bool ends = a.leaf() && b.leaf();
-  auto worth = [](const PatchNode& n) { return n.leaf() ? kLeafWorth : 1.0f; };
-  const bool split_a = !p.face_a && (p.face_b || worth(a) * a.half[1] > worth(b) * b.half[1]);
-  const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
-  const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
-  if (boxes_.count + triangles_.count + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
-      stack_.size() + children > stack_.capacity()) {
-    return false;
-  }
-  const std::uint32_t child = allocate(children);
-  if (child == kNoPair) return false;
-  const Vec3 n = plane(id);
-  leave(id);
-  PairNode& parent = pool_[id];
-  parent.child = child;
-  parent.children = static_cast<std::uint16_t>(children);
-  for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
-  for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal, 0};
-    if ((ends || split_a) && !p.face_a) {
-      const std::uint32_t place = a.first + (ends ? k / of_b : k);
-      c.face_a = a.leaf();
-      c.a = a.leaf() ? a_->order()[place] : place;
-    }
-    if ((ends || !split_a) && !p.face_b) {
-      const std::uint32_t place = b.first + (ends ? k % of_b : k);
-      c.face_b = b.leaf();
-      c.b = b.leaf() ? b_->order()[place] : place;
-    }
-    pool_[child + k] = c;
-    enter(child + k);
-  }
-  splits_.push_back(id);
-  return true;
-}
-
-void PatchFront::collapse(std::uint32_t id) {
-  const PairNode& p = pool_[id];
-  const std::uint32_t child = p.child, children = p.children;
-  for (std::uint32_t k = 0; k < children; ++k) leave(child + k);
-  std::uint32_t& head = children <= 2 ? free_twos_ : free_fans_;
-  pool_[child].child = head;
-  head = child;
-  pool_[id].children = 0;
-  pool_[id].child = kNoPair;
-  enter(id);
-}
-
 void PatchFront::roll_back() {
-  for (auto it = splits_.rbegin(); it != splits_.rend(); ++it) collapse(*it);
-  splits_.clear();
+  // The last first: what is left when time runs out is a front as well, only larger.
+  for (int n = 1; !splits_.empty(); ++n) {
+    collapse(splits_.back());
+    splits_.pop_back();
+    if (n % kRollBackStride == 0 && past(limit_.deadline_ns)) break;
+  }
 }
 
 void PatchFront::raise() {
   const int wanted = std::min(debt_, kMostRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
-  int tries = report_.exhausted ? std::min(2 * wanted, kLateTries) : 2 * wanted;
+  const int fewest = std::max(kFewestTries, pairs() / kPairsPerTry);
+  effort_ = std::max(effort_, fewest);
+  const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
+  int tries = 0;
   // Round robin over both groups, once around at most.
-  for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries > 0; --looks) {
+  for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries < most; --looks) {
     if (++cursor_ >= boxes_.count + triangles_.count) cursor_ = 0;
     const std::uint32_t id = cursor_ < boxes_.count ? boxes_.owner[cursor_] : triangles_.owner[cursor_ - boxes_.count];
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
-    if (--tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
+    if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (try_raise(parent)) ++report_.merges;
   }
+  if (kPoorShare * report_.merges < tries) effort_ /= 2;
+  if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMostTries);
   debt_ -= report_.merges;
-}
-
-bool PatchFront::all_in_front(std::uint32_t id) const {
-  const PairNode& p = pool_[id];
-  for (std::uint32_t k = 0; k < p.children; ++k) {
-    if (pool_[p.child + k].children > 0) return false;
-  }
-  return true;
 }
 
 bool PatchFront::try_raise(std::uint32_t id) {
@@ -336,93 +241,12 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
   const double reach = node_reach(a);
   // With some gap to spare, or the next motion splits it again.
-  const double spare = kRaiseSpare * motion_;
+  const double spare = std::min(kRaiseSpare * motion_, kMostSpare);
   Vec3 n = plane(p.child);
   if (!separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) return false;
   collapse(id);
   set_plane(id, n);
   return true;
-}
-
-void PatchFront::enter(std::uint32_t id) {
-  PairNode& p = pool_[id];
-  Group& g = group(p);
-  p.slot = g.count++;
-  g.owner[p.slot] = id;
-  if (faces(p)) {
-    const auto a = face_a(p.a);
-    double reach2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < 3; ++i) g.lanes.at(p.slot, kTriCorners + 3 * k + i) = static_cast<float>(a[k][i]);
-      reach2 = std::max(reach2, a[k].squaredNorm());
-    }
-    g.lanes.at(p.slot, kTriReach) = round_up(std::sqrt(reach2));
-  } else {
-    PatchNode scratch;
-    const PatchNode& a = box_a(p, scratch);
-    const Vec3 c = node_center(a);
-    for (int i = 0; i < 3; ++i) {
-      g.lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
-      for (int k = 0; k < 3; ++k) g.lanes.at(p.slot, kBoxEdges + 3 * i + k) = a.half[i] * a.axis[i][k];
-    }
-    g.lanes.at(p.slot, kBoxReach) = round_up(node_reach(a));
-  }
-  set_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
-}
-
-void PatchFront::leave(std::uint32_t id) {
-  Group& g = group(pool_[id]);
-  const std::uint32_t slot = pool_[id].slot, last = --g.count;
-  if (slot == last) return;
-  g.lanes.move(last, slot);
-  g.owner[slot] = g.owner[last];
-  pool_[g.owner[slot]].slot = slot;
-}
-
-void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
-  PairNode& p = pool_[id];
-  Group& g = group(p);
-  Vec3 rounded;
-  for (int k = 0; k < 3; ++k) {
-    g.lanes.at(p.slot, kBoxNormal + k) = static_cast<float>(n[k]);
-    rounded[k] = g.lanes.at(p.slot, kBoxNormal + k);
-  }
-  double support = -std::numeric_limits<double>::infinity();
-  if (faces(p)) {
-    for (const Vec3& v : face_b(p.b)) support = std::max(support, rounded.dot(v));
-  } else {
-    PatchNode scratch;
-    const PatchNode& b = box_b(p, scratch);
-    support = rounded.dot(b.center_vec());
-    for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
-    p.thickness = std::abs(rounded.dot(b.axis_vec(2))) > kFacing ? 2 * b.half[2] : 0.0f;
-    PatchNode scratch_a;
-    const PatchNode& a = box_a(p, scratch_a);
-    if (std::abs(rounded.dot(sweep_.end.R * a.axis_vec(2))) > kFacing) p.thickness += 2 * a.half[2];
-  }
-  g.lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
-}
-
-Vec3 PatchFront::plane(std::uint32_t id) const {
-  const PairNode& p = pool_[id];
-  const LaneBlocks& lanes = (faces(p) ? triangles_ : boxes_).lanes;
-  return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
-}
-
-double PatchFront::node_reach(const PatchNode& n) const {
-  // Half edges may not be quite orthogonal (single precision), which the sum of their lengths squared does not see.
-  constexpr double kSkew = 1 + 1e-6;
-  const double half2 = double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2];
-  return node_center(n).norm() + kSkew * std::sqrt(half2);
-}
-
-std::array<Vec3, 3> PatchFront::face_a(std::uint32_t f) const {
-  return {a_->corner(f, 0) - center_, a_->corner(f, 1) - center_, a_->corner(f, 2) - center_};
-}
-
-std::array<Vec3, 3> PatchFront::face_b(std::uint32_t f) const {
-  const Vec3& o = b_->origin();
-  return {b_->corner(f, 0) - o, b_->corner(f, 1) - o, b_->corner(f, 2) - o};
 }
 
 }  // namespace tegotae

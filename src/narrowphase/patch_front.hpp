@@ -16,7 +16,6 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
-  std::uint32_t seeds = 512;       ///< places that one call looks at for seeds
 };
 
 /// How much one call may do.
@@ -41,27 +40,14 @@ struct CertifyReport {
   int splits = 0, merges = 0;
 };
 
-/// Two triangles that stop a motion. All in B's file frame, m.
+/// Two triangles that stop a motion.
 struct BlockingPair {
   std::uint32_t face_a, face_b;
-  bool overlap_at_end;  ///< they intersect at the wanted pose; else only the path is in doubt
-  Vec3 n_BA;            ///< of the planes that separate them at the start, the one that the motion violates least
-  double gap;           ///< separation along n_BA at the start
-  Vec3 point_A;         ///< at the start: the corner of face_a that comes farthest past the plane
-  double point_gap;     ///< of that corner from the plane through face_b's support along n_BA
-};
-
-/// Two near triangles, from which a search for contact features may start.
-struct ContactSeed {
-  std::uint32_t face_a, face_b;
-  double distance;  ///< of the points of the two faces that are nearest to `place`, m: at least that of the faces
-  Vec3 n_BA;        ///< of the plane between the patches, B's file frame
-  Vec3 place;       ///< on that plane, where the faces were looked for, m, B's file frame
 };
 
 /// The path certificate of one pair of parts (mutable scratch; the trees are shared): keeps a front of node pairs that
 /// covers all pairs of triangles, each pair with the plane that separated it last. A motion is free when every pair of
-/// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see patch_separate.cpp).
+/// the front has a plane, moving linearly over the motion, that keeps its two sides apart (see moving_plane.hpp).
 /// No call but the constructor allocates.
 class PatchFront {
  public:
@@ -82,14 +68,6 @@ class PatchFront {
 
   /// What stopped the last motion, when its status was `blocked`; at most FrontCapacity::blocking.
   const std::vector<BlockingPair>& blocking() const { return blocking_; }
-
-  /// Pairs of faces where A at `X_BA` may be nearer than `reach` (m) to B, for contact features to start from: at most
-  /// `capacity`, near patches first, written to `out`; returns how many. Every near pair of patches gives the
-  /// corners of the region that they share, seen along their plane (so a flat face on a flat face gives the corners
-  /// that keep it from tipping), and places nearer to each other than 1/32 of A with like normals count as one. The
-  /// faces are those of the two patches that are nearest to such a place; finding a local minimum of distance is left
-  /// to the caller.
-  int contact_seeds(const Pose& X_BA, double reach, ContactSeed* out, int capacity) noexcept;
 
   int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
 
@@ -114,7 +92,6 @@ class PatchFront {
     std::uint16_t children;       ///< 0: in the front
     bool face_a, face_b;          ///< which of a and b are faces
     std::array<float, 3> normal;  ///< last plane, kept here while split
-    float thickness;              ///< how far the surfaces may stand back behind the sides that face the plane, m
   };
   /// The pairs of the front of one kind, dense.
   struct Group {
@@ -123,24 +100,23 @@ class PatchFront {
     std::uint32_t count = 0;
   };
 
+  static constexpr std::uint32_t kNoPair = 0xffffffffu;
+  /// Most children of a pair: all triangle pairs of two leaves.
+  static constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
+
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
   void set_sweep(const Pose& X_BA, const Displacement& d);
   LaneSweep lane_sweep() const;
-  const float* margins(const Group& group, const LaneSweep& sweep);
-  void collect_failures();
+  bool collect_failures();
   Outcome settle(std::uint32_t top);
-  bool spend();
+  bool spend(bool triangles);
   bool split(std::uint32_t id);
   void collapse(std::uint32_t id);
   void roll_back();
   void raise();
   bool all_in_front(std::uint32_t id) const;  ///< the children
   bool try_raise(std::uint32_t id);
-  int shared_corners(const PairNode& p, const Vec3& n, std::array<Vec3, 8>& corners) const;
-  ContactSeed seed_at(const PairNode& p, const Vec3& n, const Vec3& place) const;
-  void report_block(const PairNode& p, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                    const TriangleBlock& block);
 
   std::uint32_t allocate(std::uint32_t children);
   void enter(std::uint32_t id);
@@ -173,18 +149,15 @@ class PatchFront {
   std::uint32_t pool_used_ = 0;
   std::uint32_t free_twos_ = 0, free_fans_ = 0;  ///< heads of the free lists, linked through `child`
   Group boxes_, triangles_;
-  struct Near {
-    float far_side;  ///< upper bound of the gap, for patches that face each other
-    std::uint32_t id;
-  };
-  std::vector<std::uint32_t> failures_, stack_, splits_;
-  std::vector<Near> near_;
-  std::vector<ContactSeed> seeds_;
+  std::vector<std::uint32_t>
+      failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check
+  std::size_t failure_count_ = 0;
+  std::vector<std::uint32_t> stack_, splits_;
   std::vector<BlockingPair> blocking_;
-  std::unique_ptr<float, void (*)(void*)> margins_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on
   double motion_ = 0;         ///< longest motion of late, m
   int debt_ = 0;              ///< pairs to raise, for those that were split
+  int effort_ = 0;            ///< pairs that one call tries to raise, fitted to what comes of it
 
   Sweep sweep_;
   WorkLimit limit_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "narrowphase/patch_cache.hpp"
+
 namespace tegotae {
 namespace {
 
@@ -23,11 +25,11 @@ constexpr double kLongestShare = 0.1;
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                                    std::vector<Pose> poses)
-    : center_(center), radius_(radius), held_(std::make_shared<PatchTree>(held)), poses_(std::move(poses)) {
-  std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees;
+    : center_(center), radius_(radius), held_(cached_patch_tree(held)), poses_(std::move(poses)) {
+  std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
   for (const auto& mesh : fixed) {
     auto& tree = trees[mesh.get()];
-    if (!tree) tree = std::make_shared<PatchTree>(mesh);
+    if (!tree) tree = cached_patch_tree(mesh);
     fixed_.push_back(tree);
   }
   const std::size_t fronts = std::min(kMostFronts, std::max<std::size_t>(1, fixed.size()));
@@ -87,6 +89,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     all_free = false;
     for (const BlockingPair& pair : front.blocking())
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
+    if (report.exhausted && past(limit_.deadline_ns)) break;
   }
   if (all_free) return MotionAnswer::free;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;

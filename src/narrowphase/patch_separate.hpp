@@ -24,7 +24,7 @@ struct Sweep {
   Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
   double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
   double floor = 0;            ///< separations below do not count: clearance, at least the rounding, m
-  double start_floor = 0;      ///< the same at the start: less by the rounding with which the last motion kept the floor
+  double start_floor = 0;  ///< the same at the start: less by the rounding with which the last motion kept the floor
 
   Placement at(double s) const;
 };
@@ -67,16 +67,9 @@ struct TrianglePair {
 /// known normal and goes out as the normal at the end of the motion.
 bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane);
 
-/// What separate_triangles found where it failed.
-struct TriangleBlock {
-  bool overlap_at_end = false;  ///< no separating axis at the end pose
-  Vec3 normal = Vec3::Zero();   ///< the axis at the start that limits the motion least
-  double gap = 0;               ///< separation along it at the start, m
-};
-
 /// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
 /// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between.
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        Vec3& plane, TriangleBlock& block);
+                        Vec3& plane);
 
 }  // namespace tegotae

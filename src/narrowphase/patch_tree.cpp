@@ -93,13 +93,14 @@ Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
   Point2 best{1, 0};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < edges; ++i) {
-    const double dx = edge[i].x, dy = edge[i].y, length = std::sqrt(dx * dx + dy * dy);
+    const double length = std::sqrt(edge[i].x * edge[i].x + edge[i].y * edge[i].y);
     if (!(length > 0)) continue;
+    const double dx = edge[i].x / length, dy = edge[i].y / length;
     const Point2& a = hull[0];
     double lo = 0, hi = 0, low = 0, high = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const double px = hull[k].x - a.x, py = hull[k].y - a.y;
-      const double along = (px * dx + py * dy) / length, across = (py * dx - px * dy) / length;
+      const double along = px * dx + py * dy, across = py * dx - px * dy;
       lo = std::min(lo, along);
       hi = std::max(hi, along);
       low = std::min(low, across);
@@ -108,7 +109,7 @@ Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
     high -= low;
     // A line has no area; any direction but its own would give it some.
     const double area = (hi - lo) * high + 1e-9 * (hi - lo + high) * (hi - lo + high);
-    if (area < least) least = area, best = {dx / length, dy / length};
+    if (area < least) least = area, best = {dx, dy};
   }
   return best;
 }
@@ -116,14 +117,15 @@ Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
 /// Lays the clusters out as nodes with fitted boxes.
 class Layout {
  public:
-  Layout(const PatchClusters& clusters, const std::vector<PatchItem>& items, double radius,
+  Layout(const TriangleMesh& mesh, const PatchClusters& clusters, const std::vector<PatchItem>& items, double radius,
          std::vector<PatchNode>& nodes, std::vector<std::uint32_t>& order)
       : clusters_(clusters), copy_slack_(radius * kCopySlack), nodes_(nodes), order_(order) {
     order_.reserve(items.size());
     const std::uint32_t root = clusters.root;
-    collect(root);
-    items_.reserve(items.size());
-    for (std::uint32_t f : order_) items_.push_back(items[f]);
+    const std::size_t inner = collect(root);
+    number_vertices(mesh, items);
+    sum_normals(items);
+    nodes_.reserve(2 * inner + 1);
     nodes_.emplace_back();
     struct Place {
       std::uint32_t node, cluster, begin;
@@ -150,13 +152,15 @@ class Layout {
   }
 
  private:
-  /// Faces in the order of the leaves.
-  void collect(std::uint32_t root) {
+  /// Faces in the order of the leaves; returns how many nodes are none.
+  std::size_t collect(std::uint32_t root) {
     std::vector<std::uint32_t> stack{root};
+    std::size_t inner = 0;
     while (!stack.empty()) {
       const std::uint32_t c = stack.back();
       stack.pop_back();
       const PatchJoin& j = clusters_.joins[c];
+      inner += j.faces > kPatchLeaf;
       if (j.left == kNoCluster) {
         order_.push_back(c);
       } else {
@@ -164,12 +168,56 @@ class Layout {
         stack.push_back(j.left);
       }
     }
+    return inner;
+  }
+
+  /// Vertices in the order in which the faces of order_ first use them: those of a patch are then a range, and those
+  /// that it shares with patches before it.
+  void number_vertices(const TriangleMesh& mesh, const std::vector<PatchItem>& items) {
+    std::vector<std::uint32_t> number(mesh.vertices.size(), kNoCluster);
+    corners_.reserve(order_.size());
+    first_.reserve(order_.size() + 1);
+    vertices_.reserve(mesh.vertices.size());
+    for (const std::uint32_t f : order_) {
+      first_.push_back(static_cast<std::uint32_t>(vertices_.size()));
+      corners_.emplace_back();
+      for (int k = 0; k < 3; ++k) {
+        std::uint32_t& v = number[mesh.triangles[f][k]];
+        if (v == kNoCluster) {
+          v = static_cast<std::uint32_t>(vertices_.size());
+          vertices_.push_back(items[f].v[k]);
+        }
+        corners_.back()[k] = v;
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(vertices_.size()));
+  }
+
+  void sum_normals(const std::vector<PatchItem>& items) {
+    normals_.reserve(clusters_.joins.size());
+    for (std::size_t c = 0; c < clusters_.joins.size(); ++c) {
+      const PatchJoin& j = clusters_.joins[c];
+      normals_.push_back(j.left == kNoCluster ? Vec3f(items[c].area * items[c].normal)
+                                              : Vec3f(normals_[j.left] + normals_[j.right]));
+    }
+  }
+
+  /// The vertices of the faces at these places, few of them twice.
+  void gather(std::uint32_t begin, std::uint32_t end) {
+    points_.clear();
+    const std::uint32_t first = first_[begin];
+    for (std::uint32_t v = first; v < first_[end]; ++v) points_.push_back(vertices_[v].cast<double>());
+    for (std::uint32_t i = begin; i < end; ++i) {
+      for (const std::uint32_t v : corners_[i]) {
+        if (v < first) points_.push_back(vertices_[v].cast<double>());
+      }
+    }
   }
 
   void fit(std::uint32_t node, std::uint32_t cluster, std::uint32_t begin, std::uint32_t end) {
+    gather(begin, end);
     const PatchMoments& m = clusters_.moments[cluster];
-    Vec3f mean = Vec3f::Zero();
-    for (std::uint32_t i = begin; i < end; ++i) mean += items_[i].area * items_[i].normal;
+    const Vec3f& mean = normals_[cluster];
     const float length = mean.norm(), area = static_cast<float>(m.w);
     Vec3 normal = length > 0 ? Vec3((mean / length).cast<double>().normalized()) : Vec3(Vec3::UnitZ());
     // The least variance gives the thinner box where a patch is bent; the mean normal where its outline is ragged, and
@@ -179,7 +227,7 @@ class Layout {
       eigen.computeDirect(m.covariance());
       const Vec3 least = eigen.eigenvectors().col(0);
       const bool usable = least.allFinite() && std::abs(least.norm() - 1) < 1e-3;
-      if (usable && (length < 0.5f * area || thickness(begin, end, least) < thickness(begin, end, normal))) {
+      if (usable && (length < 0.5f * area || thickness(least) < thickness(normal))) {
         normal = least.normalized();
       }
     }
@@ -187,11 +235,9 @@ class Layout {
     if (end - begin <= kOutlineFaces) {
       const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
       const Vec3 v = normal.cross(u);
-      points_.clear();
-      for (std::uint32_t i = begin; i < end; ++i) {
-        for (const Vec3f& c : items_[i].v) points_.push_back({c.cast<double>().dot(u), c.cast<double>().dot(v)});
-      }
-      const auto [x, y] = narrowest(points_, hull_);
+      outline_.clear();
+      for (const Vec3& p : points_) outline_.push_back({p.dot(u), p.dot(v)});
+      const auto [x, y] = narrowest(outline_, hull_);
       frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
     } else {
       Eigen::SelfAdjointEigenSolver<Mat3> eigen;
@@ -202,33 +248,28 @@ class Layout {
       across.normalize();
       frame << across.cross(normal), across, normal;
     }
-    set_box(begin, end, frame, nodes_[node]);
+    set_box(frame, nodes_[node]);
   }
 
-  float thickness(std::uint32_t begin, std::uint32_t end, const Vec3& direction) const {
-    const Vec3f n = direction.cast<float>();
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (const Vec3f& v : items_[i].v) {
-        const float x = n.dot(v);
-        lo = std::min(lo, x);
-        hi = std::max(hi, x);
-      }
+  double thickness(const Vec3& direction) const {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const Vec3& p : points_) {
+      const double x = direction.dot(p);
+      lo = std::min(lo, x);
+      hi = std::max(hi, x);
     }
     return hi - lo;
   }
 
-  void set_box(std::uint32_t begin, std::uint32_t end, const Mat3& frame, PatchNode& out) const {
+  void set_box(const Mat3& frame, PatchNode& out) const {
     // Fitted in the frame as it is after rounding to single precision, so that the stored axes span the box exactly.
     const Mat3 axes = frame.cast<float>().cast<double>();
     const Mat3 inverse = axes.inverse();
     Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (const Vec3f& v : items_[i].v) {
-        const Vec3 t = inverse * v.cast<double>();
-        lo = lo.cwiseMin(t);
-        hi = hi.cwiseMax(t);
-      }
+    for (const Vec3& p : points_) {
+      const Vec3 t = inverse * p;
+      lo = lo.cwiseMin(t);
+      hi = hi.cwiseMax(t);
     }
     const Vec3 middle = axes * (0.5 * (lo + hi));
     const Vec3f center = middle.cast<float>();
@@ -250,8 +291,12 @@ class Layout {
   double copy_slack_;
   std::vector<PatchNode>& nodes_;
   std::vector<std::uint32_t>& order_;
-  std::vector<PatchItem> items_;
-  std::vector<Point2> points_, hull_;
+  std::vector<Vec3f> vertices_;                        ///< in the order of their first use
+  std::vector<std::array<std::uint32_t, 3>> corners_;  ///< of each place in order_
+  std::vector<std::uint32_t> first_;                   ///< of each place: vertices used before it
+  std::vector<Vec3f> normals_;                         ///< of each cluster: sum over its faces, by area
+  std::vector<Vec3> points_;
+  std::vector<Point2> outline_, hull_;
 };
 
 }  // namespace
@@ -284,8 +329,7 @@ PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move
     t.area = std::max(t.area, 1e-6f * static_cast<float>((v[1] - v[0]).squaredNorm() + (v[2] - v[0]).squaredNorm()));
   }
   const PatchClusters clusters = cluster_patches(*mesh_, items);
-  Layout(clusters, items, radius_, nodes_, order_);
-  nodes_.shrink_to_fit();
+  Layout(*mesh_, clusters, items, radius_, nodes_, order_);
 }
 
 PatchNode PatchTree::face_box(std::uint32_t face) const {

@@ -37,6 +37,10 @@ class PatchTree {
  public:
   /// Builds the hierarchy; about 2 µs a triangle. A mesh without triangles throws Error.
   explicit PatchTree(std::shared_ptr<const TriangleMesh> mesh);
+  /// The hierarchy that an earlier build over the same mesh made (see patch_cache.hpp).
+  PatchTree(std::shared_ptr<const TriangleMesh> mesh, std::vector<PatchNode> nodes, std::vector<std::uint32_t> order,
+            const Vec3& origin, double radius)
+      : mesh_(std::move(mesh)), nodes_(std::move(nodes)), order_(std::move(order)), origin_(origin), radius_(radius) {}
 
   const TriangleMesh& mesh() const { return *mesh_; }
   const std::vector<PatchNode>& nodes() const { return nodes_; }      ///< [0] is the root

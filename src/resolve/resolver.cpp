@@ -71,14 +71,14 @@ class QpResolver final : public Resolver {
 }  // namespace
 
 const std::vector<std::string>& resolver_names() {
-  static const std::vector<std::string> names{"lp", "qp"};
+  static const std::vector<std::string> names{"lp", "qp", "impulse", "penalty"};
   return names;
 }
 
 std::unique_ptr<Resolver> make_resolver(const std::string& name, int capacity) {
   if (name == "lp") return std::make_unique<LpResolver>(capacity);
   if (name == "qp") return std::make_unique<QpResolver>(capacity);
-  throw Error("unknown resolver \"" + name + "\"; known are lp, qp");
+  throw Error("unknown resolver \"" + name + "\"; known are lp, qp, impulse, penalty");
 }
 
 }  // namespace tegotae

@@ -27,9 +27,10 @@ class Resolver {
   virtual bool projects() const = 0;
 };
 
-/// Names that make_resolver knows: "lp" (the paper's linear programme), "qp" (Gauss's least constraint).
+/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (Gauss's least constraint), and two
+/// that solve no programme but are loops of their own, "impulse" and "penalty" (see src/sim).
 const std::vector<std::string>& resolver_names();
-/// For at most `capacity` rows. Throws Error for an unknown name.
+/// "lp" or "qp", for at most `capacity` rows. Throws Error for another name.
 std::unique_ptr<Resolver> make_resolver(const std::string& name, int capacity);
 
 }  // namespace tegotae

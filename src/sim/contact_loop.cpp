@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
-#include "narrowphase/fcl_motion_check.hpp"
-#include "narrowphase/patch_motion_check.hpp"
-#include "sim/start_check.hpp"
+#include "sim/surroundings.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
 
-// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
-constexpr int kMostLimits = 4096;
 // Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
 constexpr int kMostBlocking = 256;
 // Pieces in one tick; a pen faster than that leaves X behind for a while.
@@ -27,10 +22,10 @@ constexpr double kFullShare = 0.99;
 constexpr int kMostResolves = 6;
 // Halvings of a piece that still intersects.
 constexpr int kMostHalvings = 4;
-// Pairs are followed while they are nearer than twice this share of the part's radius.
-constexpr double kReachShare = 0.02;
 // Share of the kept gap by which one that is too small recovers in a piece.
 constexpr double kRecovery = 0.4;
+// To recover gaps a part goes no farther away from the pen than this many kept gaps.
+constexpr double kMostRecovery = 30;
 // Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
 constexpr double kRecoverBelow = 0.8;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
@@ -45,11 +40,9 @@ constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMostWedging = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
 constexpr double kLeastKeep = 2e-6;
-// No piece brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm (Coal's GJK)
-// count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start may only grow.
-constexpr double kGapFloor = 1.1e-6;
-// Of a start gap below the floor, what motions must leave.
-constexpr double kStartShare = 0.5;
+// A limit of one motion alone comes from the plane that the certificate would find for it, and leaves this many times
+// what the certificate asks for.
+constexpr double kCutMargin = 1.2;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
@@ -64,14 +57,6 @@ constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
-double start_clearance(const Part& held, const std::vector<const Part*>& fixed, FclNarrowPhase& narrow) {
-  double clearance = kGapFloor;
-  FacePair nearest{};
-  for (std::uint32_t i = 0; i < fixed.size(); ++i)
-    clearance = std::min(clearance, narrow.distance_below(kGapFloor, i, fixed[i]->pose.inverse() * held.pose, nearest));
-  return clearance < kGapFloor ? kStartShare * clearance : clearance;
-}
-
 }  // namespace
 
 const std::vector<std::string>& narrowphase_names() {
@@ -85,40 +70,19 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       metric_(mass),
       resolver_(make_resolver(settings.resolver, kMostLimits)),
       rows_(kMostLimits),
-      bounds_(kMostLimits) {
-  const Part* held = nullptr;
-  std::vector<const Part*> fixed;
-  for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
-  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
-  std::vector<FixedSurface> fixed_surfaces;
-  std::vector<const TriangleMesh*> plain_meshes;
-  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
-  std::vector<Pose> poses;
-  for (const Part* p : fixed) {
-    auto& surface = surfaces[p->mesh.get()];
-    if (!surface) surface = std::make_shared<Surface>(p->mesh);
-    fixed_surfaces.push_back({surface, p->pose});
-    poses.push_back(p->pose);
-    spheres_.add(bounding_sphere(*p->mesh), p->pose);
-    meshes.push_back(p->mesh);
-    plain_meshes.push_back(p->mesh.get());
-  }
-  FclNarrowPhase narrow(*held->mesh, plain_meshes);
-  check_start(*held, fixed, narrow);
-  radius_ = radius_about(*held->mesh, center_);
-  clearance_ = start_clearance(*held, fixed, narrow);
-  if (settings_.narrowphase == "fcl")
-    check_ = std::make_unique<FclMotionCheck>(*held->mesh, center_, radius_, plain_meshes, poses, settings_.l_0);
-  else
-    check_ = std::make_unique<PatchMotionCheck>(held->mesh, center_, radius_, meshes, poses);
-  contacts_ = std::make_unique<ContactSet>(std::make_shared<Surface>(held->mesh), std::move(fixed_surfaces), center_,
-                                           kMostLimits);
-  piece_cap_ = check_->longest_motion();
-  reach_ = settings_.l_min + 2 * kReachShare * radius_;
-  trust_ = piece_cap_;
+      bounds_(kMostLimits),
+      planes_(kMostLimits) {
+  Surroundings s(scene, settings, mass);
+  radius_ = s.radius;
+  clearance_ = s.clearance;
+  reach_ = s.reach;
+  spheres_ = std::move(s.spheres);
+  check_ = std::move(s.check);
+  contacts_ = std::move(s.contacts);
+  trust_ = piece_cap_ = check_->longest_motion();
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
   least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
-  X_ = last_Y_ = held->pose;
+  X_ = last_Y_ = SceneParts(scene).held->pose;
   blocking_.reserve(kMostBlocking);
 }
 
@@ -127,7 +91,6 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.pieces.clear();
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
-  const bool was_cut = report.cut;
   report.cut = false;
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
@@ -145,14 +108,13 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
     report.pieces.push_back(X_);
-    contacts_->track(X_, 0);
+    contacts_->clear();
     tracked_ = false;
   } else {
     check_->begin(near_, deadline_ns_);
-    track();
-    adapt_keep(Y);
+    if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
-    if (!was_cut) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
     for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
@@ -167,6 +129,13 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     if (!late()) track();
   }
   gather(report);
+  was_cut_ = report.cut;
+  // Out of time, the limits may be those of an earlier pose.
+  report.planes.count = 0;
+  if (tracked_) {
+    metric_.set_orientation(X_.q);
+    planes_.pick(contacts_->limits(), metric_, X_, Y, center_, keep_, report.planes);
+  }
   const double left = size(displacement(X_, Y, center_));
   // A part that limits hold back a little above their gap is felt like one that rests on them.
   report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
@@ -181,9 +150,9 @@ bool ContactLoop::late() const {
   return past(deadline_ns_);
 }
 
-void ContactLoop::track() {
-  if (!tracked_) contacts_->track(X_, reach_);
-  tracked_ = true;
+bool ContactLoop::track() {
+  if (!tracked_) tracked_ = contacts_->track(X_, reach_, deadline_ns_);
+  return tracked_;
 }
 
 void ContactLoop::adapt_keep(const Pose& Y) {
@@ -199,9 +168,10 @@ void ContactLoop::adapt_keep(const Pose& Y) {
   }
   metric_.set_orientation(X_.q);
   rows_.clear();
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    rows_.push_row(metric_.row(limits[i]));
-    bounds_[i] = 2 * keep_ - limits[i].gap;
+  for (const Contact& c : limits) {
+    if (c.age == kCutAge) continue;  // planes for one motion, not surfaces
+    bounds_[static_cast<std::size_t>(rows_.rows())] = 2 * keep_ - c.gap;
+    rows_.push_row(metric_.row(c));
   }
   const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
   if (!room) keep_ = std::max(0.5 * keep_, least_keep_);
@@ -211,16 +181,16 @@ void ContactLoop::adapt_keep(const Pose& Y) {
 bool ContactLoop::wedged() const {
   const auto& limits = contacts_->limits();
   const std::size_t n = std::min(limits.size(), kMostWedging);
+  const auto presses = [this](const Contact& c) { return c.age != kCutAge && c.gap <= keep_ / kKeepShare; };
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (std::max(limits[i].gap, limits[j].gap) <= keep_ / kKeepShare && limits[i].n.dot(limits[j].n) < kOpposite)
-        return true;
+    for (std::size_t j = 0; j < i && presses(limits[i]); ++j)
+      if (presses(limits[j]) && limits[i].n.dot(limits[j].n) < kOpposite) return true;
   return false;
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+  if (!track()) return 0;
   metric_.set_orientation(X_.q);
-  track();
   Displacement error = displacement(X_, Y, center_);
   // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the
   // target only while the angle is small.
@@ -231,7 +201,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   Trial trial;
   bool found = false;
   for (int i = 0; i < kMostResolves && !found; ++i) {
-    if (!resolve(wanted, cap, report, trial)) return 0;
+    if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
       if (!resolver_->projects()) trust_ *= 0.5;
       return 0;
@@ -243,7 +213,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
       return 0;
     }
     if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
-        contacts_->cut(blocking_, trial.d, deadline_ns_) == 0)
+        contacts_->cut(blocking_, trial.d, clearance_, deadline_ns_) == 0)
       break;
   }
   if (!found) {
@@ -293,14 +263,18 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
       const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] = std::min(keep_, gap + lost) - gap;
+      bounds_[i] = limits[i].age == kCutAge ? std::min(kCutMargin * clearance_, gap) - gap
+                                            : std::min(keep_, gap + lost) - gap;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
     report.iterations += r.iterations;
     report.status = r.status;
     motion = r.motion;
-    if (r.status == ResolveStatus::solved) return true;
+    if (r.status != ResolveStatus::solved) continue;
+    // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
+    const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
+    if (recovery == 0 || !away || size(metric_.unwhiten(r.motion)) < kMostRecovery * keep_) return true;
   }
   return false;
 }
@@ -337,6 +311,7 @@ void ContactLoop::gather(TickReport& report) const {
   report.contacts = 0;
   report.gap = std::numeric_limits<double>::infinity();
   for (const Contact& c : contacts_->limits()) {
+    if (c.age == kCutAge) continue;
     report.contacts += c.gap <= keep_ / kKeepShare ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }

@@ -8,19 +8,19 @@
 #include "narrowphase/motion_check.hpp"
 #include "resolve/metric.hpp"
 #include "resolve/resolver.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "sim/contact_planes.hpp"
+#include "sim/proxy_loop.hpp"
 
 namespace tegotae {
 
-/// One tick of the contact loop (design: broad phase, intersection, back-off, tracking, contacts, resolver, free
+/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver, free
 /// check), over a scene whose parts were checked to be free at the start.
-class ContactLoop {
+class ContactLoop final : public ProxyLoop {
  public:
   ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
 
-  /// See HapticLoop::step.
-  void step(const Pose& Y, double dt, TickReport& report);
-  const Pose& pose() const { return X_; }
+  void step(const Pose& Y, double dt, TickReport& report) override;
+  const Pose& pose() const override { return X_; }
   /// The limits at the end of the last tick.
   const std::vector<Contact>& limits() const { return contacts_->limits(); }
 
@@ -47,7 +47,8 @@ class ContactLoop {
   void adapt_keep(const Pose& Y);
   /// Whether contacts press from opposite sides.
   bool wedged() const;
-  void track();
+  /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
+  bool track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
@@ -64,6 +65,7 @@ class ContactLoop {
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;
+  PlanePicker planes_;
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;
   Pose X_;
@@ -76,6 +78,7 @@ class ContactLoop {
   int ticks_ = 0;
   double clearance_;      ///< gap that a motion must leave, m
   bool tracked_ = false;  ///< the contacts are those of X_
+  bool was_cut_ = false;  ///< the last tick
   std::int64_t deadline_ns_ = 0;
 };
 

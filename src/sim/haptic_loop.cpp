@@ -6,6 +6,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "sim/contact_loop.hpp"
+#include "sim/proxy_loop.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
 
@@ -23,11 +24,21 @@ ContactSettings completed(ContactSettings s, double radius) {
     if (!(std::isfinite(value) && value > 0))
       throw Error(std::string("contact.") + name + " must be a positive number, not " + std::to_string(value));
   };
+  const auto check_not_negative = [](const char* name, double value) {
+    if (!(std::isfinite(value) && value >= 0))
+      throw Error(std::string("contact.") + name + " must not be negative, not " + std::to_string(value));
+  };
   if (std::isnan(s.l_min)) s.l_min = std::clamp(kLMinShare * radius, kLeastLMin, kMostLMin);
   if (std::isnan(s.l_0)) s.l_0 = kDefaultL0 * s.l_min;
   check("l_min", s.l_min);
   check("l_0", s.l_0);
   check("density", s.density);
+  check("impulse.substep", s.impulse.substep);
+  check("penalty.stiffness", s.penalty.stiffness);
+  if (!(s.impulse.restitution >= 0 && s.impulse.restitution <= 1))
+    throw Error("contact.impulse.restitution must be from 0 to 1, not " + std::to_string(s.impulse.restitution));
+  check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
+  check_not_negative("penalty.damping", s.penalty.damping);
   if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
   const auto& names = narrowphase_names();
   if (std::find(names.begin(), names.end(), s.narrowphase) == names.end())
@@ -55,15 +66,15 @@ ContactSettings::ContactSettings()
 struct HapticLoop::State {
   ContactSettings settings;
   MassProperties mass;
-  ContactLoop loop;
+  std::unique_ptr<ProxyLoop> loop;
   TickReport report;
 
   explicit State(const Scene& scene)
       : settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
         mass(mass_properties(*held_part(scene).mesh, tegotae::report(*held_part(scene).mesh).closed, settings.density)),
-        loop(scene, settings, mass) {
-    report.pieces.assign(1, loop.pose());
-    report.proxy.X = loop.pose();
+        loop(make_proxy_loop(scene, settings, mass)) {
+    report.pieces.assign(1, loop->pose());
+    report.proxy.X = loop->pose();
     report.gap = std::numeric_limits<double>::infinity();
   }
 };
@@ -73,7 +84,7 @@ HapticLoop::~HapticLoop() = default;
 
 const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)
-    state_->loop.step({Y.q.normalized(), Y.p}, dt, state_->report);
+    state_->loop->step({Y.q.normalized(), Y.p}, dt, state_->report);
   return state_->report;
 }
 
@@ -82,6 +93,9 @@ const TickReport& HapticLoop::report() const {
 }
 const Vec3& HapticLoop::center() const {
   return state_->mass.center;
+}
+Mat3 HapticLoop::gyration() const {
+  return state_->mass.inertia / state_->mass.mass;
 }
 const ContactSettings& HapticLoop::contact() const {
   return state_->settings;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
+#include "tegotae/servo/mapping.hpp"
 
 namespace tegotae {
 
@@ -64,20 +66,36 @@ Pose read_pose(const TomlTable& t) {
   return X;
 }
 
-void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene& scene) {
+std::optional<Color> read_color(const TomlTable& t) {
+  if (!t.has("color")) return std::nullopt;
+  const std::vector<double> given = t.numbers("color", 3, 4);
+  Color color = {0, 0, 0, 1};
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!(given[i] >= 0 && given[i] <= 1)) t.fail("color", "each number must be between 0 and 1");
+    color[i] = given[i];
+  }
+  return color;
+}
+
+void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene) {
   const double default_unit = read_unit(top, "m");
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
   std::string held;
-  for (const TomlTable& t :
-       top.tables("part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg"})) {
+  const std::vector<TomlTable> tables = top.tables(
+      "part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color"});
+  for (const TomlTable& t : tables) {
+    if (options.progress) options.progress(scene.parts.size(), tables.size());
     Part part;
     part.name = t.text("name");
     if (!names.insert(part.name).second) t.fail("name", "another part is named " + part.name);
     part.held = t.flag("held", false);
+    if (!options.hold.empty()) part.held = part.name == options.hold;
     if (part.held && !held.empty()) t.fail("held", "part " + held + " is held already; exactly one part is");
     if (part.held) held = part.name;
     part.pose = read_pose(t);
+    part.path = t.texts("path");
+    part.color = read_color(t);
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder);
     auto& mesh = meshes[{file, unit}];
@@ -86,7 +104,9 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene
     scene.parts.push_back(std::move(part));
   }
   if (scene.parts.empty()) top.fail("part", "the scene has no [[part]]");
-  if (held.empty()) top.fail("part", "no part is held; give one of them held = true");
+  if (held.empty() && !options.hold.empty()) top.fail("part", "no part is named " + options.hold);
+  if (held.empty() && options.held_needed)
+    top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME");
 }
 
 std::string one_of(const TomlTable& t, const char* key, const std::string& otherwise,
@@ -105,6 +125,14 @@ void read_contact(const TomlTable& t, ContactSettings& s) {
   s.tick_budget = t.positive("tick_budget", s.tick_budget);
   s.resolver = one_of(t, "resolver", s.resolver, resolver_names());
   s.narrowphase = one_of(t, "narrowphase", s.narrowphase, narrowphase_names());
+  const TomlTable impulse = t.table("impulse", {"restitution", "micro_speed", "substep"});
+  s.impulse.restitution = impulse.at_least_zero("restitution", s.impulse.restitution);
+  if (s.impulse.restitution > 1) impulse.fail("restitution", "must be at most 1");
+  s.impulse.micro_speed = impulse.at_least_zero("micro_speed", s.impulse.micro_speed);
+  s.impulse.substep = impulse.positive("substep", s.impulse.substep);
+  const TomlTable penalty = t.table("penalty", {"stiffness", "damping"});
+  s.penalty.stiffness = penalty.positive("stiffness", s.penalty.stiffness);
+  s.penalty.damping = penalty.at_least_zero("damping", s.penalty.damping);
 }
 
 void read_coupling(const TomlTable& t, CouplingSettings& s) {
@@ -112,6 +140,23 @@ void read_coupling(const TomlTable& t, CouplingSettings& s) {
   s.damping = t.at_least_zero("damping", s.damping);
   s.torsional_stiffness = t.positive("torsional_stiffness", s.torsional_stiffness);
   s.torsional_damping = t.at_least_zero("torsional_damping", s.torsional_damping);
+}
+
+void read_safety(const TomlTable& t, SafetySettings& s) {
+  s.limits.force = t.at_least_zero("force_limit", s.limits.force);
+  s.limits.torque = t.at_least_zero("torque_limit", s.limits.torque);
+  s.continuous_force = t.at_least_zero("continuous_force", s.continuous_force);
+  s.slew.force = t.positive("force_slew", s.slew.force);
+  s.slew.torque = t.positive("torque_slew", s.slew.torque);
+  s.velocity_limit = t.positive("velocity_limit", s.velocity_limit);
+  s.heartbeat_timeout = t.positive("heartbeat_timeout", s.heartbeat_timeout);
+  if (s.heartbeat_timeout > kLongestTimeout) t.fail("heartbeat_timeout", "must be at most 1 s");
+}
+
+double read_scale(const TomlTable& t) {
+  const double scale = t.positive("scale", 1.0);
+  if (scale < kLeastScale || scale > kMostScale) t.fail("scale", "must be from 0.01 to 100");
+  return scale;
 }
 
 SimulatedDeviceSettings read_device(const TomlTable& t) {
@@ -129,24 +174,39 @@ SimulatedDeviceSettings read_device(const TomlTable& t) {
   return s;
 }
 
+/// A script of a hand that stays where the held part starts.
+StylusScript rest(const Scene& scene) {
+  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  return StylusScript({{0, held == scene.parts.end() ? Pose() : held->pose}});
+}
+
 }  // namespace
 
-SceneFile load_scene(const std::string& path) {
+SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_toml(path);
-  const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "device"});
+  const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density"}),
-               scene.contact);
+  read_contact(
+      top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density", "impulse", "penalty"}),
+      scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);
-  const TomlTable device = top.table("device", {"type", "hand", "script"});
+  SafetySettings safety;
+  read_safety(top.table("safety", {"force_limit", "torque_limit", "continuous_force", "force_slew", "torque_slew",
+                                   "velocity_limit", "heartbeat_timeout"}),
+              safety);
+  const TomlTable device = top.table("device", {"type", "hand", "script", "scale"});
   const SimulatedDeviceSettings settings = read_device(device);
-  const std::string script_file = file_under(device, "script", folder);
-  StylusScript script = about(device, "script", [&] { return read_script(script_file); });
-  read_parts(top, folder, scene);
-  return {path, std::move(scene), settings, std::move(script)};
+  std::optional<StylusScript> script;
+  if (device.has("script")) {
+    const std::string script_file = file_under(device, "script", folder);
+    script = about(device, "script", [&] { return read_script(script_file); });
+  }
+  read_parts(top, folder, options, scene);
+  if (!script) script = rest(scene);
+  return {path, std::move(scene), settings, std::move(*script), safety, read_scale(device)};
 }
 
 }  // namespace tegotae

@@ -109,15 +109,29 @@ double TomlTable::at_least_zero(const char* key, double fallback) const {
   return value;
 }
 
-std::vector<double> TomlTable::numbers(const char* key, std::size_t count) const {
+std::vector<double> TomlTable::numbers(const char* key, std::size_t least, std::size_t most) const {
   const toml::node* node = table_.get(key);
   const toml::array* array = node ? node->as_array() : nullptr;
-  if (!array || array->size() != count) fail(key, "must be a list of " + std::to_string(count) + " numbers");
+  if (!array || array->size() < least || array->size() > most)
+    fail(key, "must be a list of " + std::to_string(least) + (most > least ? " to " + std::to_string(most) : "") +
+                  " numbers");
   std::vector<double> values;
   for (const toml::node& element : *array) {
     if (!element.is_number()) fail(key, "must be a list of numbers; one is " + type_name(element));
     values.push_back(as_double(element));
     if (!std::isfinite(values.back())) fail(key, "must be finite");
+  }
+  return values;
+}
+
+std::vector<std::string> TomlTable::texts(const char* key) const {
+  const toml::node* node = table_.get(key);
+  if (!node) return {};
+  if (!node->is_array()) fail(key, "must be a list of strings, not " + type_name(*node));
+  std::vector<std::string> values;
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) fail(key, "must be a list of strings; one is " + type_name(element));
+    values.push_back(element.as_string()->get());
   }
   return values;
 }

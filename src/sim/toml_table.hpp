@@ -30,7 +30,10 @@ class TomlTable {
   double positive(const char* key, double fallback) const;  ///< finite, > 0
   double at_least_zero(const char* key, double fallback) const;
   /// `count` finite numbers.
-  std::vector<double> numbers(const char* key, std::size_t count) const;
+  std::vector<double> numbers(const char* key, std::size_t count) const { return numbers(key, count, count); }
+  std::vector<double> numbers(const char* key, std::size_t least, std::size_t most) const;
+  /// A list of strings, empty when the key is absent.
+  std::vector<std::string> texts(const char* key) const;
 
   /// The table under `key` (an empty one when the key is absent), whose keys must be in `known`.
   TomlTable table(const char* key, std::initializer_list<const char*> known) const;

@@ -26,7 +26,7 @@ TEST_CASE("a box over a floor has its four corners as contacts, also when it hov
   const auto A = surface(box({0.04, 0.04, 0.04})), B = surface(box({0.4, 0.4, 0.02}));
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 256);
   const Pose X{rotation({0.7 * tilt, tilt, 0}), {0.01, 0.02, 0.0202}};
-  set.track(X, 0.001);
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
   REQUIRE(set.limits().empty());
   REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) >= 4);
   int corners_found = 0;
@@ -48,19 +48,19 @@ TEST_CASE("pairs keep their identity and age while followed, and are dropped pas
   const auto A = surface(box({0.04, 0.04, 0.04})), B = surface(box({0.4, 0.4, 0.02}));
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 256);
   Pose X{Quat::Identity(), {0, 0, 0.0201}};
-  set.track(X, 0.001);
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
   const std::size_t n = set.limits().size();
   REQUIRE(n >= 4);
   for (int tick = 1; tick <= 10; ++tick) {
     X.p.x() += 0.001;
-    set.track(X, 0.001);
+    REQUIRE(set.track(X, 0.001, kNoDeadline));
     REQUIRE(set.limits().size() == n);
     for (const Contact& c : set.limits()) REQUIRE(c.age == tick);
     REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) == 0);  // nothing new: the followed pairs are these
   }
   X.p.z() += 0.002;
-  set.track(X, 0.001);
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
   REQUIRE(set.limits().empty());
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("a corner in a concave corner is limited by both faces", "[contact]") 
   const auto B = surface(L), A = surface(box({0.04, 0.04, 0.04}));
   ContactSet set(A, {{B, Pose{}}}, Vec3::Zero(), 256);
   const Pose X{Quat::Identity(), {0.0205, 0, 0.0203}};
-  set.track(X, 0.002);
+  REQUIRE(set.track(X, 0.002, kNoDeadline));
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
   bool floor = false, wall = false;
   const Vec3 wall_normal = Vec3(1, 0, 0.2).normalized();
@@ -88,7 +88,7 @@ TEST_CASE("capacity is kept and its overflow counted", "[contact]") {
   const auto A = surface(box({0.04, 0.04, 0.04})), B = surface(box({0.4, 0.4, 0.02}));
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 2);
   const Pose X{Quat::Identity(), {0, 0, 0.0201}};
-  set.track(X, 0.001);
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
   REQUIRE(set.limits().size() == 2);
   REQUIRE(set.overflow() > 0);

@@ -17,7 +17,7 @@ TEST_CASE("the axis separates, its corner carries the limit, and no sampled axis
       b[k] = random_vector(rng, 1.0);
       motion[k] = move;  // a translation, for which the best axis at the end pose is known by sampling
     }
-    const AxisLimit axis = least_limiting_axis(a, b, motion);
+    const AxisLimit axis = least_limiting_axis(a, b, motion, 0);
     if (!axis.found) continue;
     ++apart;
     REQUIRE(axis.n.norm() == Approx(1.0));
@@ -41,7 +41,7 @@ TEST_CASE("coplanar neighbors are separated along the plane and flat pairs along
   std::array<Vec3, 3> a = b;
   for (Vec3& p : a) p.z() += 0.01;
   const std::array<Vec3, 3> down{Vec3(0, 0, -0.02), Vec3(0, 0, -0.02), Vec3(0, 0, -0.02)};
-  const AxisLimit flat = least_limiting_axis(a, b, down);
+  const AxisLimit flat = least_limiting_axis(a, b, down, 0);
   REQUIRE(flat.found);
   REQUIRE(flat.n.z() == Approx(1.0));
   REQUIRE(flat.gap == Approx(0.01));

@@ -63,24 +63,19 @@ void add(Figures& f, const CertifyReport& r, double us) {
 void pushed(PatchFront& front, const Pose& X, int ticks) {
   std::mt19937 rng(3);
   Figures f;
-  double blocking = 0, seeds_us = 0, seeds = 0;
+  double blocking = 0;
   for (int i = 0; i < ticks; ++i) {
     const double size = std::pow(10.0, uniform(rng, -4.5, -3));
     const Displacement d{random_in_ball(rng, size), random_in_ball(rng, 10 * size)};
-    auto t0 = thread_ns();
+    const auto t0 = thread_ns();
     const CertifyReport report = front.certify(X, d);
     add(f, report, micros(t0));
     blocking += static_cast<double>(front.blocking().size());
-    std::array<ContactSeed, 32> out;
-    t0 = thread_ns();
-    seeds += front.contact_seeds(X, 4e-5, out.data(), 32);
-    seeds_us += micros(t0);
     // A still tick, as the loop would have it after a shortened step.
     front.certify(X, {});
   }
   std::printf("  pushed to poses that are not free (mean %.1f blocking pairs):\n", blocking / ticks);
   f.print();
-  std::printf("  seeds: mean %.1f of 32 in %.1f us\n", seeds / ticks, seeds_us / ticks);
 }
 
 /// A peg that slides along both ends of its clearance, in and out, turning; `speed` 1 is 0.1 mm and 0.5 mrad a tick.

@@ -119,9 +119,18 @@ stiffness = 1
 damping = 0
 torsional_stiffness = 3
 torsional_damping = 4
+[safety]
+force_limit = 5
+torque_limit = 0.06
+continuous_force = 0
+force_slew = 700
+torque_slew = 8
+velocity_limit = 0.9
+heartbeat_timeout = 0.01
 [device]
 type = "simulated"
 script = "insert.csv"
+scale = 0.5
 hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_damping = 14, mass = 15, inertia = 16 }
 )");
   const Part &a = file.scene.parts[0], &b = file.scene.parts[1];
@@ -146,6 +155,15 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(coupling.damping == 0);
   CHECK(coupling.torsional_stiffness == 3);
   CHECK(coupling.torsional_damping == 4);
+  const SafetySettings& safety = file.safety;
+  CHECK(safety.limits.force == 5);
+  CHECK(safety.limits.torque == 0.06);
+  CHECK(safety.continuous_force == 0);
+  CHECK(safety.slew.force == 700);
+  CHECK(safety.slew.torque == 8);
+  CHECK(safety.velocity_limit == 0.9);
+  CHECK(safety.heartbeat_timeout == 0.01);
+  CHECK(file.scale == 0.5);
   const HandSettings& hand = file.device.hand;
   CHECK(hand.stiffness == 11);
   CHECK(hand.damping == 12);
@@ -189,6 +207,9 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {good + "[coupling]\n\nk = 1\n", "scene.toml:14: coupling.k: unknown key"},
       {good + "port = 1\n", "scene.toml:12: device.port: unknown key"},
       {good + "hand = { k = 1 }\n", "scene.toml:12: device.hand.k: unknown key"},
+      {good + "[safety]\nforce = 1\n", "scene.toml:13: safety.force: unknown key"},
+      {good + "[safety]\nheartbeat_timeout = 2\n", "scene.toml:13: safety.heartbeat_timeout: must be at most 1 s"},
+      {good + "scale = 1000\n", "scene.toml:12: device.scale: must be from 0.01 to 100"},
       // Wrong types.
       {replaced(good, "\"mm\"", "1"), "scene.toml:1: unit: must be a string"},
       {replaced(good, "\"block\"", "7"), "scene.toml:3: part.name: must be a string"},
@@ -210,6 +231,11 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {good + "[contact]\nl_0 = -1e-6\n", "scene.toml:13: contact.l_0: must be greater than zero"},
       {good + "[contact]\ndensity = inf\n", "scene.toml:13: contact.density: must be finite"},
       {good + "[contact]\nresolver = \"magic\"\n", "scene.toml:13: contact.resolver: "},
+      {good + "[contact.impulse]\nrestitution = 1.5\n",
+       "scene.toml:13: contact.impulse.restitution: must be at most 1"},
+      {good + "[contact.impulse]\nfriction = 0.2\n", "scene.toml:13: contact.impulse.friction: unknown key"},
+      {good + "[contact.penalty]\nstiffness = 0\n",
+       "scene.toml:13: contact.penalty.stiffness: must be greater than zero"},
       {good + "[coupling]\nstiffness = -800\n", "scene.toml:13: coupling.stiffness: must be greater than zero"},
       {good + "[coupling]\ndamping = -1\n", "scene.toml:13: coupling.damping: must not be negative"},
       {good + "hand = { mass = -1 }\n", "scene.toml:12: device.hand.mass: must not be negative"},
@@ -225,7 +251,14 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {replaced(good, "tet.obj", "none.obj"), "scene.toml:4: part.mesh: none.obj: no such file"},
       {replaced(good, "tet.obj", "meshes"), "scene.toml:4: part.mesh: meshes: not a file"},
       {replaced(good, "tet.obj", "empty.obj"), "scene.toml:4: part.mesh: "},
-      {kParts, "scene.toml: device.script: missing"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\npath = \"a\"\n",
+       "scene.toml:15: part.path: must be a list of strings"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\npath = [\"a\", 1]\n",
+       "scene.toml:15: part.path: must be a list of strings"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\ncolor = [1, 0]\n",
+       "scene.toml:15: part.color: must be a list of 3 to 4 numbers"},
+      {good + "[[part]]\nname = \"c\"\nmesh = \"tet.obj\"\ncolor = [1, 0, 1.5]\n",
+       "scene.toml:15: part.color: each number must be between 0 and 1"},
       {replaced(good, "insert.csv", "none.csv"), "scene.toml:11: device.script: none.csv: no such file"},
       {replaced(good, "insert.csv", "bad.csv"), "scene.toml:11: device.script: bad.csv:2"},
   };
@@ -237,6 +270,46 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
     CHECK(starts_with(error, c.error));
     CHECK(error.find('\n') == std::string::npos);
   }
+}
+
+TEST_CASE("groups and colors of parts are kept", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(kParts + kDevice +
+                                     "[[part]]\nname = \"cover\"\nmesh = \"tet.obj\"\n"
+                                     "path = [\"pump\", \"lid / top\"]\ncolor = [0.25, 0.5, 1]\n"
+                                     "[[part]]\nname = \"glass\"\nmesh = \"tet.obj\"\ncolor = [0, 0, 0, 0.5]\n");
+  REQUIRE(file.scene.parts.size() == 4);
+  CHECK(file.scene.parts[0].path.empty());
+  CHECK(!file.scene.parts[0].color);
+  CHECK(file.scene.parts[2].path == std::vector<std::string>{"pump", "lid / top"});
+  CHECK(file.scene.parts[2].color == Color{0.25, 0.5, 1, 1});
+  CHECK(file.scene.parts[3].color == Color{0, 0, 0, 0.5});
+}
+
+TEST_CASE("the part to hold can be named when loading", "[scene_file]") {
+  const Folder folder;
+  folder.load(kParts + kDevice);
+  SceneOptions options;
+  options.hold = "block";
+  const SceneFile file = load_scene(folder.scene_path(), options);
+  CHECK(file.scene.parts[0].held);
+  CHECK(!file.scene.parts[1].held);
+  options.hold = "lid";
+  CHECK_THROWS_WITH(load_scene(folder.scene_path(), options), Catch::Contains("no part is named lid"));
+  const auto at = kParts.find("held = true");
+  REQUIRE(at != std::string::npos);
+  const std::string nothing_held = kParts.substr(0, at) + "held = false" + kParts.substr(at + 11);
+  CHECK(folder.error(nothing_held).find("--hold NAME") != std::string::npos);
+  CHECK_NOTHROW(load_scene(folder.scene_path(), {"block", true, {}}));
+  CHECK_NOTHROW(load_scene(folder.scene_path(), {"", false, {}}));
+}
+
+TEST_CASE("without a script the hand stays where the held part starts", "[scene_file]") {
+  const Folder folder;
+  const SceneFile file = folder.load(kParts);
+  CHECK(file.script.begin() == file.script.end());
+  for (const Part& part : file.scene.parts)
+    if (part.held) CHECK(file.script.pose(0).p == part.pose.p);
 }
 
 TEST_CASE("a scene file that is not there is an error", "[scene_file]") {

@@ -25,7 +25,7 @@ Pose pen(int tick) {
 }  // namespace
 
 TEST_CASE("a warmed-up tick does not allocate", "[allocation]") {
-  const std::string resolver = GENERATE("lp", "qp");
+  const std::string resolver = GENERATE("lp", "qp", "impulse", "penalty");
   const std::string narrowphase = "patch";
   CAPTURE(resolver);
   Scene scene;

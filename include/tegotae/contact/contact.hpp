@@ -6,6 +6,10 @@
 
 namespace tegotae {
 
+/// Contact::age of a limit that is no contact: a plane between two triangles, of use for one motion alone. Its gap is not
+/// the distance of anything.
+inline constexpr int kCutAge = -1;
+
 /// A limit on the motion of the held part A: for a small displacement (dp, dr) of its center of mass the gap becomes
 /// gap + n · (dp + dr × r). Taken at a free pose, so the gap is never negative.
 struct Contact {
@@ -13,7 +17,7 @@ struct Contact {
   Vec3 r;              ///< from A's center of mass to the contact point on A, m, world
   double gap;          ///< m
   std::uint32_t part;  ///< number of the fixed part
-  int age;             ///< ticks this pair of features has been followed
+  int age;             ///< ticks this pair of features has been followed, or kCutAge
 };
 
 }  // namespace tegotae

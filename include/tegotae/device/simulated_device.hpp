@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tegotae/device/device.hpp"
+#include "tegotae/device/hand_intent.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
@@ -28,20 +29,26 @@ struct SimulatedDeviceSettings {
   Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
   double friction = 0.04;                       ///< Coulomb, N
   WrenchLimits limits;                          ///< of what is rendered, whatever is asked for
+  double continuous_force = 1.4;                ///< what the motors stand for long, N; 0: not limited
   double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
   double velocity_cutoff_hz = 50.0;             ///< of the low-pass on differences of the reported pose
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
+  bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
 };
 
-/// A pen without hardware: a rigid body pushed by a hand that follows a script and by the rendered wrench. Same
-/// settings, script and calls give the same bits.
+/// A pen without hardware: a rigid body pushed by a hand, which follows a script or an operator's intent, and by the
+/// rendered wrench. Same settings, script and calls give the same bits.
 class SimulatedDevice final : public Device {
  public:
   /// At rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
+  /// At rest where `hand` begins. Keeps a reference to it, which must outlive the device.
+  SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
+  /// Its damping is the hand's, which it has for good.
+  DeviceInfo info() const override;
   void start() override;
   void stop() override;
   DeviceState read() noexcept override;
@@ -49,10 +56,11 @@ class SimulatedDevice final : public Device {
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
   void set_center(const Vec3& center) noexcept override;
+  void set_lead(const Displacement& lead) noexcept override;  ///< an application is there
 
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
   void advance(double dt) noexcept;
-  /// The script's time, s: begin of the script plus the time advanced. May be called from any thread.
+  /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.
   double script_time() const noexcept;
   /// The exact pose and velocity (v of the center of mass), before resolution and filter.
   Pose true_pose() const noexcept;
@@ -60,6 +68,7 @@ class SimulatedDevice final : public Device {
 
  private:
   struct Impl;
+  SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center);
   std::unique_ptr<Impl> impl_;
 };
 

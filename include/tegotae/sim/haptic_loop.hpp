@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
@@ -14,15 +15,17 @@ namespace tegotae {
 struct TickReport {
   std::vector<Pose> pieces;  ///< the free poses that X went through, in order; the last one is X (never empty)
   ProxyState proxy;          ///< X, its velocity, and whether it touches
+  ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
   int contacts = 0;          ///< feature pairs with a gap of at most l_min
   int limits = 0;            ///< feature pairs that limited the motion, contacts included
-  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach
+  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
+  double depth = 0;          ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
   int candidate_parts = 0;   ///< fixed parts that passed the broad phase
-  int resolves = 0;          ///< programmes solved
-  int iterations = 0;        ///< pivots of all programmes
+  int resolves = 0;          ///< programmes solved (penalty: Newton steps)
+  int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
   ResolveStatus status = ResolveStatus::not_needed;
   double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
-  bool cut = false;          ///< time or work ran out before the wanted motion was decided
+  bool cut = false;       ///< time or work ran out before the wanted motion was decided
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 
@@ -42,6 +45,7 @@ class HapticLoop {
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   const TickReport& report() const;
+  Mat3 gyration() const;                   ///< its inertia over its mass about the center, m², file axes
   const Vec3& center() const;              ///< center of mass of the held part, m, file frame
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
 

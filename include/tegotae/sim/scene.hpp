@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tegotae/core/pose.hpp"
 #include "tegotae/coupling/coupling.hpp"
+#include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
 namespace tegotae {
@@ -16,6 +18,21 @@ struct Part {
   std::shared_ptr<const TriangleMesh> mesh;  ///< welded (load_mesh does it), file frame, m
   Pose pose;                                 ///< X_WF of the file frame in the world; of the held part, where it starts
   bool held = false;                         ///< exactly one part of a scene is held
+  std::vector<std::string> path = {};        ///< groups of the assembly that it is in, the outermost first
+  std::optional<Color> color = {};           ///< to show it in
+};
+
+/// Settings of the resolver "impulse".
+struct ImpulseSettings {
+  double restitution = 0.3;   ///< speed after an impact by the speed before, 0 to 1
+  double micro_speed = 0.01;  ///< slower approaches (m/s), beyond what the coupling adds in a sub-step, do not rebound
+  double substep = 2.5e-4;    ///< s
+};
+
+/// Settings of the resolver "penalty".
+struct PenaltySettings {
+  double stiffness = 2000.0;  ///< of each penetrating vertex, N/m
+  double damping = 2.0;       ///< of each penetrating vertex along its normal, N·s/m
 };
 
 /// Settings of the contact loop. A NaN stands for "from the scene": HapticLoop::contact() tells what was chosen.
@@ -23,12 +40,17 @@ struct ContactSettings {
   double l_min;  ///< contact below this gap (m), half of it is kept; a set value should be at most half the radial
                  ///< clearance of the closest fit, NaN lets the loop adapt it (4 to 20 µm) to the room it finds
   double l_0;    ///< back-off length (m) after an intersection
-  std::string resolver = "qp";  ///< "qp": least constraint; "lp": the paper's linear programme
-  std::string narrowphase = "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
+  /// "qp": least constraint; "lp": the paper's linear programme; for comparison "impulse": collisions one at a time,
+  /// and "penalty": springs in proportion to penetration, the only one that lets parts interpenetrate.
+  std::string resolver = "qp";
+  std::string narrowphase =
+      "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
   /// Time (s) that a tick of HapticLoop::step may take; what is not done by then is left for the next tick. Infinite:
   /// bounded by work alone, so that the same pen gives the same motion bit for bit on any machine.
   double tick_budget = 0.8e-3;
-  double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation
+  double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation, and its mass
+  ImpulseSettings impulse;
+  PenaltySettings penalty;
   ContactSettings();
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "tegotae/device/script.hpp"
 #include "tegotae/device/simulated_device.hpp"
+#include "tegotae/servo/safety.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
@@ -13,12 +15,23 @@ struct SceneFile {
   std::string path;
   Scene scene;
   SimulatedDeviceSettings device;
-  StylusScript script;  ///< what the operator's hand does
+  StylusScript script;      ///< what the operator's hand does
+  SafetySettings safety{};  ///< of the servo in this process; a device in another one has its own
+  double scale = 1;         ///< meters that the held part moves for a meter of the pen
+};
+
+/// How a scene file is read.
+struct SceneOptions {
+  std::string hold;          ///< name of the part to hold, instead of the file's; empty: the file's
+  bool held_needed = true;   ///< false: a file that holds no part is read too
+  /// Called before each mesh is read: how many are, of how many.
+  std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
 /// Reads a scene file (TOML, see docs/scene-file.md) and the meshes it names; parts with the same file and unit share
 /// one mesh. Paths in the file are relative to its folder. Throws Error `file:line: table.key: reason` at an unknown
-/// key, a wrong type, a missing file, an impossible value, or a mesh that cannot be used.
-SceneFile load_scene(const std::string& path);
+/// key, a wrong type, a missing file, an impossible value, or a mesh that cannot be used. Without a script in the file
+/// the hand stays where the held part starts.
+SceneFile load_scene(const std::string& path, const SceneOptions& options = {});
 
 }  // namespace tegotae

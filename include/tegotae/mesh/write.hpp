@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "tegotae/mesh/triangle_mesh.hpp"
+
+namespace tegotae {
+
+/// Writes `mesh` as binary PLY (floats, shared vertices) in units of `unit_in_m`. Throws Error when it cannot be
+/// written.
+void write_ply(const TriangleMesh& mesh, const std::string& path, double unit_in_m);
+
+}  // namespace tegotae

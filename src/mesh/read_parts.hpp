@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "tegotae/mesh/assembly.hpp"
+
+namespace tegotae {
+
+/// Readers of one kind of file each. Shapes come welded; names may repeat or be empty, shapes may lie anywhere.
+Assembly read_tree(const std::string& path, const AssemblyOptions& options);  ///< glTF, GLB and the flat formats
+Assembly read_step(const std::string& path, const AssemblyOptions& options);
+
+/// Whether the bytes of `path` begin like a STEP file, or its name ends like one's.
+bool is_step(const std::string& path);
+/// Throws Error unless the STEP file `path` is whole and of a known schema.
+void check_step(const std::string& path);
+
+}  // namespace tegotae

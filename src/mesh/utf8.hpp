@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace tegotae {
+
+/// `text` if it is valid UTF-8; otherwise it is taken for Latin-1 and converted.
+std::string to_utf8(const std::string& text);
+
+}  // namespace tegotae

@@ -1,0 +1,49 @@
+#include "narrowphase/fcl_pairs.hpp"
+
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+
+#include "narrowphase/fcl_model.hpp"
+
+namespace tegotae {
+
+struct FclPairs::Models {
+  std::map<const TriangleMesh*, std::shared_ptr<FclModel>> of;
+
+  const FclModel* operator[](const TriangleMesh& mesh) {
+    auto& model = of[&mesh];
+    if (!model) model = fcl_model(mesh);
+    return model.get();
+  }
+};
+
+FclPairs::FclPairs() : models_(std::make_unique<Models>()) {}
+FclPairs::~FclPairs() = default;
+
+std::vector<FclPairs::Faces> FclPairs::intersections(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA,
+                                                     std::size_t most) {
+  fcl::CollisionRequestd request;
+  request.num_max_contacts = most;
+  fcl::CollisionResultd result;
+  fcl::collide((*models_)[a], fcl_transform(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
+  std::vector<Faces> pairs;
+  pairs.reserve(result.numContacts());
+  for (std::size_t i = 0; i < result.numContacts(); ++i) {
+    const auto& contact = result.getContact(i);
+    pairs.emplace_back(static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2));
+  }
+  return pairs;
+}
+
+double FclPairs::distance_below(double bound, const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA,
+                                Faces& nearest) {
+  const fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  result.min_distance = bound;  // the traversal leaves out whatever is farther than the best so far
+  fcl::distance((*models_)[a], fcl_transform(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
+  if (!(result.min_distance < bound)) return bound;
+  nearest = {static_cast<std::uint32_t>(result.b1), static_cast<std::uint32_t>(result.b2)};
+  return result.min_distance;
+}
+
+}  // namespace tegotae

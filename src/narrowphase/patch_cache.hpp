@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+
+#include "narrowphase/patch_tree.hpp"
+
+namespace tegotae {
+
+/// Smaller meshes are built faster than this is worth.
+inline constexpr std::size_t kLeastCached = 20000;  // triangles; 50 ms
+
+/// The hierarchy over `mesh`: read from the folder of set_hierarchy_cache, or built and kept there.
+std::shared_ptr<const PatchTree> cached_patch_tree(const std::shared_ptr<const TriangleMesh>& mesh);
+
+}  // namespace tegotae

@@ -1,0 +1,169 @@
+// The tree of splits of a PatchFront: pairs come apart, go together again, enter the lanes and leave them.
+#include <algorithm>
+#include <cmath>
+
+#include "narrowphase/patch_front.hpp"
+
+namespace tegotae {
+namespace {
+
+/// A leaf is taken apart for a patch on the other side of less than this part of its second extent: without it, a
+/// coarse mesh against a fine one is refined on the fine side only, down to its faces; with 1, leaves come apart too
+/// often.
+constexpr float kLeafWorth = 0.5f;
+
+}  // namespace
+
+std::uint32_t PatchFront::allocate(std::uint32_t children) {
+  const bool two = children <= 2;
+  std::uint32_t& head = two ? free_twos_ : free_fans_;
+  if (head != kNoPair) {
+    const std::uint32_t id = head;
+    head = pool_[id].child;
+    return id;
+  }
+  const std::uint32_t size = two ? 2 : kFan;
+  if (pool_used_ + size > pool_.size()) return kNoPair;
+  pool_used_ += size;
+  return pool_used_ - size;
+}
+
+bool PatchFront::split(std::uint32_t id) {
+  const PairNode p = pool_[id];
+  PatchNode scratch_a, scratch_b;
+  const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
+  // The side with the larger second extent: a long strip is as good as a short one while it is narrow.
+  const bool ends = a.leaf() && b.leaf();
+  auto worth = [](const PatchNode& n) { return n.leaf() ? kLeafWorth : 1.0f; };
+  const bool split_a = !p.face_a && (p.face_b || worth(a) * a.half[1] > worth(b) * b.half[1]);
+  const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
+  const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
+  if (boxes_.count + triangles_.count + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
+      stack_.size() + children > stack_.capacity()) {
+    return false;
+  }
+  const std::uint32_t child = allocate(children);
+  if (child == kNoPair) return false;
+  const Vec3 n = plane(id);
+  leave(id);
+  PairNode& parent = pool_[id];
+  parent.child = child;
+  parent.children = static_cast<std::uint16_t>(children);
+  for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
+  for (std::uint32_t k = 0; k < children; ++k) {
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal};
+    if ((ends || split_a) && !p.face_a) {
+      const std::uint32_t place = a.first + (ends ? k / of_b : k);
+      c.face_a = a.leaf();
+      c.a = a.leaf() ? a_->order()[place] : place;
+    }
+    if ((ends || !split_a) && !p.face_b) {
+      const std::uint32_t place = b.first + (ends ? k % of_b : k);
+      c.face_b = b.leaf();
+      c.b = b.leaf() ? b_->order()[place] : place;
+    }
+    pool_[child + k] = c;
+    enter(child + k);
+  }
+  splits_.push_back(id);
+  return true;
+}
+
+void PatchFront::collapse(std::uint32_t id) {
+  const PairNode& p = pool_[id];
+  const std::uint32_t child = p.child, children = p.children;
+  for (std::uint32_t k = 0; k < children; ++k) leave(child + k);
+  std::uint32_t& head = children <= 2 ? free_twos_ : free_fans_;
+  pool_[child].child = head;
+  head = child;
+  pool_[id].children = 0;
+  pool_[id].child = kNoPair;
+  enter(id);
+}
+
+bool PatchFront::all_in_front(std::uint32_t id) const {
+  const PairNode& p = pool_[id];
+  for (std::uint32_t k = 0; k < p.children; ++k) {
+    if (pool_[p.child + k].children > 0) return false;
+  }
+  return true;
+}
+
+void PatchFront::enter(std::uint32_t id) {
+  PairNode& p = pool_[id];
+  Group& g = group(p);
+  p.slot = g.count++;
+  g.owner[p.slot] = id;
+  if (faces(p)) {
+    const auto a = face_a(p.a);
+    double reach2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) g.lanes.at(p.slot, kTriCorners + 3 * k + i) = static_cast<float>(a[k][i]);
+      reach2 = std::max(reach2, a[k].squaredNorm());
+    }
+    g.lanes.at(p.slot, kTriReach) = round_up<float>(std::sqrt(reach2));
+  } else {
+    PatchNode scratch;
+    const PatchNode& a = box_a(p, scratch);
+    const Vec3 c = node_center(a);
+    for (int i = 0; i < 3; ++i) {
+      g.lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
+      for (int k = 0; k < 3; ++k) g.lanes.at(p.slot, kBoxEdges + 3 * i + k) = a.half[i] * a.axis[i][k];
+    }
+    g.lanes.at(p.slot, kBoxReach) = round_up<float>(node_reach(a));
+  }
+  set_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+}
+
+void PatchFront::leave(std::uint32_t id) {
+  Group& g = group(pool_[id]);
+  const std::uint32_t slot = pool_[id].slot, last = --g.count;
+  if (slot == last) return;
+  g.lanes.move(last, slot);
+  g.owner[slot] = g.owner[last];
+  pool_[g.owner[slot]].slot = slot;
+}
+
+void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
+  const PairNode& p = pool_[id];
+  Group& g = group(p);
+  Vec3 rounded;
+  for (int k = 0; k < 3; ++k) {
+    g.lanes.at(p.slot, kBoxNormal + k) = static_cast<float>(n[k]);
+    rounded[k] = g.lanes.at(p.slot, kBoxNormal + k);
+  }
+  double support = -std::numeric_limits<double>::infinity();
+  if (faces(p)) {
+    for (const Vec3& v : face_b(p.b)) support = std::max(support, rounded.dot(v));
+  } else {
+    PatchNode scratch;
+    const PatchNode& b = box_b(p, scratch);
+    support = rounded.dot(b.center_vec());
+    for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
+  }
+  g.lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
+}
+
+Vec3 PatchFront::plane(std::uint32_t id) const {
+  const PairNode& p = pool_[id];
+  const LaneBlocks& lanes = (faces(p) ? triangles_ : boxes_).lanes;
+  return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
+}
+
+double PatchFront::node_reach(const PatchNode& n) const {
+  // Half edges may not be quite orthogonal (single precision), which the sum of their lengths squared does not see.
+  constexpr double kSkew = 1 + 1e-6;
+  const double half2 = double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2];
+  return node_center(n).norm() + kSkew * std::sqrt(half2);
+}
+
+std::array<Vec3, 3> PatchFront::face_a(std::uint32_t f) const {
+  return {a_->corner(f, 0) - center_, a_->corner(f, 1) - center_, a_->corner(f, 2) - center_};
+}
+
+std::array<Vec3, 3> PatchFront::face_b(std::uint32_t f) const {
+  const Vec3& o = b_->origin();
+  return {b_->corner(f, 0) - o, b_->corner(f, 1) - o, b_->corner(f, 2) - o};
+}
+
+}  // namespace tegotae

@@ -1,0 +1,30 @@
+// An assembly written as STEP with OpenCASCADE: what it holds is known in closed form.
+#pragma once
+
+#include <string>
+
+namespace tegotae::test {
+
+/// Sizes in mm: fits of 20 mm H7/g6 (hole +0..+21 µm, shaft -7..-20 µm) and 6 mm H7/m6-like dowels, at the tightest.
+struct StepSizes {
+  double plate_x = 110, plate_y = 60, plate_z = 15;
+  double bore = 26;             ///< of the plate, for the bushings
+  double bushing_outer = 25.98;  ///< with a clearance, so that everything starts free
+  double bushing_inner = 20.0;  ///< H7 at its least
+  double bushing_length = 15;
+  double shaft = 19.993;        ///< g6 at its most
+  double shaft_length = 60;
+  double window = 31;           ///< of the cover, around bushing and shaft
+  double dowel_hole = 6.0, dowel = 5.996, dowel_length = 14;
+  double cover_z = 5;
+  double bore_at = 20;          ///< x of the two bores, on both sides of the middle
+  double dowel_at = 42;
+};
+
+/// Writes: group "Träger" (turned and moved) with "Grundplatte" (blue) and two instances of "Buchse" (red); at the top
+/// level a "Welle" in the first bushing (no color), and a group "Deckel" with "Blech" (green) and two dowels "Stift".
+/// `unit` is OpenCASCADE's name: "MM", "M", "INCH"; `schema` "AP203", "AP214IS", "AP242DIS".
+void write_step_assembly(const std::string& path, const StepSizes& sizes, const std::string& unit,
+                         const std::string& schema);
+
+}  // namespace tegotae::test

@@ -1,0 +1,223 @@
+// STEP assemblies, written with OpenCASCADE and known in closed form.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "mesh/step_assembly.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/assembly.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/report.hpp"
+#include "tegotae/mesh/write.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+const AssemblyPart& part(const Assembly& assembly, const std::string& name) {
+  for (const AssemblyPart& p : assembly.parts)
+    if (p.name == name) return p;
+  FAIL("no part " << name);
+  throw;
+}
+
+const TriangleMesh& mesh_of(const Assembly& assembly, const std::string& name) {
+  return *assembly.shapes[part(assembly, name).shape];
+}
+
+double volume(const TriangleMesh& mesh) {
+  double v = 0;
+  for (const auto& t : mesh.triangles)
+    v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+  return v;
+}
+
+double disc(double diameter_mm, double height_mm) {
+  return M_PI / 4 * diameter_mm * diameter_mm * height_mm * 1e-9;
+}
+
+/// Nearest and farthest distance (m) from the line along z through (x, y, 0) of the triangles that lie between the
+/// radii `from` and `to` (mm) with all corners and are not flat in z: the facets of one cylinder.
+struct Radii {
+  double nearest = 1e9, farthest = 0;
+  int facets = 0;
+};
+
+Radii radii(const TriangleMesh& mesh, double x_mm, double from, double to) {
+  Radii out;
+  const auto planar = [&](const Vec3& p) { return Eigen::Vector2d(p.x() - 1e-3 * x_mm, p.y()); };
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (std::abs((b - a).cross(c - a).normalized().z()) > 0.5) continue;
+    bool within = true;
+    for (const Vec3& p : {a, b, c}) within = within && planar(p).norm() > 1e-3 * from && planar(p).norm() < 1e-3 * to;
+    if (!within) continue;
+    ++out.facets;
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      const Eigen::Vector2d u = planar(p), d = planar(q) - u;
+      const double s = d.squaredNorm() > 0 ? std::clamp(-u.dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
+      out.nearest = std::min(out.nearest, (u + s * d).norm());
+      out.farthest = std::max({out.farthest, u.norm(), planar(q).norm()});
+    }
+  }
+  return out;
+}
+
+std::string error_of(const std::string& path) {
+  try {
+    read_assembly(path);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a STEP assembly keeps names, tree, instances, places and colors in every unit and schema", "[step]") {
+  const TempFolder folder;
+  const std::pair<const char*, const char*> kinds[] = {
+      {"MM", "AP203"}, {"MM", "AP214IS"}, {"MM", "AP242DIS"}, {"M", "AP214IS"}, {"INCH", "AP242DIS"}};
+  for (const auto& [unit, schema] : kinds) {
+    INFO(unit << " " << schema);
+    write_step_assembly(folder / "a.step", {}, unit, schema);
+    const Assembly a = read_assembly(folder / "a.step");
+    CHECK(a.unit == "mm");
+    REQUIRE(a.parts.size() == 7);
+    CHECK(a.shapes.size() == 5);
+    std::vector<std::string> names;
+    for (const AssemblyPart& p : a.parts) names.push_back(p.name);
+    CHECK(names == std::vector<std::string>{"Grundplatte", "Buchse links", "Buchse rechts", "Blech", "Stift",
+                                            "Stift_2", "Welle"});
+    CHECK(part(a, "Buchse links").path == std::vector<std::string>{"Baugruppe", "Träger"});
+    CHECK(part(a, "Stift_2").path == std::vector<std::string>{"Baugruppe", "Deckel"});
+    CHECK(part(a, "Welle").path == std::vector<std::string>{"Baugruppe"});
+    CHECK(part(a, "Buchse links").shape == part(a, "Buchse rechts").shape);
+    CHECK(part(a, "Stift").shape == part(a, "Stift_2").shape);
+    // All is turned by 90 degrees about x (y to z, z to -y) and then moved by (100, 200, 300) mm.
+    const auto is_at = [&](const char* name, double x, double y, double z) {
+      INFO(name);
+      const Pose& X = part(a, name).pose;
+      CHECK((X.p - 1e-3 * Vec3(100 + x, 200 - z, 300 + y)).norm() < 1e-12);
+      CHECK((X.q * Vec3(0, 0, 1) - Vec3(0, -1, 0)).norm() < 1e-12);
+    };
+    is_at("Grundplatte", 0, 0, 0);
+    is_at("Buchse links", -20, 0, -15);
+    is_at("Buchse rechts", 20, 0, -15);
+    is_at("Stift_2", 42, 0, -9);
+    is_at("Welle", -20, 0, -30);
+    const auto is_colored = [&](const char* name, double r, double g, double b) {
+      INFO(name);
+      REQUIRE(part(a, name).color);
+      const Color& c = *part(a, name).color;
+      CHECK(c[0] == Approx(r).margin(1e-6));
+      CHECK(c[1] == Approx(g).margin(1e-6));
+      CHECK(c[2] == Approx(b).margin(1e-6));
+      CHECK(c[3] == 1);
+    };
+    is_colored("Grundplatte", 0.1, 0.2, 0.9);
+    is_colored("Buchse rechts", 0.8, 0.1, 0.1);
+    is_colored("Blech", 0.2, 0.7, 0.3);
+    CHECK(!part(a, "Welle").color);
+    // 5 um of sagitta on a radius of 10 mm is 0.05 % of the radius; the area of the ring lost is two thirds of it.
+    const double box = 110 * 60 * 1e-9;
+    CHECK(volume(mesh_of(a, "Welle")) == Approx(disc(19.993, 60)).epsilon(1e-3));
+    CHECK(volume(mesh_of(a, "Grundplatte")) == Approx(15 * box - 2 * disc(26, 15) - 2 * disc(6, 15)).epsilon(1e-3));
+    CHECK(volume(mesh_of(a, "Blech")) == Approx(5 * box - 2 * disc(31, 5) - 2 * disc(6, 5)).epsilon(2e-3));
+    CHECK(volume(mesh_of(a, "Buchse links")) == Approx(disc(25.98, 15) - disc(20, 15)).epsilon(2e-3));
+    for (const auto& shape : a.shapes) {
+      const MeshReport r = report(*shape);
+      CHECK(r.closed);
+      CHECK(r.components == 1);
+      CHECK(r.degenerate_faces == 0);
+    }
+  }
+}
+
+TEST_CASE("tessellation never closes a nominal clearance, also after rounding to a file", "[step]") {
+  const TempFolder folder;
+  const StepSizes sizes;
+  write_step_assembly(folder / "a.step", sizes, "MM", "AP214IS");
+  for (const double chord : {5e-6, 40e-6}) {
+    AssemblyOptions options;
+    options.chord = chord;
+    const Assembly a = read_assembly(folder / "a.step", options);
+    for (const std::string& note : a.notes) UNSCOPED_INFO(note);
+    CHECK(a.notes.empty());
+    const auto from_file = [&](const std::string& name) {
+      write_ply(mesh_of(a, name), folder / "shape.ply", 1e-3);
+      const TriangleMesh mesh = load_mesh(folder / "shape.ply", 1e-3);
+      CHECK(report(mesh).boundary_edges == 0);
+      CHECK(report(mesh).closed);
+      return mesh;
+    };
+    struct Case {
+      const char* name;
+      double x, radius;  // mm
+      bool hole;
+    };
+    const Case cases[] = {{"Grundplatte", -20, 13, true},      {"Grundplatte", 20, 13, true},
+                          {"Grundplatte", 42, 3, true},        {"Blech", -42, 3, true},
+                          {"Buchse links", 0, 10, true},       {"Buchse links", 0, 12.99, false},
+                          {"Welle", 0, 9.9965, false},         {"Stift", 0, 2.998, false}};
+    for (const Case& c : cases) {
+      INFO(c.name << " " << c.radius << " chord " << chord);
+      const TriangleMesh mesh = from_file(c.name);
+      const Radii r = radii(mesh, c.x, c.radius - 0.1, c.radius + 0.1);
+      CHECK(r.facets >= 12);
+      // Double arithmetic of this test, far under the rounding of the file (2 nm).
+      constexpr double noise = 1e-15;
+      if (c.hole) {
+        CHECK(r.nearest >= 1e-3 * c.radius - noise);
+        CHECK(r.farthest <= 1e-3 * c.radius + chord + 1e-8);
+      } else {
+        CHECK(r.farthest <= 1e-3 * c.radius + noise);
+        CHECK(r.nearest >= 1e-3 * c.radius - chord - 1e-8);
+      }
+    }
+  }
+}
+
+TEST_CASE("faces that mate are tessellated finer than others", "[step]") {
+  const TempFolder folder;
+  write_step_assembly(folder / "a.step", {}, "MM", "AP214IS");
+  const Assembly a = read_assembly(folder / "a.step");
+  // The windows of the cover (31 mm) have no counterpart.
+  const Radii window = radii(mesh_of(a, "Blech"), 20, 15, 16);
+  CHECK(window.farthest - window.nearest > 10e-6);
+  CHECK(window.nearest >= 15.5e-3 - 1e-15);
+  AssemblyOptions fine;
+  fine.coarse_chord = 5e-6;
+  const Assembly b = read_assembly(folder / "a.step", fine);
+  const Radii finer = radii(mesh_of(b, "Blech"), 20, 15, 16);
+  CHECK(finer.facets > 2 * window.facets);
+}
+
+TEST_CASE("STEP files that cannot be read are refused in one line", "[step]") {
+  const TempFolder folder;
+  write_step_assembly(folder / "a.step", {}, "MM", "AP214IS");
+  const std::string whole = read_text(folder / "a.step");
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    folder.write("bad.step", text);
+    const std::string error = error_of(folder / "bad.step");
+    INFO(error);
+    CHECK(error.find("bad.step: ") != std::string::npos);
+    CHECK(error.find(why) != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  };
+  refused("", "empty");
+  for (int i = 0; i < 40; ++i) refused(whole.substr(0, whole.size() * static_cast<std::size_t>(i) / 40), "");
+  refused(whole.substr(0, whole.size() - 4), "truncated");
+  std::string future = whole;
+  const auto at = future.find("AUTOMOTIVE_DESIGN");
+  REQUIRE(at != std::string::npos);
+  future.replace(at, 17, "AP999_EVERYTHING_");
+  refused(future, "AP999_EVERYTHING_");
+  // A whole frame around data cut in the middle of an instance.
+  refused(whole.substr(0, whole.find("DATA;") + 5) + "\nENDSEC;\nEND-ISO-10303-21;\n", "");
+  CHECK(error_of(folder / "none.step").find("none.step") != std::string::npos);
+}

@@ -1,0 +1,94 @@
+// Hierarchies kept in a folder: the same tree comes back, and nothing but it.
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "models/shapes.hpp"
+#include "narrowphase/patch_cache.hpp"
+#include "tegotae/narrowphase/hierarchy_cache.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+bool same(const PatchTree& a, const PatchTree& b) {
+  return a.nodes().size() == b.nodes().size() &&
+         std::memcmp(a.nodes().data(), b.nodes().data(), a.nodes().size() * sizeof(PatchNode)) == 0 &&
+         a.order() == b.order() && a.origin() == b.origin() && a.radius() == b.radius();
+}
+
+std::vector<fs::path> files(const std::string& folder) {
+  std::vector<fs::path> all;
+  if (fs::exists(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+struct UseFolder {
+  explicit UseFolder(const std::string& path) { set_hierarchy_cache(path); }
+  ~UseFolder() { set_hierarchy_cache(""); }
+};
+
+}  // namespace
+
+TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
+  const TempFolder folder;
+  const UseFolder use(folder / "cache");
+  const auto mesh = std::make_shared<const TriangleMesh>(shapes::sphere(0.05, 200, 60));
+  REQUIRE(mesh->triangles.size() >= kLeastCached);
+  const PatchTree built(mesh);
+  CHECK(same(*cached_patch_tree(mesh), built));
+  REQUIRE(files(folder / "cache").size() == 1);
+  const fs::path file = files(folder / "cache")[0];
+  const std::string bytes = read_text(file);
+  // Read, not built and written again: that would put a new file in place of the one with two names.
+  fs::create_hard_link(file, folder / "second_name");
+  CHECK(same(*cached_patch_tree(mesh), built));
+  CHECK(fs::hard_link_count(file) == 2);
+
+  SECTION("small meshes are not kept") {
+    cached_patch_tree(std::make_shared<const TriangleMesh>(shapes::box({1, 1, 1})));
+    CHECK(files(folder / "cache").size() == 1);
+  }
+  SECTION("another mesh gets another file") {
+    auto moved = std::make_shared<TriangleMesh>(*mesh);
+    moved->vertices[7].x() += 1e-15;
+    cached_patch_tree(moved);
+    CHECK(files(folder / "cache").size() == 2);
+  }
+  SECTION("a damaged file is built anew and replaced") {
+    for (const std::size_t at : {0ul, 9ul, 30ul, 60ul, 70ul, 84ul, 100ul, bytes.size() / 2, bytes.size() - 3}) {
+      INFO(at);
+      std::string bad = bytes;
+      bad[at] = static_cast<char>(bad[at] ^ 0x10);
+      std::ofstream(file, std::ios::binary) << bad;
+      CHECK(same(*cached_patch_tree(mesh), built));
+      CHECK(read_text(file) == bytes);
+    }
+    for (const std::size_t n : {0ul, 50ul, 88ul, 5000ul, bytes.size() - 1}) {
+      INFO("cut to " << n);
+      std::ofstream(file, std::ios::binary) << bytes.substr(0, n);
+      CHECK(same(*cached_patch_tree(mesh), built));
+      CHECK(read_text(file) == bytes);
+    }
+    std::ofstream(file, std::ios::binary) << bytes << "x";
+    CHECK(same(*cached_patch_tree(mesh), built));
+    CHECK(read_text(file) == bytes);
+  }
+  SECTION("a folder that cannot be written is no error") {
+    folder.write("plain", "");
+    set_hierarchy_cache(folder / "plain/cache");
+    CHECK(same(*cached_patch_tree(mesh), built));
+  }
+}
+
+TEST_CASE("without a folder nothing is kept", "[patch_cache]") {
+  const TempFolder folder;
+  cached_patch_tree(std::make_shared<const TriangleMesh>(shapes::sphere(0.05, 200, 60)));
+  CHECK(files(folder / "cache").empty());
+}
