@@ -9,6 +9,7 @@
 #include "progress_line.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
+#include "view/view_run.hpp"
 
 namespace tegotae::apps {
 
@@ -20,6 +21,13 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int) {
   interrupted.store(true);
+}
+
+RunSummary run_with_page(const SceneFile& file, const RunOptions& options, const RunSettings& settings) {
+  const view::Address address = options.view_address.empty() ? view::Address() : view::parse_address(options.view_address);
+  return view::run_viewed(file, settings, address, interrupted, [&](const std::string& url) {
+    (options.json ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends the run)" << std::endl;
+  });
 }
 
 std::string first_line(const std::string& text) {
@@ -34,6 +42,10 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
   app.add_option("--record", options.record, "Write every pose and wrench to a CSV file")->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
+  auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
+  app.add_option("--view-address", options.view_address, "Where to serve it (127.0.0.1, any free port)")
+      ->needs(view)
+      ->type_name("ADDRESS[:PORT]");
 }
 
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
@@ -69,17 +81,17 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
 
   RunSummary summary;
   {
-    const bool show = !options.json && isatty(STDOUT_FILENO) != 0;
+    const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
     ProgressLine line(progress, depth_offset, show);
-    summary = run_session(file, settings);
+    summary = options.view ? run_with_page(file, options, settings) : run_session(file, settings);
   }
   summary.depth_m += depth_offset;
   if (options.json)
     std::cout << json_line(summary, file) << std::endl;
   else
     std::cout << summary_text(summary, options, goal, interrupted.load()) << std::flush;
-  // A run that was asked to be short is done when its time is over.
-  const bool done = summary.completed || (options.seconds > 0 && !interrupted.load());
+  // A run that was asked to be short is done when its time is over, one that was looked at whenever it ends.
+  const bool done = summary.completed || (options.seconds > 0 && !interrupted.load()) || options.view;
   return done && summary.penetrating == 0 ? kDone : kRunFailed;
 }
 

@@ -20,6 +20,8 @@ struct RunOptions {
   double seconds = 0;  ///< 0: to the end of the script
   std::string record;
   bool json = false;
+  bool view = false;
+  std::string view_address;  ///< empty: the loopback, any free port
 };
 
 void add_run_options(CLI::App& app, RunOptions& options);

@@ -19,6 +19,10 @@ constexpr std::int64_t kMaxStepNs = 100'000;
 // A servo that was held up for longer does not find the hand far away: the script waits.
 constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
 
+// How a led hand moves: it lags by this time (s), which smooths the steps in which a mouse reports, and is never faster
+// than this (m/s, rad/s), so that a jump of the mouse is a motion of the hand.
+constexpr double kHandLag = 0.03, kHandSpeed = 0.4, kHandTurning = 6.0;
+
 constexpr double kTwoPi = 6.283185307179586;
 
 void require(bool good, const char* setting) {
@@ -59,6 +63,11 @@ PenBodySettings body_settings(const SimulatedDeviceSettings& s) {
           s.friction};
 }
 
+Vec3 at_most(const Vec3& value, double norm) {
+  const double n = value.norm();
+  return n > norm ? Vec3((norm / n) * value) : value;
+}
+
 Vec3 rounded(const Vec3& value, double resolution) {
   if (resolution == 0) return value;
   return resolution * (value / resolution).array().round().matrix();
@@ -88,11 +97,30 @@ struct SimulatedDevice::Impl {
   Twist filtered;
   std::uint64_t sequence = 0;
 
+  const HandGuide* guide = nullptr;
+  bool led = false;   // by the guide; by the script until then
+  Pose goal, hand;    // where the guide leads, and where the led hand is
+  Twist hand_rate;    // `v` of the file frame
+
+  void look_at_guide() {
+    if (!guide || !guide->target(goal) || led) return;
+    led = true;
+    hand = script.pose(script_time(time_ns.load(std::memory_order_relaxed)));
+  }
+
+  void move_hand(double h, const Vec3& center) {
+    const Displacement way = displacement(hand, goal, center);
+    const double rate = 1 / (kHandLag + h);
+    const Twist of_center = {at_most(rate * way.dp, kHandSpeed), at_most(rate * way.dr, kHandTurning)};
+    hand = displaced(hand, center, h * Displacement{of_center.v, of_center.w});
+    hand_rate = {of_center.v - of_center.w.cross(hand.q * center), of_center.w};
+  }
+
   double script_time(std::int64_t ns) const { return script.begin() + 1e-9 * static_cast<double>(ns); }
 
   PenTarget target(double t, const Vec3& center) const {
-    const Pose pose = script.pose(t);
-    const Twist rate = script.velocity(t);
+    const Pose pose = led ? hand : script.pose(t);
+    const Twist rate = led ? hand_rate : script.velocity(t);
     const Vec3 arm = pose.q * center;
     return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
   }
@@ -100,9 +128,11 @@ struct SimulatedDevice::Impl {
   void advance(std::int64_t dt_ns, const Vec3& center) {
     std::int64_t now = time_ns.load(std::memory_order_relaxed);
     const std::int64_t end = now + dt_ns;
+    look_at_guide();
     while (now < end) {
       const std::int64_t step = std::min(kMaxStepNs, end - now);
       const double h = 1e-9 * static_cast<double>(step);
+      if (led) move_hand(h, center);
       body.step(h, body_constants, target(script_time(now) + 0.5 * h, center), rendered);
       now += step;
     }
@@ -185,6 +215,10 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   // The difference to the last sample would be a jump of the point, not a motion.
   impl_->sampled = false;
   Device::set_center(center_now);
+}
+
+void SimulatedDevice::follow(const HandGuide& guide) noexcept {
+  impl_->guide = &guide;
 }
 
 void SimulatedDevice::advance(double dt) noexcept {

@@ -72,6 +72,7 @@ class Session {
     if (!settings.record.empty())
       recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous);
     if (settings.progress) settings.progress->duration = duration_;
+    if (settings.guide) device_.follow(*settings.guide);
   }
 
   RunSummary run() {
@@ -97,6 +98,7 @@ class Session {
     const auto ticks = static_cast<std::int64_t>(std::ceil(duration_ / kPeriod - 1e-6));
     for (std::int64_t i = 0; i < ticks && !stopped(); ++i) {
       const std::int64_t now = i * kPeriodNs;
+      if (settings_.observer) settings_.observer->before_tick(1e-9 * static_cast<double>(now));
       servo_.tick(now);
       tick(static_cast<double>(i) * kPeriod, kPeriod, now);
       device_.advance(kPeriod);
@@ -135,7 +137,9 @@ class Session {
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     for (const Pose& X : report.pieces) check_.add(X);
-    if (recorder_) record(number, t, pen, report, settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0);
+    const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
+    if (recorder_) record(number, t, pen, report, tick_us);
+    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us});
     if (settings_.progress) show(t, pen, report);
   }
 

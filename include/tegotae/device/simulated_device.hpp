@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tegotae/device/device.hpp"
+#include "tegotae/device/hand_guide.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
@@ -50,6 +51,9 @@ class SimulatedDevice final : public Device {
   ForceOff reason() const noexcept override;
   void set_center(const Vec3& center) noexcept override;
 
+  /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
+  /// keeps a reference.
+  void follow(const HandGuide& guide) noexcept;
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
   void advance(double dt) noexcept;
   /// The script's time, s: begin of the script plus the time advanced. May be called from any thread.

@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <string>
 
+#include "tegotae/device/hand_guide.hpp"
+#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
 namespace tegotae {
@@ -18,11 +21,32 @@ struct RunProgress {
   std::atomic<double> force{0};  ///< N
 };
 
+/// A tick of the contact loop, for whoever looks on.
+struct TickView {
+  std::uint64_t tick;
+  double t;  ///< s since the start
+  const PenSample& pen;
+  const HapticLoop& loop;  ///< its report() and limits() are of this tick
+  double tick_us;          ///< time the tick took; 0 in virtual time
+};
+
+/// Looks on while a session runs. Called in the contact loop's thread.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  /// Before the tick at `t` (s since the start), in virtual time only: may wait, to hold the run or to slow it down.
+  virtual void before_tick(double t) = 0;
+  /// After the tick. In real time it must neither wait nor allocate.
+  virtual void after_tick(const TickView& tick) noexcept = 0;
+};
+
 struct RunSettings {
   bool real_time = true;  ///< false: virtual time, as fast as it goes and the same on every run
   double seconds = 0;     ///< how long; 0: to the end of the script and kSettleTime more
   std::string record;     ///< recording (CSV); empty: none
   RunProgress* progress = nullptr;
+  RunObserver* observer = nullptr;
+  const HandGuide* guide = nullptr;  ///< leads the hand away from the script
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };
 
