@@ -23,18 +23,30 @@ void on_signal(int) {
   interrupted.store(true);
 }
 
-RunSummary run_with_page(const SceneFile& file, const RunOptions& options, const RunSettings& settings) {
-  const view::Address address = options.view_address.empty() ? view::Address() : view::parse_address(options.view_address);
-  return view::run_viewed(file, settings, address, interrupted, [&](const std::string& url) {
-    (options.json ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends the run)" << std::endl;
-  });
-}
-
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
 }  // namespace
+
+std::atomic<bool>& catch_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  return interrupted;
+}
+
+CLI::Option* add_view_address(CLI::App& app, std::string& address) {
+  return app.add_option("--view-address", address, "Where to serve the page (127.0.0.1, any free port)")
+      ->type_name("ADDRESS[:PORT]");
+}
+
+view::Address view_address(const std::string& text) {
+  return text.empty() ? view::Address() : view::parse_address(text);
+}
+
+void announce_page(const std::string& url, bool quiet) {
+  (quiet ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends it)" << std::endl;
+}
 
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
@@ -43,9 +55,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--record", options.record, "Write every pose and wrench to a CSV file")->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
   auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
-  app.add_option("--view-address", options.view_address, "Where to serve it (127.0.0.1, any free port)")
-      ->needs(view)
-      ->type_name("ADDRESS[:PORT]");
+  add_view_address(app, options.view_address)->needs(view);
 }
 
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
@@ -75,15 +85,15 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.seconds = options.seconds;
   settings.record = options.record;
   settings.progress = &progress;
-  settings.stop = &interrupted;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  settings.stop = &catch_interrupts();
 
   RunSummary summary;
   {
     const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
     ProgressLine line(progress, depth_offset, show);
-    summary = options.view ? run_with_page(file, options, settings) : run_session(file, settings);
+    summary = options.view ? view::run_viewed(file, settings, view_address(options.view_address), interrupted,
+                                              [&](const std::string& url) { announce_page(url, options.json); })
+                           : run_session(file, settings);
   }
   summary.depth_m += depth_offset;
   if (options.json)

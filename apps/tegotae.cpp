@@ -7,12 +7,24 @@
 #include "bench/scenes.hpp"
 #include "check.hpp"
 #include "run_options.hpp"
+#include "view/replay.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
 
 namespace {
 constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+
+int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
+                   const std::string& address) {
+  const std::string bundle = view::replay_bundle(recording, load_scene(scene));
+  if (html.empty())
+    view::serve_replay(bundle, view_address(address), catch_interrupts(),
+                       [](const std::string& url) { announce_page(url); });
+  else
+    view::write_replay(bundle, html);
+  return kDone;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -31,6 +43,14 @@ int main(int argc, char** argv) {
         return "must be a positive number, at most a million";
       })
       ->type_name("S");
+
+  std::string recording, recorded_scene, html, address;
+  CLI::App* replay = app.add_subcommand("replay", "Serve a page that shows a recording, until Ctrl-C");
+  replay->add_option("RECORDING", recording, "What --record wrote")->required();
+  replay->add_option("SCENE", recorded_scene, "The scene file of that run")->required();
+  auto* file = replay->add_option("--html", html, "Write the page to a file that needs no server, and be done")
+                   ->type_name("FILE");
+  add_view_address(*replay, address)->excludes(file);
 
   std::vector<std::string> files;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
@@ -54,6 +74,7 @@ int main(int argc, char** argv) {
   return guarded_main(app, argc, argv, [&] {
     if (check->parsed()) return check_files(files);
     if (measure->parsed()) return bench::run_bench(bench_options);
+    if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     return run_and_report(load_scene(scene), options, scene);
   });
 }

@@ -36,6 +36,13 @@ Vec3 center_of(const Scene& scene) {
   return mass_properties(mesh, report(mesh).closed, scene.contact.density).center;
 }
 
+/// Why the force is off, by number.
+json force_off_names() {
+  json names = json::array();
+  for (std::uint32_t i = 0; i < 8; ++i) names.push_back(to_string(static_cast<ForceOff>(i)));
+  return names;
+}
+
 }  // namespace
 
 struct LiveView::Run {
@@ -63,8 +70,7 @@ void LiveView::show(const SceneFile& file) {
   bundle.about["generation"] = ++generation_;
   bundle.about["virtual_time"] = virtual_time_;
   bundle.about["restartable"] = restartable_;
-  bundle.about["force_limit"] = file.device.limits.force;
-  bundle.about["torque_limit"] = file.device.limits.torque;
+  bundle.about["reasons"] = force_off_names();
   run_ = std::make_shared<Run>(file, std::make_shared<const std::string>(bundle.bytes()));
   looped_ = run_.get();
   paced_ns_ = 0;

@@ -96,9 +96,10 @@ class Session {
 
   void run_virtual_time() {
     const auto ticks = static_cast<std::int64_t>(std::ceil(duration_ / kPeriod - 1e-6));
-    for (std::int64_t i = 0; i < ticks && !stopped(); ++i) {
+    for (std::int64_t i = 0; i < ticks; ++i) {
       const std::int64_t now = i * kPeriodNs;
       if (settings_.observer) settings_.observer->before_tick(1e-9 * static_cast<double>(now));
+      if (stopped()) break;
       servo_.tick(now);
       tick(static_cast<double>(i) * kPeriod, kPeriod, now);
       device_.advance(kPeriod);
