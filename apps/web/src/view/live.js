@@ -14,7 +14,9 @@ export class Live {
   }
 
   async scene() {
-    const answer = await fetch("scene", { headers: this.headers });
+    const answer = await fetch("scene", { headers: this.headers }).catch(() => {
+      throw new Error("The program does not answer.");
+    });
     if (!answer.ok) throw new Error((await answer.text()).trim());
     return readBundle(await answer.arrayBuffer());
   }

@@ -180,4 +180,7 @@ window.__tegotae = {
   center: () => overlay.center.clone().applyMatrix4(stage.held.group.matrixWorld).toArray(),
 };
 
-begin().catch((error) => showMessage(error instanceof TypeError ? "The program does not answer." : error.message));
+begin().catch((error) => {
+  showMessage(error.message);
+  throw error; // for the console
+});

@@ -26,6 +26,7 @@ const plots = [
 export class Plots {
   // seek(t): where somebody clicks into a plot of a recording; null in a live run.
   constructor(parent, seek) {
+    this.parent = parent;
     this.seek = seek;
     this.times = [];
     this.t = 0;
@@ -44,7 +45,6 @@ export class Plots {
       return { ...plot, frame, columns: plot.series.map(() => []), canvas: null };
     });
     this.build();
-    this.parent = parent;
     new ResizeObserver(() => this.fit()).observe(parent.parentElement);
   }
 
