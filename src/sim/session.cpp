@@ -70,7 +70,7 @@ class Session {
     way_ = way.norm();
     if (way_ > 0) direction_ = way / way_;
     if (!settings.record.empty())
-      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous);
+      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
     if (settings.guide) device_.follow(*settings.guide);
   }
@@ -142,6 +142,10 @@ class Session {
     if (recorder_) record(number, t, pen, report, tick_us);
     if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us});
     if (settings_.progress) show(t, pen, report);
+  }
+
+  RecordingInfo info() const {
+    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {
