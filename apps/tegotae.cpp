@@ -17,7 +17,8 @@ constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or
 
 int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
                    const std::string& address) {
-  const std::string bundle = view::replay_bundle(recording, load_scene(scene));
+  const std::string bundle =
+      view::replay_bundle(recording, load_scene(scene.empty() ? view::recorded_scene(recording) : scene));
   if (html.empty())
     view::serve_replay(bundle, view_address(address), catch_interrupts(),
                        [](const std::string& url) { announce_page(url); });
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
   std::string recording, recorded_scene, html, address;
   CLI::App* replay = app.add_subcommand("replay", "Serve a page that shows a recording, until Ctrl-C");
   replay->add_option("RECORDING", recording, "What --record wrote")->required();
-  replay->add_option("SCENE", recorded_scene, "The scene file of that run")->required();
+  replay->add_option("SCENE", recorded_scene, "Its scene file (the one that the recording names)");
   auto* file = replay->add_option("--html", html, "Write the page to a file that needs no server, and be done")
                    ->type_name("FILE");
   add_view_address(*replay, address)->excludes(file);

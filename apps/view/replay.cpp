@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tegotae/core/error.hpp"
+#include "tegotae/record/recording.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "view/bundle.hpp"
 #include "view/frame_maker.hpp"
-#include "view/recording.hpp"
 #include "view/server.hpp"
 #include "view/wire.hpp"
 #include "web/page.hpp"
@@ -97,8 +98,19 @@ class ReplaySource final : public ViewSource {
 
 }  // namespace
 
+std::string recorded_scene(const std::string& path) {
+  const std::string scene = read_recording(path).info.scene;
+  if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
+  const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
+  for (const std::filesystem::path& file : {std::filesystem::path(scene), beside})
+    if (std::filesystem::exists(file)) return file.string();
+  throw Error(path + ": its scene " + scene + " is gone; add the scene file to the command");
+}
+
 std::string replay_bundle(const std::string& path, SceneFile file) {
-  const std::vector<RecordFrame> rows = read_recording(path);
+  const Recording recording = read_recording(path);
+  const std::vector<RecordFrame>& rows = recording.frames;
+  if (rows.empty()) throw Error(path + ": has no rows");
   Follower follower(file.scene, path, rows.front().x);
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
   std::vector<float> frames, pairs;
@@ -125,6 +137,7 @@ std::string replay_bundle(const std::string& path, SceneFile file) {
   bundle.about["pair_begin"] = bundle.add(pair_begin);
   nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
+  if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
   bundle.about["notes"] = notes;
   return bundle.bytes();
 }

@@ -9,7 +9,11 @@
 
 namespace tegotae::view {
 
-/// The bundle of a recording (the file at `path`) over its scene, for the page. Contacts are not in a recording: they
+/// The scene file that a recording (the file at `path`) says it is of: from here, or from the recording's folder. Throws
+/// Error when it does not say or there is no such file.
+std::string recorded_scene(const std::string& path);
+
+/// The bundle of a recording over its scene, for the page. Contacts are not in a recording: they
 /// are found anew, by a contact loop that is led along the recorded poses and a little
 /// towards the pen. Long recordings are thinned.
 /// Throws Error when the recording cannot be read or the part would stand in another one.

@@ -6,7 +6,6 @@
 #include "apps/run_program.hpp"
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
-#include "view/recording.hpp"
 #include "view/replay.hpp"
 #include "view/wire.hpp"
 
@@ -45,38 +44,6 @@ void write_cubes(const TempFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("a recording is read whatever the order of its columns, and without its cut last row") {
-  const TempFolder folder;
-  folder.write("r.csv", kHeader + row(0, 0.018) + row(1, 0.017) + "2,0,0.002,0,0,0.0");
-  const auto rows = read_recording(folder / "r.csv");
-  REQUIRE(rows.size() == 2);
-  CHECK(rows[1].tick == 1);
-  CHECK(rows[1].x.p.z() == 0.017);
-  CHECK(std::isinf(rows[1].gap));
-  CHECK(rows[1].tick_us == 12.5);
-}
-
-TEST_CASE("what is no recording is refused with file, line and reason") {
-  const TempFolder folder;
-  const auto why = [&](const std::string& text) {
-    folder.write("r.csv", text);
-    try {
-      read_recording(folder / "r.csv");
-    } catch (const Error& e) {
-      return std::string(e.what()).substr((folder / "r.csv").size());
-    }
-    return std::string("read");
-  };
-  CHECK_THAT(why("a,b\n1,2\n"), Contains(":1: column tick is missing"));
-  CHECK_THAT(why(kHeader), Contains("no rows"));
-  CHECK_THAT(why(kHeader + row(0, 1) + "1,2,3\n"), Contains(":3: has 3 columns, not 26"));
-  CHECK_THAT(why(kHeader + "x" + row(0, 1)), Contains(":2: \"x0\" is not a number"));
-  std::string bad = row(0, 1);
-  bad.replace(bad.find("0,0,1.0"), 1, "nan");
-  CHECK_THAT(why(kHeader + bad), Contains("not finite"));
-  CHECK_THROWS_AS(read_recording(folder / "missing.csv"), Error);
-}
-
 TEST_CASE("a replay finds the contacts of the recorded poses") {
   const TempFolder folder;
   write_cubes(folder);
@@ -108,6 +75,17 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
     CHECK(at[6] > 0);
     CHECK(std::floor(at[7] / 2) == 0);        // the floor is part 0
   }
+}
+
+TEST_CASE("a recording knows its scene") {
+  const TempFolder folder;
+  write_cubes(folder);
+  folder.write("r.csv", kHeader + row(0, 0.018));
+  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("does not say which scene"));
+  folder.write("r.csv.info.json", R"({"scene": "scene.toml"})");
+  CHECK(recorded_scene(folder / "r.csv") == folder / "scene.toml");
+  folder.write("r.csv.info.json", R"({"scene": "gone.toml"})");
+  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("gone.toml is gone"));
 }
 
 TEST_CASE("a recording of another scene is refused") {
