@@ -106,7 +106,7 @@ export function addHelp() {
 // actions: key -> function. Arrow keys go to the camera unless the hand wants them.
 export function listenToKeys({ actions, viewpoint, hand }) {
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event)) return;
+    if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event) || $("help").open) return;
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     const by = arrows[event.key];
     if (hand.key(event)) {
