@@ -24,13 +24,13 @@ struct Frame {
   enum Flag : std::uint32_t { touching = 1, cut = 2, overflow = 4, force_on = 8 };
 
   std::uint64_t tick = 0;
-  double t = 0;             ///< s
-  double x[7] = {};         ///< pose of the held part's file frame: p (m), q (w first)
-  double y[7] = {};         ///< where the pen wants it
-  double wrench[6] = {};    ///< on the pen, N, N·m, at the held part's center of mass
-  double gap = 0;           ///< m, +inf: nothing is near
-  double tick_us = 0;       ///< 0 in virtual time
-  double servo_late_us = 0; ///< NaN in virtual time
+  double t = 0;              ///< s
+  double x[7] = {};          ///< pose of the held part's file frame: p (m), q (w first)
+  double y[7] = {};          ///< where the pen wants it
+  double wrench[6] = {};     ///< on the pen, N, N·m, at the held part's center of mass
+  double gap = 0;            ///< m, +inf: nothing is near
+  double tick_us = 0;        ///< 0 in virtual time
+  double servo_late_us = 0;  ///< NaN in virtual time
   std::uint32_t contacts = 0;
   std::uint32_t limits = 0;  ///< pairs there are, contacts included; `pair_count` of them are below
   std::uint32_t flags = 0;

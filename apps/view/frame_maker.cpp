@@ -1,7 +1,5 @@
 #include "view/frame_maker.hpp"
 
-#include <limits>
-
 namespace tegotae::view {
 
 FrameMaker::FrameMaker(const Scene& scene) {
@@ -42,7 +40,7 @@ void FrameMaker::fill(const TickView& tick, Frame& frame) const {
   store(tick.pen.state.pose, frame.y);
   store(tick.pen.wrench, frame.wrench);
   frame.tick_us = tick.tick_us;
-  frame.servo_late_us = std::numeric_limits<double>::quiet_NaN();
+  frame.servo_late_us = tick.servo_late_us;
   if (tick.pen.status == DeviceStatus::enabled) frame.flags |= Frame::force_on;
   frame.reason = static_cast<std::uint32_t>(tick.pen.reason);
 }

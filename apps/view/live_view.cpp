@@ -39,7 +39,7 @@ Vec3 center_of(const Scene& scene) {
 /// Why the force is off, by number.
 json force_off_names() {
   json names = json::array();
-  for (std::uint32_t i = 0; i < 8; ++i) names.push_back(to_string(static_cast<ForceOff>(i)));
+  for (std::uint32_t i = 0; i <= static_cast<std::uint32_t>(ForceOff::not_finite); ++i) names.push_back(to_string(static_cast<ForceOff>(i)));
   return names;
 }
 
@@ -47,7 +47,10 @@ json force_off_names() {
 
 struct LiveView::Run {
   Run(const SceneFile& file, std::shared_ptr<const std::string> bundle_in)
-      : maker(file.scene), held(held_number(file.scene)), parts(file.scene.parts.size()), bundle(std::move(bundle_in)) {}
+      : maker(file.scene),
+        held(held_number(file.scene)),
+        parts(file.scene.parts.size()),
+        bundle(std::move(bundle_in)) {}
   FrameMaker maker;
   HandGuide guide;
   std::size_t held, parts;

@@ -131,6 +131,8 @@ std::string replay_bundle(const std::string& path, SceneFile file) {
   held_part(file.scene).pose = rows.front().x;
   add_scene(bundle, file.scene, follower.center());
   bundle.about["mode"] = "replay";
+  bundle.about["virtual_time"] =
+      std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
   bundle.about["title"] = path.substr(path.find_last_of('/') + 1);
   bundle.about["frames"] = bundle.add(frames);
   bundle.about["pairs"] = bundle.add(pairs);

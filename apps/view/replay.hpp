@@ -9,8 +9,8 @@
 
 namespace tegotae::view {
 
-/// The scene file that a recording (the file at `path`) says it is of: from here, or from the recording's folder. Throws
-/// Error when it does not say or there is no such file.
+/// The scene file that a recording (the file at `path`) says it is of: from here, or from the recording's folder.
+/// Throws Error when it does not say or there is no such file.
 std::string recorded_scene(const std::string& path);
 
 /// The bundle of a recording over its scene, for the page. Contacts are not in a recording: they

@@ -42,11 +42,12 @@ const char* or_empty(const char* text) {
 
 void respond(mg_connection* connection, int status, const char* reason, const char* type, std::string_view body,
              const std::string& extra = {}) {
-  std::string head = "HTTP/1.1 " + std::to_string(status) + " " + reason + "\r\nContent-Type: " + type +
-                     "\r\nContent-Length: " + std::to_string(body.size()) +
-                     "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n" +
-                     // What could not be read to its end ends the connection.
-                     (status == 200 ? "" : "Connection: close\r\n") + extra + "\r\n";
+  std::string head =
+      "HTTP/1.1 " + std::to_string(status) + " " + reason + "\r\nContent-Type: " + type +
+      "\r\nContent-Length: " + std::to_string(body.size()) +
+      "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n" +
+      // What could not be read to its end ends the connection.
+      (status == 200 ? "" : "Connection: close\r\n") + extra + "\r\n";
   mg_write(connection, head.data(), head.size());
   mg_write(connection, body.data(), body.size());
 }
@@ -205,9 +206,23 @@ struct Server::Impl {
 Server::Server(const Address& address, ViewSource& source) : impl_(std::make_unique<Impl>(source)) {
   const std::string port = address.text();
   const std::string header = std::to_string(kMostHeader);
-  const char* options[] = {"listening_ports", port.c_str(), "num_threads", kThreads.c_str(), "request_timeout_ms",
-                           kTimeout, "keep_alive_timeout_ms", "1000", "enable_keep_alive", "yes", "max_request_size",
-                           header.c_str(), "tcp_nodelay", "1", "linger_timeout_ms", "0", nullptr};
+  const char* options[] = {"listening_ports",
+                           port.c_str(),
+                           "num_threads",
+                           kThreads.c_str(),
+                           "request_timeout_ms",
+                           kTimeout,
+                           "keep_alive_timeout_ms",
+                           "1000",
+                           "enable_keep_alive",
+                           "yes",
+                           "max_request_size",
+                           header.c_str(),
+                           "tcp_nodelay",
+                           "1",
+                           "linger_timeout_ms",
+                           "0",
+                           nullptr};
   mg_callbacks callbacks{};
   callbacks.log_message = [](const mg_connection* connection, const char* message) {
     auto* impl = static_cast<Impl*>(mg_get_user_data(mg_get_context(connection)));

@@ -98,9 +98,9 @@ struct SimulatedDevice::Impl {
   std::uint64_t sequence = 0;
 
   const HandGuide* guide = nullptr;
-  bool led = false;   // by the guide; by the script until then
-  Pose goal, hand;    // where the guide leads, and where the led hand is
-  Twist hand_rate;    // `v` of the file frame
+  bool led = false;  // by the guide; by the script until then
+  Pose goal, hand;   // where the guide leads, and where the led hand is
+  Twist hand_rate;   // `v` of the file frame
 
   void look_at_guide() {
     if (!guide || !guide->target(goal) || led) return;

@@ -140,8 +140,13 @@ class Session {
     for (const Pose& X : report.pieces) check_.add(X);
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (recorder_) record(number, t, pen, report, tick_us);
-    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us});
+    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, servo_late_us()});
     if (settings_.progress) show(t, pen, report);
+  }
+
+  double servo_late_us() const {
+    return settings_.real_time ? 1e-3 * static_cast<double>(servo_.newest_late_ns())
+                               : std::numeric_limits<double>::quiet_NaN();
   }
 
   RecordingInfo info() const {

@@ -71,6 +71,7 @@ test("a live run: parts, arrows, plots that move", async (browser) => {
   }
   assert.notDeepEqual(later.plots[0].last, first.plots[0].last, "the position moves");
   assert.ok(later.plots[4].last[0] > 0, "a tick takes time");
+  assert.ok(later.plots[5].last[0] > 0, "the servo wakes up a little late");
   assert.match(await page.textContent("tr[data-id=force]"), /\d\.\d\d\s*N/);
   assert.deepEqual(page.complaints, []);
   await page.close();

@@ -36,7 +36,7 @@ async function light() {
   await page.waitForSelector("#parts li");
   await page.selectOption("#speed", "0.5");
   await page.click("#play");
-  await until(page, (s) => s.frame?.t > 5.0);
+  await until(page, (s) => s.frame?.t > 4.8);
   await page.click("#play");
   await until(page, (s) => s.status.paused);
   await aim(page);

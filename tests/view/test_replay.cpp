@@ -32,9 +32,10 @@ std::string row(int tick, double z) {
 
 // Two cubes of 10 mm, the held one 8 mm over the other.
 void write_cubes(const TempFolder& folder) {
-  folder.write("cube.obj",
-               "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
-               "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  folder.write(
+      "cube.obj",
+      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
   folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.018,1,0,0,0\n");
   folder.write("scene.toml",
                "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
@@ -63,17 +64,17 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
   const std::vector<float> frames = floats(about.at("frames")), pairs = floats(about.at("pairs"));
   REQUIRE(frames.size() == 81 * kFrameFloats);
   const float* last = frames.data() + 80 * kFrameFloats;
-  CHECK(last[1] == 80);                                    // tick
-  CHECK(std::abs(last[4 + 2] - 0.01001) < 1e-8);           // x, height
+  CHECK(last[1] == 80);                           // tick
+  CHECK(std::abs(last[4 + 2] - 0.01001) < 1e-8);  // x, height
   const auto count = static_cast<std::size_t>(last[31]);
   REQUIRE(count >= 4);  // the block's corners
   const float* at = pairs.data() + pairs.size() - count * kPairFloats;
   for (std::size_t i = 0; i < count; ++i, at += kPairFloats) {
-    CHECK(std::abs(at[2] - 0.005) < 6e-5);    // on the block's bottom
-    CHECK(std::abs(at[5] - 1) < 1e-4);        // from the floor to the block
-    CHECK(at[6] < 6e-5);                      // gap: the loop is led up to 50 µm farther
+    CHECK(std::abs(at[2] - 0.005) < 6e-5);  // on the block's bottom
+    CHECK(std::abs(at[5] - 1) < 1e-4);      // from the floor to the block
+    CHECK(at[6] < 6e-5);                    // gap: the loop is led up to 50 µm farther
     CHECK(at[6] > 0);
-    CHECK(std::floor(at[7] / 2) == 0);        // the floor is part 0
+    CHECK(std::floor(at[7] / 2) == 0);  // the floor is part 0
   }
 }
 
@@ -105,13 +106,15 @@ TEST_CASE("the program writes a page that needs no server") {
   const TempFolder folder;
   write_cubes(folder);
   folder.write("r.csv", kHeader + row(0, 0.018) + row(1, 0.017));
-  const Output o = run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html " +
-                                              (folder / "r.html"));
+  const Output o = run_program(
+      "tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html " + (folder / "r.html"));
   INFO(o.err);
   CHECK(o.code == 0);
   const std::string page = read_text(folder / "r.html");
   CHECK_THAT(page, Contains("id=\"data\">"));
   CHECK(page.find("http://") == page.find("http://www.w3.org"));  // loads nothing from elsewhere
-  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html /nowhere/x").code == 2);
-  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --view-address x").code == 2);
+  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html /nowhere/x")
+            .code == 2);
+  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --view-address x")
+            .code == 2);
 }

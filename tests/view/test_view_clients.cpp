@@ -91,7 +91,8 @@ TEST_CASE("only the page of this address with its token is served") {
   CHECK(ask(s.port, get(s, "/etc/passwd")) == 404);
   CHECK(ask(s.port, get(s, "/../../etc/passwd")) != 200);
 
-  for (const char* path : {"/", "/?token=", "/?token=00000000000000000000000000000000", "/scene", "/stream", "/command"}) {
+  for (const char* path :
+       {"/", "/?token=", "/?token=00000000000000000000000000000000", "/scene", "/stream", "/command"}) {
     INFO(path);
     CHECK(ask(s.port, {"GET", path, "", s.host(), "", "", ""}) == 403);
     CHECK(ask(s.port, {"GET", path, std::string(32, '0'), s.host(), "", "", ""}) == 403);
@@ -114,11 +115,11 @@ TEST_CASE("commands are bounded and checked") {
   Served s({"peg_in_hole", "--view", "--fast", "--json"});
   CHECK(ask(s.port, command(s, R"({"do":"step","ticks":5})")) == 200);
   CHECK(ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})")) == 200);
-  for (const char* bad :
-       {"", "{", "[]", "null", "7", R"({"do":7})", R"({"do":"fly"})", R"({"do":"lead"})", R"({"do":"lead","pose":[1,2]})",
-        R"({"do":"lead","pose":[1,2,3,0,0,0,0]})", R"({"do":"lead","pose":[1e300,2,3,1,0,0,0]})",
-        R"({"do":"lead","pose":["a",2,3,1,0,0,0]})", R"({"do":"hold","part":99})", R"({"do":"hold","part":-1})",
-        R"({"do":"step"})", R"({"do":"speed","factor":"x"})", R"([[[[[[1]]]]]])", "{\"do\":\"\xff\xfe\"}"}) {
+  for (const char* bad : {"", "{", "[]", "null", "7", R"({"do":7})", R"({"do":"fly"})", R"({"do":"lead"})",
+                          R"({"do":"lead","pose":[1,2]})", R"({"do":"lead","pose":[1,2,3,0,0,0,0]})",
+                          R"({"do":"lead","pose":[1e300,2,3,1,0,0,0]})", R"({"do":"lead","pose":["a",2,3,1,0,0,0]})",
+                          R"({"do":"hold","part":99})", R"({"do":"hold","part":-1})", R"({"do":"step"})",
+                          R"({"do":"speed","factor":"x"})", R"([[[[[[1]]]]]])", "{\"do\":\"\xff\xfe\"}"}) {
     INFO(bad);
     CHECK(ask(s.port, command(s, bad)) == 400);
   }
@@ -197,18 +198,27 @@ TEST_CASE("garbage") {
     if (!connection.open()) continue;
     std::string bytes;
     switch (i % 6) {
-      case 0: bytes = garbage(random, 3000); break;
-      case 1: bytes = "GET /" + garbage(random, 200) + " HTTP/1.1\r\n\r\n"; break;
-      case 2: bytes = "GET / HTTP/1.1\r\nHost: " + std::string(20000, 'a') + "\r\n\r\n"; break;
-      case 3: bytes = text_of(command(s, garbage(random, 500))); break;
+      case 0:
+        bytes = garbage(random, 3000);
+        break;
+      case 1:
+        bytes = "GET /" + garbage(random, 200) + " HTTP/1.1\r\n\r\n";
+        break;
+      case 2:
+        bytes = "GET / HTTP/1.1\r\nHost: " + std::string(20000, 'a') + "\r\n\r\n";
+        break;
+      case 3:
+        bytes = text_of(command(s, garbage(random, 500)));
+        break;
       case 4:  // half a body, then gone
         bytes = text_of(command(s, std::string(1000, ' ')));
         bytes.resize(bytes.size() - 500);
         break;
       default: {
         Request upgrade = get(s, "/stream");
-        upgrade.extra = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-                        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+        upgrade.extra =
+            "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
         bytes = text_of(upgrade) + "\x82\xff\x00\x00\x00\x00\x7f\x00\x00\x00" + garbage(random, 500);
       }
     }
@@ -230,9 +240,15 @@ TEST_CASE("fifty at once") {
       std::mt19937 random(static_cast<unsigned>(i));
       for (int k = 0; k < 4; ++k) {
         switch ((i + k) % 4) {
-          case 0: ask(s.port, get(s, "/scene")); break;
-          case 1: ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})")); break;
-          case 2: ask(s.port, get(s, "/stream")); break;
+          case 0:
+            ask(s.port, get(s, "/scene"));
+            break;
+          case 1:
+            ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})"));
+            break;
+          case 2:
+            ask(s.port, get(s, "/stream"));
+            break;
           default: {
             const Connection c(s.port);
             c.send(garbage(random, 1000));

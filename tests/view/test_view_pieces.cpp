@@ -22,8 +22,8 @@ TEST_CASE("addresses") {
   CHECK(parse_address("[::1]:80").text() == "[::1]:80");
   CHECK(parse_address("0.0.0.0").wildcard());
   CHECK_FALSE(parse_address("10.0.0.1:1").wildcard());
-  for (const char* bad : {"", "localhost", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:70000", "127.0.0.1:-1", "::1", "1.2.3",
-                          "[::1", "127.0.0.1:80s", "8080"}) {
+  for (const char* bad : {"", "localhost", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:70000", "127.0.0.1:-1", "::1",
+                          "1.2.3", "[::1", "127.0.0.1:80s", "8080"}) {
     INFO(bad);
     CHECK_THROWS_AS(parse_address(bad), Error);
   }

@@ -24,7 +24,7 @@ struct TickReport {
   int iterations = 0;        ///< pivots of all programmes
   ResolveStatus status = ResolveStatus::not_needed;
   double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
-  bool cut = false;          ///< time or work ran out before the wanted motion was decided
+  bool cut = false;       ///< time or work ran out before the wanted motion was decided
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 

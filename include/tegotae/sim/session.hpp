@@ -28,6 +28,7 @@ struct TickView {
   const PenSample& pen;
   const HapticLoop& loop;  ///< its report() and limits() are of this tick
   double tick_us;          ///< time the tick took; 0 in virtual time
+  double servo_late_us;    ///< how late the servo's newest tick began; NaN in virtual time
 };
 
 /// Looks on while a session runs. Called in the contact loop's thread.
@@ -47,7 +48,7 @@ struct RunSettings {
   std::string program;    ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
-  const HandGuide* guide = nullptr;  ///< leads the hand away from the script
+  const HandGuide* guide = nullptr;         ///< leads the hand away from the script
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };
 

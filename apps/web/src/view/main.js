@@ -55,8 +55,10 @@ function showFrame(next) {
 
 function showScene(bundle) {
   about = bundle.about;
-  document.title = `${about.title} – Tegotae`;
-  $("title").textContent = $("title").title = about.title;
+  const name = about.title.replace(/.*\//, "");
+  document.title = `${name} – Tegotae`;
+  $("title").textContent = name;
+  $("title").title = about.title;
   stage.setScene(bundle);
   overlay.setScene(about);
   overlay.applyTheme();
@@ -137,6 +139,12 @@ function connect() {
   });
 }
 
+// Recordings do not have the servo's lateness, and virtual time has no times.
+function withoutValues({ mode, virtual_time: virtual }) {
+  if (virtual) return ["Tick time", "Servo lateness"];
+  return mode === "replay" ? ["Servo lateness"] : [];
+}
+
 async function begin() {
   let bundle = embeddedBundle();
   const token = new URLSearchParams(location.search).get("token");
@@ -148,7 +156,7 @@ async function begin() {
     live = null;
     replay = new Replay(bundle, { onFrame: showFrame, onStatus: showStatus });
   }
-  plots = new Plots($("plots"), replay ? (t) => replay.seek(t) : null);
+  plots = new Plots($("plots"), replay ? (t) => replay.seek(t) : null, withoutValues(bundle.about));
   showScene(bundle);
   showRun();
   connect();

@@ -21,7 +21,7 @@ class Arrow {
     this.material = new THREE.MeshBasicMaterial(over);
     const up = (geometry) => geometry.rotateX(Math.PI / 2); // along +z
     this.shaft = new THREE.Mesh(up(new THREE.CylinderGeometry(0.5, 0.5, 1, 12).translate(0, 0.5, 0)), this.material);
-    const cone = up(new THREE.ConeGeometry(1.4, 4, 16).translate(0, -2, 0));
+    const cone = up(new THREE.ConeGeometry(1.3, 4, 16).translate(0, -2, 0));
     this.heads = Array.from({ length: double ? 2 : 1 }, () => new THREE.Mesh(cone, this.material));
     this.group = new THREE.Group();
     this.group.add(this.shaft, ...this.heads);
@@ -103,8 +103,9 @@ export class Overlay {
     const radius = this.stage.held.radius;
     this.center = new THREE.Vector3(...about.center);
     this.unit = radius;
-    this.metersPerNewton = round125((1.2 * radius) / 2);
-    this.metersPerNewtonMeter = round125((1.2 * radius) / 0.04);
+    // What a hand often feels is about as long as the part.
+    this.metersPerNewton = round125((2 * radius) / 1);
+    this.metersPerNewtonMeter = round125((2 * radius) / 0.01);
   }
 
   applyTheme() {
@@ -128,7 +129,7 @@ export class Overlay {
     const center = this.center.clone().applyMatrix4(held.matrixWorld);
     const arrow = (shape, vector, scale) => {
       const scaled = vector.map((v) => v * scale);
-      shape.show(center, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.045 * this.unit);
+      shape.show(center, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
       shape.group.visible &&= this.enabled.arrows;
     };
     arrow(this.force, frame.force, this.metersPerNewton);

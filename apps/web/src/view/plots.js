@@ -25,12 +25,14 @@ const plots = [
 
 export class Plots {
   // seek(t): where somebody clicks into a plot of a recording; null in a live run.
-  constructor(parent, seek) {
+  // without: names of plots for which there are no values.
+  constructor(parent, seek, without) {
     this.parent = parent;
     this.seek = seek;
     this.times = [];
     this.t = 0;
-    this.frames = plots.map((plot) => {
+    const shown = plots.filter((plot) => !without.includes(plot.name));
+    this.frames = shown.map((plot) => {
       const frame = element("figure", "", "plot");
       const caption = element("figcaption");
       caption.append(element("span", `${plot.name} (${plot.unit})`));
@@ -52,7 +54,7 @@ export class Plots {
   size(p) {
     const place = this.parent.parentElement;
     const room = place.clientHeight - this.parent.offsetTop - 8 - axisHeight;
-    const height = Math.min(mostHeight, Math.max(leastHeight, Math.floor(room / plots.length) - captionHeight));
+    const height = Math.min(mostHeight, Math.max(leastHeight, Math.floor(room / this.frames.length) - captionHeight));
     return { width: p.frame.clientWidth || 300, height: height + (p === this.frames.at(-1) ? axisHeight : 0) };
   }
   fit() {
@@ -73,7 +75,7 @@ export class Plots {
         scales: { x: { time: false, range: () => this.span() }, y: { range: (u, low, high) => this.range(p, low, high) } },
         axes: [p === this.frames.at(-1) ? { ...axis, size: axisHeight, gap: 1 } : { ...axis, size: 0, values: () => [] }, { ...axis, size: 44, gap: 3, space: 18 }],
         series: [{}, ...p.series.map(([, color]) => ({ stroke: cssColor(color), width: 1.25, points: { show: false } }))],
-        padding: [4, 6, 0, 0],
+        padding: [4, 6, p === this.frames.at(-1) ? 0 : 6, 0],
         hooks: { draw: [(u) => this.drawNow(u)] },
       }, this.data(p), p.frame);
       if (this.seek) p.canvas.over.addEventListener("click", (event) => this.seek(p.canvas.posToVal(event.offsetX, "x")));
