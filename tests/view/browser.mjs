@@ -10,14 +10,14 @@ const models = process.env.TEGOTAE_MODELS_DIR;
 const cases = [];
 const test = (name, body) => cases.push({ name, body });
 
-// A block of 10 mm held 3 mm over a wide floor (top at z = 0) by a hand that rests.
-function writeFloor() {
+// A block of 10 mm held 3 mm over a wide floor (top at z = 0) by a hand that rests, or follows `script`.
+function writeFloor(script = "0,0,0,0.008,1,0,0,0\n") {
   const box = (x, z0, z1) =>
     [[-x, -x, z0], [x, -x, z0], [x, x, z0], [-x, x, z0], [-x, -x, z1], [x, -x, z1], [x, x, z1], [-x, x, z1]].map((v) => `v ${v.join(" ")}\n`).join("") +
     ["1 4 3", "1 3 2", "5 6 7", "5 7 8", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"].map((f) => `f ${f}\n`).join("");
   writeFileSync(join(folder, "floor.obj"), box(20, -5, 0));
   writeFileSync(join(folder, "block.obj"), box(5, -5, 5));
-  writeFileSync(join(folder, "rest.csv"), "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.008,1,0,0,0\n");
+  writeFileSync(join(folder, "rest.csv"), "t,px,py,pz,qw,qx,qy,qz\n" + script);
   writeFileSync(join(folder, "floor.toml"),
     'unit = "mm"\n[[part]]\nname = "floor"\nmesh = "floor.obj"\n' +
     '[[part]]\nname = "block <b>1</b>"\nmesh = "block.obj"\nheld = true\nposition = [0, 0, 0.008]\n[device]\nscript = "rest.csv"\n');
@@ -57,21 +57,20 @@ async function dragAgainstFloor(page) {
 }
 
 test("a live run: parts, arrows, plots that move", async (browser) => {
-  const program = await serve("peg_in_hole", "--view");
+  // Down to 2 mm into the floor and up again, for ten minutes.
+  const keys = Array.from({ length: 300 }, (_, i) => `${2 * i},0,0,${i % 2 ? 0.003 : 0.008},1,0,0,0\n`);
+  const program = await serve("tegotae", "run", writeFloor(keys.join("")), "--view");
   const page = await open(browser, program.url);
-  await page.click("#restart");
-  const first = await until(page, (s) => s.frames > 5 && s.frame.t < 60);
-  assert.deepEqual(first.parts, [{ name: "hole", held: false, visible: true }, { name: "peg", held: true, visible: true }]);
+  const first = await until(page, (s) => s.plots[0].points > 5);
+  assert.deepEqual(first.parts, [{ name: "floor", held: false, visible: true }, { name: "block <b>1</b>", held: true, visible: true }]);
   const touching = await until(page, (s) => s.arrows.force > 0 && s.shown.contacts > 0);
   assert.ok(touching.frame.forceOn);
-  const later = await until(page, (s) => s.frame.t > touching.frame.t + 1);
-  for (const [i, plot] of later.plots.entries()) {
-    assert.ok(plot.points > 0, plot.name);
-    if (i < 3) assert.ok(plot.last.every(Number.isFinite), plot.name);
-  }
-  assert.notDeepEqual(later.plots[0].last, first.plots[0].last, "the position moves");
-  assert.ok(later.plots[4].last[0] > 0, "a tick takes time");
-  assert.ok(later.plots[5].last[0] > 0, "the servo wakes up a little late");
+  assert.ok(touching.frame.force[2] > 0, "the floor pushes up");
+  const away = await until(page, (s) => s.frame.t > touching.frame.t && s.arrows.force === 0 && s.shown.contacts === 0);
+  assert.ok(away.plots[0].last[2] > touching.plots[0].last[2] + 0.1, "the plot of the position goes up");
+  assert.ok(away.plots[1].last[2] < touching.plots[1].last[2], "that of the force down");
+  for (const plot of touching.plots) assert.ok(plot.last.every(Number.isFinite), plot.name);
+  assert.ok(touching.plots[4].last[0] > 0 && touching.plots[5].last[0] > 0, "a tick takes time, the servo wakes up late");
   assert.match(await page.textContent("tr[data-id=force]"), /\d\.\d\d\s*N/);
   assert.deepEqual(page.complaints, []);
   await page.close();
@@ -198,7 +197,7 @@ test("views, section, parts, theme, help, by keyboard and on a laptop's screen",
   assert.equal(await page.isVisible("#help"), false);
   // Everything that can be operated has a name, and is reached by Tab.
   const nameless = await page.evaluate(() =>
-    [...document.querySelectorAll("button, input, select, canvas")].filter((e) => e.offsetParent !== null &&
+    [...document.querySelectorAll("button, input, select, #stage canvas")].filter((e) => e.offsetParent !== null &&
       !(e.textContent.trim() || e.getAttribute("aria-label") || e.labels?.[0]?.textContent.trim())).map((e) => e.outerHTML));
   assert.deepEqual(nameless, []);
   const fits = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight);

@@ -1,5 +1,6 @@
 // Clients of every kind against a run in real time: who may not gets nothing, and whatever they do, the run goes on and
 // ends as it should. Nothing is timed; ticks are counted.
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -22,7 +23,21 @@ Request command(const Served& s, const std::string& body) {
 // A page that watches, and notes the numbers of the ticks that it sees.
 class Watcher {
  public:
-  explicit Watcher(const Served& s) : connection_(s.port) { connection_.send(text_of(get(s, "/stream"))); }
+  // Waits for a place: pages that have gone are noticed with the next frame.
+  explicit Watcher(const Served& s) {
+    for (int i = 0; i < 100; ++i) {
+      connection_ = std::make_unique<Connection>(s.port);
+      connection_->send(text_of(get(s, "/stream")));
+      buffer_ = connection_->receive();
+      const std::size_t body = buffer_.find("\r\n\r\n");
+      if (buffer_.rfind("HTTP/1.1 200", 0) == 0 && body != buffer_.npos) {
+        buffer_.erase(0, body + 4);
+        return;
+      }
+      ::usleep(100'000);
+    }
+    throw std::runtime_error("no place to watch: " + buffer_);
+  }
   // The tick of the next frame; -1 at the end.
   long next() {
     for (;;) {
@@ -36,20 +51,15 @@ class Watcher {
         buffer_.erase(0, 8 + head[1]);
         if (head[0] == 1) return static_cast<long>(row[0]) * (1 << 20) + static_cast<long>(row[1]);
       }
-      const std::string more = connection_.receive();
+      const std::string more = connection_->receive();
       if (more.empty()) return -1;
       buffer_ += more;
-      if (in_head_ && buffer_.find("\r\n\r\n") != buffer_.npos) {
-        buffer_.erase(0, buffer_.find("\r\n\r\n") + 4);
-        in_head_ = false;
-      }
     }
   }
 
  private:
-  Connection connection_;
+  std::unique_ptr<Connection> connection_;
   std::string buffer_;
-  bool in_head_ = true;
 };
 
 // The run is alive: frames come, and their ticks go up.

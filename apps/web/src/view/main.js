@@ -176,11 +176,12 @@ window.__tegotae = {
       mode: about?.mode, parts: stage.parts?.map(({ name, held, visible }) => ({ name, held, visible })), frame, frames,
       status, shown: overlay.shown, plots: plots?.state(), drawn: stage.drawn,
       arrows: { force: overlay.force.group.visible ? overlay.force.length : 0, torque: overlay.torque.group.visible ? overlay.torque.length : 0 },
-      force: frame ? norm(frame.force) : 0, camera: stage.camera.position.toArray(), background: cssColor("--stage"), count: replay?.count,
+      force: frame ? norm(frame.force) : 0, camera: stage.camera.position.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
     };
   },
   // Where a point of the world is on the screen.
   project(point) {
+    stage.camera.updateMatrixWorld();
     const rect = stage.canvas.getBoundingClientRect();
     const p = stage.camera.position.clone().set(...point).project(stage.camera);
     return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];

@@ -143,6 +143,9 @@ export class Stage {
   // The part under the pointer: {part, point} or null.
   pick(clientX, clientY) {
     const rect = this.canvas.getBoundingClientRect();
+    // They may have moved since the last picture.
+    this.camera.updateMatrixWorld();
+    this.world.updateMatrixWorld();
     const ray = new THREE.Raycaster();
     ray.setFromCamera(
       new THREE.Vector2((2 * (clientX - rect.left)) / rect.width - 1, 1 - (2 * (clientY - rect.top)) / rect.height), this.camera);
