@@ -213,15 +213,13 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
                            "request_timeout_ms",
                            kTimeout,
                            "keep_alive_timeout_ms",
-                           "1000",
+                           "5000",
                            "enable_keep_alive",
                            "yes",
                            "max_request_size",
                            header.c_str(),
                            "tcp_nodelay",
                            "1",
-                           "linger_timeout_ms",
-                           "0",
                            nullptr};
   mg_callbacks callbacks{};
   callbacks.log_message = [](const mg_connection* connection, const char* message) {
