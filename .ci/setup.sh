@@ -7,7 +7,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev zlib1g-dev
-          libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libcivetweb-dev catch2 python3-venv)
+          libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libcivetweb-dev catch2 python3-venv
+          libspnav-dev libsdl2-dev)
 
 browser=false
 if [ "${1:-}" = --browser ]; then

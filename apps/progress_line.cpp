@@ -1,6 +1,7 @@
 #include "progress_line.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 namespace tegotae::apps {
@@ -32,9 +33,12 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::print() const {
-  std::printf("\r\033[K%5.1f / %.1f s   depth %6.1f mm   %3d contacts   %5.2f N", progress_.t.load(),
-              progress_.duration.load(), 1e3 * (progress_.depth.load() + depth_offset_), progress_.contacts.load(),
-              progress_.force.load());
+  const double duration = progress_.duration.load();
+  std::printf("\r\033[K%5.1f ", progress_.t.load());
+  if (std::isfinite(duration)) std::printf("/ %.1f ", duration);
+  std::printf("s   depth %6.1f mm   %3d contacts   %5.2f N", 1e3 * (progress_.depth.load() + depth_offset_),
+              progress_.contacts.load(), progress_.force.load());
+  if (!progress_.device.load()) std::printf("   no device, waiting");
   std::fflush(stdout);
 }
 

@@ -51,7 +51,12 @@ void announce_page(const std::string& url, bool quiet) {
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
       ->type_name("NAME");
-  app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
+  CLI::Option* device =
+      app.add_option("--device", options.device, "shm:NAME: the pen of a running tegotae-device, until Ctrl-C")
+          ->type_name("DEVICE");
+  CLI::Option* fast =
+      app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
+  fast->excludes(device);
   app.add_option("--record", options.record,
                  "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
       ->type_name("FILE");
@@ -83,6 +88,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   if (!options.resolver.empty()) file.scene.contact.resolver = options.resolver;
   RunProgress progress;
   RunSettings settings;
+  settings.device = options.device;
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
@@ -103,8 +109,10 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
     std::cout << json_line(summary, file) << std::endl;
   else
     std::cout << summary_text(summary, options, goal, interrupted.load()) << std::flush;
-  // A run that was asked to be short is done when its time is over, one that was looked at whenever it ends.
-  const bool done = summary.completed || (options.seconds > 0 && !interrupted.load()) || options.view;
+  // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
+  // whenever it ends.
+  const bool done = summary.completed || options.view || !options.device.empty() ||
+                    (options.seconds > 0 && !interrupted.load());
   return done && summary.penetrating == 0 ? kDone : kRunFailed;
 }
 

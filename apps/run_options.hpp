@@ -17,6 +17,7 @@ inline constexpr int kBadInput = 2;
 
 /// What the user asked for, common to all programs that run a scene.
 struct RunOptions {
+  std::string device;    ///< empty: the scene's, in this process
   std::string resolver;  ///< empty: the scene's
   bool fast = false;
   double seconds = 0;  ///< 0: to the end of the script

@@ -1,8 +1,8 @@
 #include "summary.hpp"
 
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "format.hpp"
 
 namespace tegotae::apps {
 
@@ -12,20 +12,21 @@ nlohmann::ordered_json to_json(const LatencySummary& p) {
   return {{"p50", p.p50}, {"p99", p.p99}, {"p999", p.p999}, {"max", p.max}};
 }
 
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-
-std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
-
 std::string row(const char* what, const LatencySummary& us) {
   return format("  %-12s median %.0f us, 99 %% %.0f us, 99.9 %% %.0f us, longest %.0f us\n", what, us.p50, us.p99,
                 us.p999, us.max);
+}
+
+/// Why the force went off, and how often. That it waited for an application and for a small force comes at every start.
+std::string force_off_lines(const ServoStatistics& servo) {
+  std::string text;
+  for (std::size_t i = 0; i < servo.force_off.size(); ++i) {
+    const auto reason = static_cast<ForceOff>(i);
+    if (servo.force_off[i] == 0 || reason == ForceOff::software || reason == ForceOff::engage) continue;
+    text += format("  %-12s %llu times: %s\n", "force off", static_cast<unsigned long long>(servo.force_off[i]),
+                   to_string(reason));
+  }
+  return text;
 }
 
 }  // namespace
@@ -41,17 +42,23 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["contacts_max"] = s.contacts_max;
   j["penetrating"] = s.penetrating;
   j["tick_us"] = to_json(s.tick_us);
-  j["servo"] = {{"rate_hz", s.servo.rate_hz}, {"late_us", to_json(s.servo.late_us)}, {"missed", s.servo.missed}};
+  j["servo"] = {{"rate_hz", s.servo.rate_hz},
+                {"late_us", to_json(s.servo.late_us)},
+                {"missed", s.servo.missed},
+                {"compute_us", to_json(s.servo.compute_us)},
+                {"force_off", s.servo.force_off}};
+  j["device_losses"] = s.device_losses;
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
   return j.dump();
 }
 
 std::string summary_text(const RunSummary& s, const RunOptions& options, const std::string& goal, bool interrupted) {
-  const char* verdict = s.completed           ? "done"
-                        : interrupted         ? "interrupted"
-                        : options.seconds > 0 ? "cut short"
-                                              : "FAILED";
+  const char* verdict = s.completed               ? "done"
+                        : !options.device.empty() ? "ended"
+                        : interrupted             ? "interrupted"
+                        : options.seconds > 0     ? "cut short"
+                                                  : "FAILED";
   std::string text = goal + ": " + verdict + "\n";
   text += format("  %-12s %.1f mm\n", "depth", 1e3 * s.depth_m);
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);
@@ -66,6 +73,13 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const s
     text += format("  %-12s %.1f s, servo at %.1f Hz, %lld ticks missed\n", "time", s.seconds, s.servo.rate_hz,
                    static_cast<long long>(s.servo.missed));
   }
+  if (!options.fast && !s.missing_realtime.empty())
+    text += format("  %-12s ", "real time") + "not granted: " + s.missing_realtime + "\n";
+  if (!s.stability.empty()) text += format("  %-12s ", "stability") + s.stability + "\n";
+  text += force_off_lines(s.servo);
+  if (s.device_losses > 0)
+    text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
+                   static_cast<unsigned long long>(s.device_losses));
   if (!options.record.empty()) text += format("  %-12s ", "recording") + options.record + "\n";
   return text;
 }

@@ -39,7 +39,7 @@ Vec3 center_of(const Scene& scene) {
 /// Why the force is off, by number.
 json force_off_names() {
   json names = json::array();
-  for (std::uint32_t i = 0; i <= static_cast<std::uint32_t>(ForceOff::not_finite); ++i) names.push_back(to_string(static_cast<ForceOff>(i)));
+  for (std::uint32_t i = 0; i < TEGOTAE_SHM_REASONS; ++i) names.push_back(to_string(static_cast<ForceOff>(i)));
   return names;
 }
 
@@ -57,8 +57,8 @@ struct LiveView::Run {
   std::shared_ptr<const std::string> bundle;
 };
 
-LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, std::atomic<bool>& stop)
-    : virtual_time_(virtual_time), restartable_(restartable), stop_(stop), paused_(virtual_time) {
+LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop)
+    : virtual_time_(virtual_time), restartable_(restartable), led_(led), stop_(stop), paused_(virtual_time) {
   show(file);
 }
 
@@ -73,6 +73,7 @@ void LiveView::show(const SceneFile& file) {
   bundle.about["generation"] = ++generation_;
   bundle.about["virtual_time"] = virtual_time_;
   bundle.about["restartable"] = restartable_;
+  bundle.about["led"] = led_;
   bundle.about["reasons"] = force_off_names();
   run_ = std::make_shared<Run>(file, std::make_shared<const std::string>(bundle.bytes()));
   looped_ = run_.get();

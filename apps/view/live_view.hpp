@@ -17,8 +17,8 @@ namespace tegotae::view {
 class LiveView final : public RunObserver, public ViewSource {
  public:
   /// `stop` ends the session (RunSettings::stop); commands that need another session set it. Keeps references.
-  /// `restartable`: whether the page may ask for that.
-  LiveView(const SceneFile& file, bool virtual_time, bool restartable, std::atomic<bool>& stop);
+  /// `restartable`: whether the page may ask for that; `led`: whether the session's hand follows guide().
+  LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop);
   ~LiveView() override;
 
   /// Another session begins, of `file`.
@@ -48,6 +48,7 @@ class LiveView final : public RunObserver, public ViewSource {
 
   const bool virtual_time_;
   const bool restartable_;
+  const bool led_;
   std::atomic<bool>& stop_;
   FrameRing ring_;
   Frame frame_;  // of the contact loop's thread

@@ -23,7 +23,7 @@ SceneFile with_held(SceneFile file, std::size_t held, const Pose& X) {
 
 RunSummary run_viewed(SceneFile file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
                       const std::function<void(const std::string&)>& announce) {
-  LiveView live(file, !settings.real_time, settings.record.empty(), stop);
+  LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop);
   Server server(address, live);
   announce(server.url());
   if (settings.seconds == 0) settings.seconds = kForever;

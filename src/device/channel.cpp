@@ -1,9 +1,6 @@
 #include "tegotae/device/channel.hpp"
 
-#include <utility>
-
 #include "device/shared_memory.hpp"
-#include "tegotae/core/error.hpp"
 
 namespace tegotae {
 
@@ -17,60 +14,60 @@ bool read_slot(const std::uint64_t& counter, const std::uint64_t* slot, Payload&
   return true;
 }
 
+std::string with_slash(const std::string& name) {
+  return name.empty() || name.front() == '/' ? name : "/" + name;
+}
+
 }  // namespace
 
-Channel::Channel(std::string name, tegotae_shm_segment* segment, bool owner)
-    : name_(std::move(name)), segment_(segment), owner_(owner) {}
+ChannelReader::ChannelReader(std::unique_ptr<Segment> segment) : segment_(std::move(segment)) {}
+ChannelReader::~ChannelReader() = default;
+ChannelReader::ChannelReader(ChannelReader&&) noexcept = default;
+ChannelReader& ChannelReader::operator=(ChannelReader&&) noexcept = default;
+
+ChannelReader ChannelReader::open(const std::string& name) {
+  return ChannelReader(Segment::open(with_slash(name), SegmentRole::observer));
+}
 
 Channel Channel::create(const std::string& name) {
-  tegotae_shm_segment* segment = nullptr;
-  if (!name.empty()) {
-    if (!create_segment(name, segment)) throw Error("shared memory " + name + ": the name is in use");
-    return {name, segment, true};
-  }
-  // A killed process may have had this process id and left its segments.
-  std::string unique = unique_segment_name();
-  while (!create_segment(unique, segment)) unique = unique_segment_name();
-  return {unique, segment, true};
+  return Channel(Segment::create(name.empty() ? unique_segment_name() : with_slash(name)));
 }
 
 Channel Channel::attach(const std::string& name) {
-  return {name, attach_segment(name), false};
+  return Channel(Segment::open(with_slash(name), SegmentRole::application));
 }
 
-Channel::~Channel() {
-  if (segment_ == nullptr) return;
-  unmap_segment(segment_);
-  if (owner_) unlink_segment(name_);
+const std::string& ChannelReader::name() const noexcept {
+  return segment_->name();
+}
+std::uint64_t ChannelReader::owner_pid() const noexcept {
+  return segment_->memory()->owner_pid;
+}
+std::int64_t ChannelReader::created_ns() const noexcept {
+  return segment_->memory()->created_ns;
 }
 
-Channel::Channel(Channel&& other) noexcept
-    : name_(std::move(other.name_)), segment_(std::exchange(other.segment_, nullptr)), owner_(other.owner_) {}
-
-Channel& Channel::operator=(Channel&& other) noexcept {
-  std::swap(name_, other.name_);
-  std::swap(segment_, other.segment_);
-  std::swap(owner_, other.owner_);
-  return *this;
+bool ChannelReader::read(tegotae_shm_device& payload) const noexcept {
+  return read_slot(segment_->memory()->device_counter, segment_->memory()->device, payload);
+}
+bool ChannelReader::read(tegotae_shm_application& payload) const noexcept {
+  return read_slot(segment_->memory()->application_counter, segment_->memory()->application, payload);
+}
+bool ChannelReader::read(tegotae_shm_statistics& payload) const noexcept {
+  return read_slot(segment_->memory()->statistics_counter, segment_->memory()->statistics, payload);
 }
 
 void Channel::write(const tegotae_shm_device& payload) noexcept {
-  tegotae_shm_write(&segment_->device_counter, segment_->device, &payload, sizeof payload);
+  tegotae_shm_segment& s = *segment_->memory();
+  tegotae_shm_write(&s.device_counter, s.device, &payload, sizeof payload);
 }
 void Channel::write(const tegotae_shm_application& payload) noexcept {
-  tegotae_shm_write(&segment_->application_counter, segment_->application, &payload, sizeof payload);
+  tegotae_shm_segment& s = *segment_->memory();
+  tegotae_shm_write(&s.application_counter, s.application, &payload, sizeof payload);
 }
 void Channel::write(const tegotae_shm_statistics& payload) noexcept {
-  tegotae_shm_write(&segment_->statistics_counter, segment_->statistics, &payload, sizeof payload);
-}
-bool Channel::read(tegotae_shm_device& payload) const noexcept {
-  return read_slot(segment_->device_counter, segment_->device, payload);
-}
-bool Channel::read(tegotae_shm_application& payload) const noexcept {
-  return read_slot(segment_->application_counter, segment_->application, payload);
-}
-bool Channel::read(tegotae_shm_statistics& payload) const noexcept {
-  return read_slot(segment_->statistics_counter, segment_->statistics, payload);
+  tegotae_shm_segment& s = *segment_->memory();
+  tegotae_shm_write(&s.statistics_counter, s.statistics, &payload, sizeof payload);
 }
 
 }  // namespace tegotae

@@ -32,6 +32,24 @@ const char* to_string(ForceOff reason) noexcept {
       return "the dead-man switch is released";
     case ForceOff::not_finite:
       return "a pose, velocity or setting is not finite";
+    case ForceOff::workspace:
+      return "the pen left its workspace";
+    case ForceOff::energy:
+      return "the coupling became unstable";
+    case ForceOff::thermal:
+      return "the motors of the device are too warm";
+    case ForceOff::engage:
+      return "waiting for a small force before it is turned on";
+    case ForceOff::clutched:
+      return "the pen is clutched";
+    case ForceOff::silent:
+      return "the pen has had no new sample for too long";
+    case ForceOff::device_fault:
+      return "the device reports a fault";
+    case ForceOff::force_exceeded:
+      return "the device was asked for more than it may render";
+    case ForceOff::no_force:
+      return "the device renders no force";
   }
   return "unknown reason";
 }

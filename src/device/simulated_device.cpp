@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device/pen_body.hpp"
+#include "device/velocity_filter.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -22,8 +23,6 @@ constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
 // How a led hand moves: it lags by this time (s), which smooths the steps in which a mouse reports, and is never faster
 // than this (m/s, rad/s), so that a jump of the mouse is a motion of the hand.
 constexpr double kHandLag = 0.03, kHandSpeed = 0.4, kHandTurning = 6.0;
-
-constexpr double kTwoPi = 6.283185307179586;
 
 void require(bool good, const char* setting) {
   if (!good) throw Error(std::string("simulated device: ") + setting + " is out of range");
@@ -77,7 +76,10 @@ Vec3 rounded(const Vec3& value, double resolution) {
 
 struct SimulatedDevice::Impl {
   Impl(const SimulatedDeviceSettings& settings_in, StylusScript script_in)
-      : settings(settings_in), script(std::move(script_in)), body_constants(body_settings(settings)) {}
+      : settings(settings_in),
+        script(std::move(script_in)),
+        body_constants(body_settings(settings)),
+        velocity(settings.velocity_cutoff_hz) {}
 
   SimulatedDeviceSettings settings;
   StylusScript script;
@@ -87,14 +89,13 @@ struct SimulatedDevice::Impl {
   Wrench rendered;
   std::atomic<std::int64_t> time_ns{0};  // since the script's begin; atomic for script_time()
   std::int64_t last_read_clock_ns = -1;  // wall clock
+  bool waiting = settings.wait_for_application;
   DeviceStatus status = DeviceStatus::uninitialized;
 
   // What was read last.
-  bool sampled = false;
-  std::int64_t sampled_at_ns = 0;
   Vec3 sampled_center = Vec3::Zero();
   Quat sampled_rotation = Quat::Identity();
-  Twist filtered;
+  VelocityFilter velocity;
   std::uint64_t sequence = 0;
 
   const HandGuide* guide = nullptr;
@@ -141,21 +142,11 @@ struct SimulatedDevice::Impl {
 
   /// The encoders' view of the body, and the velocity that a driver would make of it.
   void sample() {
-    const std::int64_t now = time_ns.load(std::memory_order_relaxed);
-    const Vec3 position = rounded(body.center, settings.position_resolution);
+    sampled_center = rounded(body.center, settings.position_resolution);
     const Vec3 angles =
         rounded(rotation_vector(body.rotation * encoder_zero.conjugate()), settings.rotation_resolution);
-    const Quat turned = (rotation(angles) * encoder_zero).normalized();
-    if (sampled && now > sampled_at_ns) {
-      const double dt = 1e-9 * static_cast<double>(now - sampled_at_ns);
-      const double gain = 1.0 - std::exp(-kTwoPi * settings.velocity_cutoff_hz * dt);
-      filtered.v += gain * ((position - sampled_center) / dt - filtered.v);
-      filtered.w += gain * (rotation_vector(turned * sampled_rotation.conjugate()) / dt - filtered.w);
-    }
-    sampled = true;
-    sampled_at_ns = now;
-    sampled_center = position;
-    sampled_rotation = turned;
+    sampled_rotation = (rotation(angles) * encoder_zero).normalized();
+    velocity.add(sampled_center, sampled_rotation, time_ns.load(std::memory_order_relaxed));
   }
 };
 
@@ -170,6 +161,18 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, Stylus
 }
 
 SimulatedDevice::~SimulatedDevice() = default;
+
+DeviceInfo SimulatedDevice::info() const {
+  const SimulatedDeviceSettings& s = impl_->settings;
+  DeviceInfo info;
+  info.name = "simulated";
+  info.limits = s.limits;
+  info.damping = s.hand.damping;
+  info.torsional_damping = s.hand.torsional_damping;
+  info.friction = s.friction;
+  info.position_resolution = s.position_resolution;
+  return info;
+}
 
 void SimulatedDevice::start() {
   impl_->rendered = {};
@@ -186,13 +189,13 @@ DeviceState SimulatedDevice::read() noexcept {
   std::int64_t stamp = impl_->time_ns.load(std::memory_order_relaxed);
   if (impl_->settings.wall_clock) {
     stamp = monotonic_ns();
-    if (impl_->last_read_clock_ns >= 0)
+    if (impl_->last_read_clock_ns >= 0 && !impl_->waiting)
       impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs), center());
     impl_->last_read_clock_ns = stamp;
   }
   impl_->sample();
   const Quat& q = impl_->sampled_rotation;
-  return {{q, impl_->sampled_center - q * center()}, impl_->filtered, 0, stamp, impl_->sequence++};
+  return {{q, impl_->sampled_center - q * center()}, impl_->velocity.velocity(), 0, stamp, impl_->sequence++};
 }
 
 void SimulatedDevice::write(const Wrench& wrench) noexcept {
@@ -213,12 +216,16 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   body.center += arm;
   body.velocity += body.angular_velocity(impl_->body_constants).cross(arm);
   // The difference to the last sample would be a jump of the point, not a motion.
-  impl_->sampled = false;
+  impl_->velocity.forget();
   Device::set_center(center_now);
 }
 
 void SimulatedDevice::follow(const HandGuide& guide) noexcept {
   impl_->guide = &guide;
+}
+
+void SimulatedDevice::set_lead(const Displacement&) noexcept {
+  impl_->waiting = false;
 }
 
 void SimulatedDevice::advance(double dt) noexcept {

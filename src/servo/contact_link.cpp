@@ -1,11 +1,29 @@
 #include "tegotae/servo/contact_link.hpp"
 
 #include "servo/shm_convert.hpp"
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
 
 namespace tegotae {
 
-ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center)
-    : channel_(channel), coupling_(coupling), center_(center) {}
+namespace {
+
+void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
+  store(planes.pen.p, out.pen_position);
+  store(planes.pen.q, out.pen_orientation);
+  out.plane_count = static_cast<std::uint32_t>(planes.count);
+  for (int i = 0; i < planes.count; ++i) {
+    const ContactPlane& plane = planes.planes[static_cast<std::size_t>(i)];
+    store(plane.normal, out.planes[i].normal);
+    store(plane.point, out.planes[i].point);
+    out.planes[i].room = plane.room;
+  }
+}
+
+}  // namespace
+
+ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center, const Mat3& gyration)
+    : channel_(channel), coupling_(coupling), center_(center), gyration_(gyration), session_(monotonic_ns()) {}
 
 bool ContactLink::read(PenSample& pen) const noexcept {
   tegotae_shm_device in;
@@ -15,21 +33,48 @@ bool ContactLink::read(PenSample& pen) const noexcept {
   pen.state.buttons = in.buttons;
   pen.state.time_ns = in.time_ns;
   pen.state.sequence = in.sequence;
+  pen.raw = {quaternion(in.raw_orientation), vector(in.raw_position)};
   pen.wrench = {vector(in.force), vector(in.torque)};
   pen.status = static_cast<DeviceStatus>(in.status);
   pen.reason = static_cast<ForceOff>(in.reason);
+  pen.flags = in.flags;
+  pen.scale = in.scale;
+  pen.clutch = static_cast<Clutch>(in.clutch);
+  pen.thermal_load = in.thermal_load;
+  pen.energy = in.energy;
   pen.heartbeat_ns = in.heartbeat_ns;
   pen.tick = in.tick;
+  pen.session = in.session;
+  pen.home_counter = in.home_counter;
   return true;
 }
 
+void ContactLink::set_scale(double scale) {
+  if (!(scale >= kLeastScale && scale <= kMostScale)) throw Error("pen: the scale must be from 0.01 to 100");
+  scale_ = scale;
+}
+
+bool ContactLink::obeyed(const PenSample& pen) const noexcept {
+  return pen.session == session_ && pen.home_counter == home_counter_;
+}
+
+void ContactLink::home(const Pose& X) noexcept {
+  home_ = X;
+  // 0 stands for none.
+  if (++home_counter_ == 0) ++home_counter_;
+}
+
 void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence,
-                          std::int64_t now_ns) noexcept {
+                          std::int64_t now_ns, const ContactPlanes& planes) noexcept {
   tegotae_shm_application out{};
   out.heartbeat_ns = now_ns;
   out.tick = tick;
   out.device_sequence = device_sequence;
+  out.session = session_;
   out.touching = proxy.touching ? 1 : 0;
+  out.enable = enable_ ? 1 : 0;
+  out.clutch = static_cast<std::uint32_t>(clutch_);
+  out.home_counter = home_counter_;
   store(proxy.X.p, out.position);
   store(proxy.X.q, out.orientation);
   store(proxy.velocity.v, out.velocity);
@@ -39,6 +84,13 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.damping = coupling_.damping;
   out.torsional_stiffness = coupling_.torsional_stiffness;
   out.torsional_damping = coupling_.torsional_damping;
+  out.scale = scale_;
+  store(home_.p, out.home_position);
+  store(home_.q, out.home_orientation);
+  const Mat3& g = gyration_;
+  const double gyration[] = {g(0, 0), g(1, 1), g(2, 2), g(0, 1), g(0, 2), g(1, 2)};
+  for (int i = 0; i < 6; ++i) out.gyration[i] = gyration[i];
+  store_planes(planes, out);
   channel_.write(out);
 }
 

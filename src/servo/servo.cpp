@@ -9,11 +9,10 @@
 #include <future>
 #include <thread>
 
-#include "servo/safety_chain.hpp"
+#include "servo/servo_tick.hpp"
 #include "servo/shm_convert.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/coupling/coupling.hpp"
 
 namespace tegotae {
 
@@ -22,6 +21,15 @@ namespace {
 constexpr double kLowestRate = 10.0;      // Hz; slower is no servo
 constexpr double kHighestRate = 4000.0;   // Hz
 constexpr double kStatisticsRate = 10.0;  // Hz, how often they are published
+
+std::uint32_t granted(const RealtimeReport& realtime) {
+  std::uint32_t bits = 0;
+  if (realtime.fifo) bits |= TEGOTAE_SHM_REALTIME_FIFO;
+  if (realtime.memory_locked) bits |= TEGOTAE_SHM_REALTIME_MEMORY;
+  if (realtime.timer_slack) bits |= TEGOTAE_SHM_REALTIME_TIMER_SLACK;
+  if (realtime.cpu >= 0) bits |= TEGOTAE_SHM_REALTIME_AFFINITY;
+  return bits;
+}
 
 void sleep_until(std::int64_t ns) {
   const timespec wake = {ns / 1'000'000'000, ns % 1'000'000'000};
@@ -34,17 +42,13 @@ void sleep_until(std::int64_t ns) {
 
 struct Servo::Impl {
   Impl(Device& device_in, Channel& channel_in, const ServoSettings& settings_in)
-      : device(device_in), channel(channel_in), settings(settings_in), safety(settings_in.safety) {}
+      : device(device_in), channel(channel_in), settings(settings_in), work(device_in, channel_in, settings_in) {}
 
   Device& device;
   Channel& channel;
   ServoSettings settings;
-  SafetyChain safety;
+  ServoTick work;
 
-  tegotae_shm_application application{};
-  bool attached = false;
-
-  std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   std::int64_t first_ns = 0;
   std::int64_t last_ns = 0;
@@ -56,71 +60,37 @@ struct Servo::Impl {
   std::atomic<bool> stopping{false};
   std::thread thread;
 
-  /// Wrench that the coupling asks for at the pen's state `pen`.
-  Wrench coupling(const DeviceState& pen) noexcept {
-    if (!attached) return {};
-    const Vec3 center = vector(application.center);
-    const ProxyState proxy = {{quaternion(application.orientation), vector(application.position)},
-                              {vector(application.velocity), vector(application.angular_velocity)},
-                              application.touching != 0};
-    const CouplingSettings constants = {application.stiffness, application.damping, application.torsional_stiffness,
-                                        application.torsional_damping};
-    return coupling_wrench(constants, proxy, pen.pose, pen.velocity, center);
-  }
-
-  void publish(std::int64_t now_ns, const DeviceState& pen, const SafetyOutput& rendered) noexcept {
-    const bool on = rendered.reason == ForceOff::none;
-    const DeviceStatus status = on ? DeviceStatus::enabled : std::min(device.status(), DeviceStatus::ready);
-    tegotae_shm_device out{};
-    out.heartbeat_ns = now_ns;
-    out.tick = ticks;
-    out.time_ns = pen.time_ns;
-    out.sequence = pen.sequence;
-    out.status = static_cast<std::uint32_t>(status);
-    out.reason = static_cast<std::uint32_t>(rendered.reason);
-    out.buttons = pen.buttons;
-    store(pen.pose.p, out.position);
-    store(pen.pose.q, out.orientation);
-    store(pen.velocity.v, out.velocity);
-    store(pen.velocity.w, out.angular_velocity);
-    store(rendered.wrench.force, out.force);
-    store(rendered.wrench.torque, out.torque);
-    channel.write(out);
-  }
-
   void tick(std::int64_t now_ns) noexcept {
-    attached = channel.read(application) || attached;
-    if (attached) {
-      const Vec3 center = vector(application.center);
-      if (center.allFinite() && center != device.center()) device.set_center(center);
-    }
-    const DeviceState pen = device.read();
-    const SafetyOutput rendered =
-        safety.apply({coupling(pen), device.status(), device.reason(), attached, application.heartbeat_ns, now_ns});
-    device.write(rendered.wrench);
-    publish(now_ns, pen, rendered);
-    if (ticks == 0) first_ns = now_ns;
+    if (work.ticks() == 0) first_ns = now_ns;
     last_ns = now_ns;
-    ++ticks;
+    work.run(now_ns);
   }
 
   ServoStatistics statistics() const noexcept {
     ServoStatistics s;
-    s.ticks = ticks;
+    s.ticks = work.ticks();
     s.missed = missed;
-    if (last_ns > first_ns) s.rate_hz = 1e9 * static_cast<double>(ticks - 1) / static_cast<double>(last_ns - first_ns);
+    if (last_ns > first_ns)
+      s.rate_hz = 1e9 * static_cast<double>(s.ticks - 1) / static_cast<double>(last_ns - first_ns);
     s.late_us = summary(late);
     s.compute_us = summary(compute);
+    s.force_off = work.force_off();
     return s;
   }
 
   void publish_statistics() noexcept {
     const ServoStatistics s = statistics();
-    channel.write(tegotae_shm_statistics{s.ticks,
-                                         s.missed,
-                                         s.rate_hz,
-                                         {s.late_us.p50, s.late_us.p99, s.late_us.p999, s.late_us.max},
-                                         {s.compute_us.p50, s.compute_us.p99, s.compute_us.p999, s.compute_us.max}});
+    tegotae_shm_statistics out{};
+    out.ticks = s.ticks;
+    out.missed = s.missed;
+    out.set_rate_hz = settings.rate_hz;
+    out.rate_hz = s.rate_hz;
+    store(s.late_us, out.late_us);
+    store(s.compute_us, out.compute_us);
+    out.realtime = granted(realtime);
+    out.cpu = realtime.cpu;
+    std::copy(s.force_off.begin(), s.force_off.end(), out.force_off);
+    channel.write(out);
   }
 
   void loop() noexcept {
@@ -135,7 +105,7 @@ struct Servo::Impl {
       tick(begin);
       const std::int64_t end = monotonic_ns();
       compute.add(end - begin);
-      if (ticks % statistics_every == 0) publish_statistics();
+      if (work.ticks() % statistics_every == 0) publish_statistics();
       next += period;
       if (next <= end) {
         const std::int64_t skipped = (end - next) / period + 1;
@@ -159,17 +129,18 @@ Servo::~Servo() {
 void Servo::start() {
   if (impl_->thread.joinable()) throw Error("servo: it runs already");
   impl_->stopping.store(false, std::memory_order_release);
-  std::promise<RealtimeReport> granted;
-  std::future<RealtimeReport> report = granted.get_future();
-  impl_->thread = std::thread([impl = impl_.get(), promise = std::move(granted)]() mutable {
-    RealtimeReport mine = make_realtime();
-    const bool run = mine.missing.empty() || impl->settings.realtime == RealtimeConfig::ignore;
-    promise.set_value(std::move(mine));
+  std::promise<void> asked;
+  std::future<void> answered = asked.get_future();
+  impl_->thread = std::thread([impl = impl_.get(), promise = std::move(asked)]() mutable {
+    impl->realtime = make_realtime(impl->settings.cpu);
+    const bool run = impl->realtime.missing.empty() || impl->settings.realtime == RealtimeConfig::ignore;
+    promise.set_value();
     if (run) impl->loop();
   });
-  impl_->realtime = report.get();
+  answered.wait();
   if (!impl_->realtime.missing.empty() && impl_->settings.realtime == RealtimeConfig::enforce) {
     impl_->thread.join();
+    release_realtime(impl_->realtime);
     throw Error("servo: real time was asked for and not granted: " + impl_->realtime.missing);
   }
 }
@@ -178,6 +149,7 @@ void Servo::stop() noexcept {
   if (!impl_->thread.joinable()) return;
   impl_->stopping.store(true, std::memory_order_release);
   impl_->thread.join();
+  release_realtime(impl_->realtime);
   impl_->device.write({});
   impl_->publish_statistics();
 }
@@ -195,15 +167,21 @@ std::int64_t Servo::newest_late_ns() const noexcept {
 }
 
 ServoStatistics Servo::statistics() const noexcept {
-  if (!impl_->thread.joinable()) return impl_->statistics();
-  // The thread owns its counters while it runs; this is what it last published.
+  // The thread owns its counters while it runs.
+  return impl_->thread.joinable() ? servo_statistics(impl_->channel) : impl_->statistics();
+}
+
+ServoStatistics servo_statistics(const ChannelReader& channel) noexcept {
   tegotae_shm_statistics s;
-  if (!impl_->channel.read(s)) return {};
-  return {s.ticks,
-          s.missed,
-          s.rate_hz,
-          {s.late_us[0], s.late_us[1], s.late_us[2], s.late_us[3]},
-          {s.compute_us[0], s.compute_us[1], s.compute_us[2], s.compute_us[3]}};
+  if (!channel.read(s)) return {};
+  ServoStatistics out;
+  out.ticks = s.ticks;
+  out.missed = s.missed;
+  out.rate_hz = s.rate_hz;
+  out.late_us = latencies(s.late_us);
+  out.compute_us = latencies(s.compute_us);
+  std::copy(std::begin(s.force_off), std::end(s.force_off), out.force_off.begin());
+  return out;
 }
 
 }  // namespace tegotae

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tegotae/core/pose.hpp"
+#include "tegotae/servo/latency_histogram.hpp"
 
 namespace tegotae {
 
@@ -14,10 +15,19 @@ inline void store(const Quat& q, double (&out)[4]) noexcept {
   out[2] = q.y();
   out[3] = q.z();
 }
+inline void store(const LatencySummary& s, double (&out)[4]) noexcept {
+  out[0] = s.p50;
+  out[1] = s.p99;
+  out[2] = s.p999;
+  out[3] = s.max;
+}
 inline Vec3 vector(const double (&in)[3]) noexcept {
   return {in[0], in[1], in[2]};
 }
 inline Quat quaternion(const double (&in)[4]) noexcept {
+  return {in[0], in[1], in[2], in[3]};
+}
+inline LatencySummary latencies(const double (&in)[4]) noexcept {
   return {in[0], in[1], in[2], in[3]};
 }
 

@@ -85,7 +85,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       metric_(mass),
       resolver_(make_resolver(settings.resolver, kMostLimits)),
       rows_(kMostLimits),
-      bounds_(kMostLimits) {
+      bounds_(kMostLimits),
+      planes_(kMostLimits) {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
   for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
@@ -167,6 +168,10 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     if (!late()) track();
   }
   gather(report);
+  metric_.set_orientation(X_.q);
+  planes_.pick(contacts_->limits(), metric_, X_, Y, center_, keep_, report.planes);
+  // Out of time, the limits may be those of an earlier pose.
+  if (!tracked_) report.planes.count = 0;
   const double left = size(displacement(X_, Y, center_));
   // A part that limits hold back a little above their gap is felt like one that rests on them.
   report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);

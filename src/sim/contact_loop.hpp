@@ -8,6 +8,7 @@
 #include "narrowphase/motion_check.hpp"
 #include "resolve/metric.hpp"
 #include "resolve/resolver.hpp"
+#include "sim/contact_planes.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae {
@@ -64,6 +65,7 @@ class ContactLoop {
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;
+  PlanePicker planes_;
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;
   Pose X_;

@@ -86,6 +86,9 @@ const std::vector<Contact>& HapticLoop::limits() const {
 const Vec3& HapticLoop::center() const {
   return state_->mass.center;
 }
+Mat3 HapticLoop::gyration() const {
+  return state_->mass.inertia / state_->mass.mass;
+}
 const ContactSettings& HapticLoop::contact() const {
   return state_->settings;
 }

@@ -12,6 +12,7 @@
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
+#include "tegotae/servo/mapping.hpp"
 
 namespace tegotae {
 
@@ -114,6 +115,23 @@ void read_coupling(const TomlTable& t, CouplingSettings& s) {
   s.torsional_damping = t.at_least_zero("torsional_damping", s.torsional_damping);
 }
 
+void read_safety(const TomlTable& t, SafetySettings& s) {
+  s.limits.force = t.at_least_zero("force_limit", s.limits.force);
+  s.limits.torque = t.at_least_zero("torque_limit", s.limits.torque);
+  s.continuous_force = t.at_least_zero("continuous_force", s.continuous_force);
+  s.slew.force = t.positive("force_slew", s.slew.force);
+  s.slew.torque = t.positive("torque_slew", s.slew.torque);
+  s.velocity_limit = t.positive("velocity_limit", s.velocity_limit);
+  s.heartbeat_timeout = t.positive("heartbeat_timeout", s.heartbeat_timeout);
+  if (s.heartbeat_timeout > kLongestTimeout) t.fail("heartbeat_timeout", "must be at most 1 s");
+}
+
+double read_scale(const TomlTable& t) {
+  const double scale = t.positive("scale", 1.0);
+  if (scale < kLeastScale || scale > kMostScale) t.fail("scale", "must be from 0.01 to 100");
+  return scale;
+}
+
 SimulatedDeviceSettings read_device(const TomlTable& t) {
   SimulatedDeviceSettings s;
   const std::string type = t.text("type", "simulated");
@@ -133,7 +151,7 @@ SimulatedDeviceSettings read_device(const TomlTable& t) {
 
 SceneFile load_scene(const std::string& path) {
   const toml::table parsed = parse_toml(path);
-  const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "device"});
+  const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
@@ -141,12 +159,16 @@ SceneFile load_scene(const std::string& path) {
                scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);
-  const TomlTable device = top.table("device", {"type", "hand", "script"});
+  SafetySettings safety;
+  read_safety(top.table("safety", {"force_limit", "torque_limit", "continuous_force", "force_slew", "torque_slew",
+                                   "velocity_limit", "heartbeat_timeout"}),
+              safety);
+  const TomlTable device = top.table("device", {"type", "hand", "script", "scale"});
   const SimulatedDeviceSettings settings = read_device(device);
   const std::string script_file = file_under(device, "script", folder);
   StylusScript script = about(device, "script", [&] { return read_script(script_file); });
   read_parts(top, folder, scene);
-  return {path, std::move(scene), settings, std::move(script)};
+  return {path, std::move(scene), settings, std::move(script), safety, read_scale(device)};
 }
 
 }  // namespace tegotae

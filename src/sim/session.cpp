@@ -8,12 +8,12 @@
 #include <limits>
 #include <optional>
 
-#include "broadphase/bounding_spheres.hpp"
 #include "sim/pose_check.hpp"
+#include "sim/run_goal.hpp"
+#include "sim/run_pen.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recorder.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae {
@@ -22,15 +22,6 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;  // of the servo, and at most of the contact loop
 constexpr double kPeriod = 1e-9 * kPeriodNs;
-
-// RunSummary::completed. Of the script's way and of the held part's radius: what a spring between hand and part leaves
-// when the script ends a little inside an obstacle.
-constexpr double kEndTolerance = 0.02;
-constexpr double kEndRotationTolerance = 0.1;  // rad
-
-const Part& held_part(const Scene& scene) {
-  return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-}
 
 HapticLoop make_loop(const SceneFile& file, bool real_time) try {
   Scene scene = file.scene;
@@ -41,9 +32,18 @@ HapticLoop make_loop(const SceneFile& file, bool real_time) try {
   throw Error(file.path + ": " + e.what());
 }
 
-SimulatedDeviceSettings with_clock(SimulatedDeviceSettings settings, bool wall_clock) {
-  settings.wall_clock = wall_clock;
-  return settings;
+std::unique_ptr<RunPen> make_pen(const SceneFile& file, const RunSettings& settings, const HapticLoop& loop) {
+  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time, settings.guide);
+  if (!settings.real_time) throw Error("a device in another process has its own clock; it cannot run in virtual time");
+  return make_remote_pen(settings.device, file, loop);
+}
+
+/// How long to run, s.
+double duration(const SceneFile& file, const RunSettings& settings) {
+  if (settings.seconds > 0) return settings.seconds;
+  // What another process's hand does is not known.
+  if (!settings.device.empty()) return std::numeric_limits<double>::infinity();
+  return file.script.end() - file.script.begin() + kSettleTime;
 }
 
 void sleep_until(std::int64_t time_ns) {
@@ -58,35 +58,31 @@ class Session {
       : file_(file),
         settings_(settings),
         loop_(make_loop(file, settings.real_time)),
-        device_(with_clock(file.device, settings.real_time), file.script, loop_.center()),
-        channel_(Channel::create()),
-        servo_(device_, channel_),
-        link_(channel_, file.scene.coupling, loop_.center()),
-        script_seconds_(file.script.end() - file.script.begin()),
-        duration_(settings.seconds > 0 ? settings.seconds : script_seconds_ + kSettleTime) {
-    const Pose first = file.script.pose(file.script.begin()), last = file.script.pose(file.script.end());
-    from_ = first * loop_.center();
-    const Vec3 way = last * loop_.center() - from_;
-    way_ = way.norm();
-    if (way_ > 0) direction_ = way / way_;
+        pen_(make_pen(file, settings, loop_)),
+        goal_(file, loop_.center()),
+        duration_(duration(file, settings)) {
     if (!settings.record.empty())
       recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
-    if (settings.guide) device_.follow(*settings.guide);
   }
 
   RunSummary run() {
-    device_.start();
+    pen_->start();
     settings_.real_time ? run_real_time() : run_virtual_time();
-    device_.stop();
+    pen_->stop();
     if (recorder_) {
       recorder_->close();
       summary_.record_dropped = recorder_->dropped();
     }
-    summary_.servo = servo_.statistics();
+    summary_.servo = pen_->statistics();
+    summary_.missing_realtime = pen_->missing_realtime();
+    summary_.stability = pen_->stability();
+    summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
-    summary_.depth_m = depth(loop_.report().proxy.X);
-    summary_.completed = summary_.seconds >= script_seconds_ && at_end(loop_.report().proxy.X);
+    const Pose& X = loop_.report().proxy.X;
+    const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
+    summary_.depth_m = goal_.depth(X);
+    summary_.completed = script_over && goal_.reached(X);
     summary_.penetrating = check_.count_intersecting(file_.scene);
     return summary_;
   }
@@ -100,15 +96,14 @@ class Session {
       const std::int64_t now = i * kPeriodNs;
       if (settings_.observer) settings_.observer->before_tick(1e-9 * static_cast<double>(now));
       if (stopped()) break;
-      servo_.tick(now);
+      pen_->tick_servo(now);
       tick(static_cast<double>(i) * kPeriod, kPeriod, now);
-      device_.advance(kPeriod);
+      pen_->advance(kPeriod);
       summary_.seconds = static_cast<double>(i + 1) * kPeriod;
     }
   }
 
   void run_real_time() {
-    servo_.start();
     const std::int64_t start = monotonic_ns();
     std::int64_t last = start - kPeriodNs, next = start;
     while (!stopped()) {
@@ -121,17 +116,17 @@ class Session {
       // A tick that took longer than a period is followed at once, not by a burst that makes up for it.
       next = std::max(next + kPeriodNs, monotonic_ns());
     }
-    servo_.stop();
   }
 
   void tick(double t, double dt, std::int64_t now) {
     PenSample pen;
-    if (!link_.read(pen)) return;  // the servo has not begun
+    if (!pen_->read(pen, now)) return wait(now);
     const std::int64_t begin = monotonic_ns();
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
-    link_.publish(report.proxy, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
+    pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
+    sequence_ = pen.state.sequence;
 
     tick_times_.add(took);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
@@ -140,13 +135,16 @@ class Session {
     for (const Pose& X : report.pieces) check_.add(X);
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (recorder_) record(number, t, pen, report, tick_us);
-    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, servo_late_us()});
+    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us()});
     if (settings_.progress) show(t, pen, report);
   }
 
-  double servo_late_us() const {
-    return settings_.real_time ? 1e-3 * static_cast<double>(servo_.newest_late_ns())
-                               : std::numeric_limits<double>::quiet_NaN();
+  /// There is no pen to follow: the part stays, and the servo hears that this loop lives.
+  void wait(std::int64_t now) {
+    ProxyState still = loop_.report().proxy;
+    still.velocity = {};
+    pen_->publish(still, {}, static_cast<std::uint64_t>(summary_.ticks), sequence_, now);
+    if (settings_.progress) settings_.progress->device.store(pen_->connected(), std::memory_order_relaxed);
   }
 
   RecordingInfo info() const {
@@ -172,35 +170,20 @@ class Session {
   void show(double t, const PenSample& pen, const TickReport& report) {
     RunProgress& p = *settings_.progress;
     p.t.store(t, std::memory_order_relaxed);
-    p.depth.store(depth(report.proxy.X), std::memory_order_relaxed);
+    p.depth.store(goal_.depth(report.proxy.X), std::memory_order_relaxed);
     p.contacts.store(report.contacts, std::memory_order_relaxed);
     p.force.store(pen.wrench.force.norm(), std::memory_order_relaxed);
-  }
-
-  double depth(const Pose& X) const { return direction_.dot(X * loop_.center() - from_); }
-
-  bool at_end(const Pose& X) const {
-    const Pose end = file_.script.pose(file_.script.end());
-    const Displacement d = displacement(X, end, loop_.center());
-    const SimulatedDeviceSettings& pen = file_.device;
-    const double tolerance = kEndTolerance * (way_ + radius_about(*held_part(file_.scene).mesh, loop_.center())) +
-                             pen.friction / pen.hand.stiffness + pen.position_resolution;
-    return d.dp.norm() <= tolerance && d.dr.norm() <= kEndRotationTolerance;
+    p.device.store(true, std::memory_order_relaxed);
   }
 
   const SceneFile& file_;
   const RunSettings& settings_;
   HapticLoop loop_;
-  SimulatedDevice device_;
-  Channel channel_;
-  Servo servo_;
-  ContactLink link_;
+  std::unique_ptr<RunPen> pen_;
+  RunGoal goal_;
   std::optional<Recorder> recorder_;
-  double script_seconds_;
   double duration_;
-  Vec3 from_ = Vec3::Zero();       // center of mass where the script starts
-  Vec3 direction_ = Vec3::Zero();  // from there to where the script ends; zero when it ends where it starts
-  double way_ = 0;
+  std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   PoseCheck check_;
   LatencyHistogram tick_times_;
   RunSummary summary_;

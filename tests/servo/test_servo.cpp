@@ -10,6 +10,7 @@
 
 #include "alloc_guard.hpp"
 #include "catch.hpp"
+#include "puppet_device.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/simulated_device.hpp"
@@ -17,26 +18,11 @@
 #include "tegotae/servo/servo.hpp"
 
 using namespace tegotae;
+using test::engage;
+using test::kMs;
+using test::PuppetDevice;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-/// A pen that says what the test tells it to, and remembers what it was asked to render.
-class PuppetDevice : public Device {
- public:
-  DeviceState state;
-  DeviceStatus now = DeviceStatus::enabled;
-  Wrench rendered;
-  void start() override {}
-  void stop() override {}
-  DeviceState read() noexcept override { return state; }
-  void write(const Wrench& wrench) noexcept override { rendered = wrench; }
-  DeviceStatus status() const noexcept override { return now; }
-  ForceOff reason() const noexcept override {
-    return now == DeviceStatus::enabled ? ForceOff::none : ForceOff::disconnected;
-  }
-};
 
 ProxyState touching_at(const Vec3& p) {
   ProxyState x;
@@ -81,7 +67,7 @@ TEST_CASE("a tick renders the coupling to the newest proxy and tells of the pen"
   const Vec3 center(0.01, 0, 0);
   ContactLink link(channel, {800, 5, 0.3, 0.004}, center);
   Servo servo(device, channel);
-  device.state = {{Quat::Identity(), Vec3(0, 0, -0.003)}, {Vec3(0, 0, -0.1), Vec3(0, 1, 0)}, 5, 77, 42};
+  device.state = {{Quat::Identity(), Vec3(0, 0, -0.003)}, {Vec3(0, 0, -0.1), Vec3(0, 1, 0)}, 5, 77, 0};
 
   PenSample pen;
   CHECK_FALSE(link.read(pen));
@@ -91,8 +77,10 @@ TEST_CASE("a tick renders the coupling to the newest proxy and tells of the pen"
   CHECK(pen.reason == ForceOff::software);
   CHECK(pen.wrench.force.norm() == 0);
 
-  link.publish(touching_at(Vec3::Zero()), 1, 42, kMs);
-  servo.tick(2 * kMs);
+  const std::int64_t now = engage(servo, link, kMs);
+  link.publish(touching_at(Vec3::Zero()), 1, 42, now);
+  device.state.sequence = 41;
+  servo.tick(now + kMs);
   REQUIRE(link.read(pen));
   CHECK((device.rendered.force - Vec3(0, 0, 800 * 0.003 + 5 * 0.1)).norm() < 1e-12);
   CHECK((device.rendered.torque - Vec3(0, -0.004, 0)).norm() < 1e-15);
@@ -101,42 +89,57 @@ TEST_CASE("a tick renders the coupling to the newest proxy and tells of the pen"
   CHECK(pen.wrench.torque == device.rendered.torque);
   CHECK(pen.status == DeviceStatus::enabled);
   CHECK(pen.reason == ForceOff::none);
-  CHECK(pen.state.pose.p == Vec3(0, 0, -0.003));
+  CHECK((pen.state.pose.p - Vec3(0, 0, -0.003)).norm() < 1e-15);
+  CHECK(pen.raw.p == Vec3(0, 0, -0.003));
   CHECK(pen.state.velocity.w == Vec3(0, 1, 0));
   CHECK(pen.state.buttons == 5);
   CHECK(pen.state.time_ns == 77);
   CHECK(pen.state.sequence == 42);
-  CHECK(pen.heartbeat_ns == 2 * kMs);
-  CHECK(pen.tick == 1);
+  CHECK(pen.heartbeat_ns == now + kMs);
+  CHECK(pen.tick == 251);
 
   ProxyState free = touching_at(Vec3::Zero());
   free.touching = false;
-  link.publish(free, 2, 42, 2 * kMs);
-  servo.tick(3 * kMs);
+  link.publish(free, 2, 42, now + kMs);
+  servo.tick(now + 2 * kMs);
   REQUIRE(link.read(pen));
   CHECK(device.rendered.force.norm() == 0);
   CHECK(pen.reason == ForceOff::none);
 }
 
-TEST_CASE("the force ends with the contact loop's heartbeat and comes back with it", "[servo]") {
+TEST_CASE("the force ends with the contact loop's heartbeat and comes back from a small force", "[servo]") {
   PuppetDevice device;
   Channel channel = Channel::create();
   ContactLink link(channel, {}, Vec3::Zero());
   Servo servo(device, channel);
-  link.publish(touching_at(Vec3(0.001, 0, 0)), 1, 0, 0);
-  for (int i = 0; i <= 20; ++i) {
-    servo.tick(i * kMs);
+  const std::int64_t died = engage(servo, link);
+  link.publish(touching_at(Vec3(0.001, 0, 0)), 1, 0, died);
+  for (int i = 1; i <= 20; ++i) {
+    servo.tick(died + i * kMs);
     REQUIRE(device.rendered.force.x() == Approx(0.8));
   }
   PenSample pen;
-  servo.tick(21 * kMs);
+  for (int i = 21; i <= 23; ++i) {
+    servo.tick(died + i * kMs);
+    REQUIRE(link.read(pen));
+    CHECK(pen.reason == ForceOff::watchdog);
+    CHECK(pen.status == DeviceStatus::ready);
+  }
   CHECK(device.rendered.force.norm() == 0);
+  std::int64_t now = died + 24 * kMs;
+  // Pressed all the time it does not come back.
+  for (int i = 0; i < 100; ++i, now += kMs) {
+    link.publish(touching_at(Vec3(0.001, 0, 0)), 2, 0, now);
+    servo.tick(now);
+    REQUIRE(device.rendered.force.norm() == 0);
+  }
   REQUIRE(link.read(pen));
-  CHECK(pen.reason == ForceOff::watchdog);
-  CHECK(pen.status == DeviceStatus::ready);
-  link.publish(touching_at(Vec3(0.001, 0, 0)), 2, 0, 21 * kMs);
-  servo.tick(22 * kMs);
+  CHECK(pen.reason == ForceOff::engage);
+  now = engage(servo, link, now);
+  link.publish(touching_at(Vec3(0.001, 0, 0)), 3, 0, now);
+  servo.tick(now + kMs);
   CHECK(device.rendered.force.x() == Approx(0.8));
+  CHECK(servo.statistics().force_off[TEGOTAE_SHM_REASON_WATCHDOG] == 1);
 }
 
 TEST_CASE("a device that is lost and a pen that is not finite get no force", "[servo]") {
@@ -184,6 +187,125 @@ TEST_CASE("whatever stands in the application's slot, the wrench stays within th
   }
 }
 
+TEST_CASE("every field of the application's slot may hold garbage, one at a time or all", "[servo]") {
+  PuppetDevice device;
+  device.state.pose.p = Vec3(0, 0, -0.002);
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
+  Servo servo(device, channel);
+  std::mt19937_64 rng(12);
+  ContactPlanes planes;
+  planes.planes[0] = {Vec3::UnitZ(), Vec3::Zero(), 0};
+  planes.count = 1;
+  std::int64_t now = 0;
+  std::uint64_t rendered = 0;
+  Wrench last;
+  constexpr std::size_t kWords = sizeof(tegotae_shm_application) / 8;
+  for (int i = 0; i < 100'000; ++i) {
+    now += kMs;
+    // Long enough without garbage to be engaged and to press.
+    const int phase = i % 400;
+    planes.pen = device.state.pose;
+    link.publish(phase < 300 ? ProxyState() : touching_at(Vec3::Zero()), 0, 0, now, planes);
+    if (phase >= 340) {
+      tegotae_shm_application slot;
+      REQUIRE(channel.read(slot));
+      std::uint64_t words[kWords];
+      std::memcpy(words, &slot, sizeof slot);
+      const std::uint64_t odd[] = {rng(), 0x7ff8000000000000u, 0x7ff0000000000000u, 0xffffffffffffffffu,
+                                   0,     rng() >> 32};
+      if (phase % 10 == 0)
+        for (std::uint64_t& word : words) word = rng() % 2 == 0 ? word : odd[rng() % 6];
+      else
+        words[static_cast<std::size_t>(i) % kWords] = odd[rng() % 6];
+      std::memcpy(&slot, words, sizeof slot);
+      channel.write(slot);
+    }
+    servo.tick(now);
+    REQUIRE(device.rendered.force.allFinite());
+    REQUIRE(device.rendered.torque.allFinite());
+    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
+    REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-12));
+    const double step = (device.rendered.force - last.force).norm();
+    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
+    last = device.rendered;
+    REQUIRE(device.center().allFinite());
+    rendered += device.rendered.force.norm() > 0.5 ? 1 : 0;
+  }
+  CHECK(rendered > 5'000);
+}
+
+TEST_CASE("a pen that jumps, says NaN or falls silent for 10 s gets no sudden force", "[servo]") {
+  PuppetDevice device;
+  Channel channel = Channel::create();
+  ContactLink link(channel, {}, Vec3::Zero());
+  Servo servo(device, channel);
+  std::mt19937_64 rng(13);
+  std::normal_distribution<double> normal;
+  std::int64_t now = engage(servo, link);
+  Wrench last;
+  PenSample pen;
+  const auto tick = [&](bool repeat) {
+    now += kMs;
+    // The wall x >= 0, the proxy on it.
+    ProxyState x;
+    if (link.read(pen) && pen.state.pose.p.allFinite()) x.X = pen.state.pose;
+    x.touching = x.X.p.x() < 0;
+    x.X.p.x() = std::max(0.0, x.X.p.x());
+    link.publish(x, 0, 0, now);
+    if (repeat) --device.state.sequence;
+    device.state.time_ns = now;
+    servo.tick(now);
+    REQUIRE(link.read(pen));
+    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
+    const double step = (device.rendered.force - last.force).norm();
+    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
+    last = device.rendered;
+  };
+  const auto press = [&] {
+    device.state.pose = {Quat::Identity(), Vec3(0.01, 0, 0)};
+    for (int i = 0; i < 400; ++i) tick(false);
+    for (int i = 0; i < 60; ++i) {
+      device.state.pose.p.x() -= 0.2e-3;
+      tick(false);
+    }
+    REQUIRE(device.rendered.force.x() > 1);
+  };
+  press();
+  for (int i = 0; i < 10'000; ++i) {
+    tick(true);
+    if (i > 25) REQUIRE(device.rendered.force.norm() == 0);
+  }
+  CHECK(pen.reason == ForceOff::silent);
+  device.state.pose.p.x() = -0.1;  // it comes back somewhere else
+  for (int i = 0; i < 100; ++i) tick(false);
+  CHECK(device.rendered.force.norm() == 0);
+  CHECK(pen.reason == ForceOff::engage);
+  for (int round = 0; round < 50; ++round) {
+    press();
+    const DeviceState good = device.state;
+    switch (round % 4) {
+      case 0:
+        device.state.pose.p[static_cast<int>(rng() % 3)] = std::numeric_limits<double>::quiet_NaN();
+        break;
+      case 1:
+        device.state.velocity.w.x() = std::numeric_limits<double>::infinity();
+        break;
+      case 2:
+        device.state.pose.p += Vec3(normal(rng), normal(rng), normal(rng));
+        break;
+      default:
+        device.state.pose.q.coeffs() *= 1 + normal(rng);
+    }
+    for (int i = 0; i < 10; ++i) tick(false);
+    CHECK(device.rendered.force.norm() == 0);
+    device.state.pose = good.pose;
+    device.state.velocity = good.velocity;
+    tick(false);
+    CHECK(device.rendered.force.norm() == 0);
+  }
+}
+
 TEST_CASE("closed over the simulated pen, pushing a wall settles where the springs balance", "[servo]") {
   const std::vector<PenSample> seen = push_wall(3000);
   // The hand (400 N/m) wants to be 10 mm inside, the coupling is 800 N/m: 3.33 mm and 2.67 N; the friction's dead zone
@@ -228,9 +350,11 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
   SimulatedDevice device({}, StylusScript({{0, Pose()}, {1, {rotation(Vec3(0, 1, 0)), Vec3(0.1, 0, 0)}}}));
   device.start();
   Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3(0.01, 0, 0));
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
+  ContactPlanes planes;
   Servo servo(device, channel);
   std::uint64_t allocations = 0;
+  int local = 0;
   {
     const test::AllocGuard guard;
     PenSample pen;
@@ -241,11 +365,17 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
       // In contact, out of contact, and silent for longer than the watchdog allows.
       ProxyState x = touching_at(Vec3(0.001, 0, 0));
       x.touching = i % 200 < 150;
-      if (i < 900) link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, i * kMs);
+      planes.count = i % 7;
+      planes.pen = pen.state.pose;
+      for (int k = 0; k < planes.count; ++k)
+        planes.planes[static_cast<std::size_t>(k)] = {Vec3::UnitX(), Vec3(0, 0.01 * k, 0.01 * (k % 3)), 0};
+      local += (pen.flags & TEGOTAE_SHM_FLAG_LOCAL) != 0 ? 1 : 0;
+      if (i < 900) link.publish(x, static_cast<std::uint64_t>(i), pen.state.sequence, i * kMs, planes);
     }
     allocations = guard.count();
   }
   CHECK(allocations == 0);
+  CHECK(local > 300);
 }
 
 TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[servo]") {
@@ -260,8 +390,11 @@ TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[ser
   CHECK_THROWS_WITH(servo.start(), Catch::Contains("runs already"));
   PenSample pen;
   std::uint64_t rendered = 0;
-  while (rendered < 300) {
-    link.publish(touching_at(Vec3(0.001, 0, 0)), rendered, 0, monotonic_ns());
+  // A machine that holds this loop up for 20 ms turns the force off: then it lets go and presses again.
+  const std::int64_t give_up = begin + 60'000 * kMs;
+  while (rendered < 300 && monotonic_ns() < give_up) {
+    const bool off = !link.read(pen) || pen.reason != ForceOff::none || (pen.flags & TEGOTAE_SHM_FLAG_RAMP) != 0;
+    link.publish(off ? ProxyState() : touching_at(Vec3(0.001, 0, 0)), rendered, 0, monotonic_ns());
     std::this_thread::sleep_for(std::chrono::microseconds(500));
     if (link.read(pen) && pen.reason == ForceOff::none && pen.wrench.force.x() > 0.7) ++rendered;
   }

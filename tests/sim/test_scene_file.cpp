@@ -119,9 +119,18 @@ stiffness = 1
 damping = 0
 torsional_stiffness = 3
 torsional_damping = 4
+[safety]
+force_limit = 5
+torque_limit = 0.06
+continuous_force = 0
+force_slew = 700
+torque_slew = 8
+velocity_limit = 0.9
+heartbeat_timeout = 0.01
 [device]
 type = "simulated"
 script = "insert.csv"
+scale = 0.5
 hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_damping = 14, mass = 15, inertia = 16 }
 )");
   const Part &a = file.scene.parts[0], &b = file.scene.parts[1];
@@ -146,6 +155,15 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(coupling.damping == 0);
   CHECK(coupling.torsional_stiffness == 3);
   CHECK(coupling.torsional_damping == 4);
+  const SafetySettings& safety = file.safety;
+  CHECK(safety.limits.force == 5);
+  CHECK(safety.limits.torque == 0.06);
+  CHECK(safety.continuous_force == 0);
+  CHECK(safety.slew.force == 700);
+  CHECK(safety.slew.torque == 8);
+  CHECK(safety.velocity_limit == 0.9);
+  CHECK(safety.heartbeat_timeout == 0.01);
+  CHECK(file.scale == 0.5);
   const HandSettings& hand = file.device.hand;
   CHECK(hand.stiffness == 11);
   CHECK(hand.damping == 12);
@@ -189,6 +207,9 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {good + "[coupling]\n\nk = 1\n", "scene.toml:14: coupling.k: unknown key"},
       {good + "port = 1\n", "scene.toml:12: device.port: unknown key"},
       {good + "hand = { k = 1 }\n", "scene.toml:12: device.hand.k: unknown key"},
+      {good + "[safety]\nforce = 1\n", "scene.toml:13: safety.force: unknown key"},
+      {good + "[safety]\nheartbeat_timeout = 2\n", "scene.toml:13: safety.heartbeat_timeout: must be at most 1 s"},
+      {good + "scale = 1000\n", "scene.toml:12: device.scale: must be from 0.01 to 100"},
       // Wrong types.
       {replaced(good, "\"mm\"", "1"), "scene.toml:1: unit: must be a string"},
       {replaced(good, "\"block\"", "7"), "scene.toml:3: part.name: must be a string"},

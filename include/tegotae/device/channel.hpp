@@ -1,41 +1,59 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "tegotae/device/shm.h"
 
 namespace tegotae {
 
-/// One end of a shared-memory segment (shm.h). The servo creates it or attaches to it, and so does the application.
-class Channel {
+class Segment;
+
+/// Looks at a shared-memory segment (shm.h) without taking part.
+class ChannelReader {
  public:
-  /// Creates a segment that only this user may open. `name` is a POSIX shared-memory name such as "/tegotae-pen"; empty
-  /// chooses one that is unique to this process. It is unlinked when the Channel goes. Throws Error with the cause.
-  static Channel create(const std::string& name = {});
-  /// Opens an existing segment. Throws Error unless it belongs to this user, nobody else may open it, and size, magic
-  /// and version are those of this library.
-  static Channel attach(const std::string& name);
+  /// Opens an existing segment for reading, whoever else uses it. `name` is a POSIX shared-memory name such as
+  /// "/tegotae-pen"; the slash may be left out. Throws Error unless the segment belongs to this user, nobody else may
+  /// open it, size, magic and version are those of this library, and its device's process lives.
+  static ChannelReader open(const std::string& name);
 
-  ~Channel();
-  Channel(Channel&& other) noexcept;
-  Channel& operator=(Channel&& other) noexcept;
+  ~ChannelReader();
+  ChannelReader(ChannelReader&&) noexcept;
+  ChannelReader& operator=(ChannelReader&&) noexcept;
 
-  const std::string& name() const noexcept { return name_; }
+  const std::string& name() const noexcept;  ///< with the slash
+  std::uint64_t owner_pid() const noexcept;  ///< process id of the device
+  std::int64_t created_ns() const noexcept;  ///< when it was created, monotonic clock; tells one from its successor
 
-  // Each slot has one writer. A read gives one whole write, or false (and an untouched argument) when nothing was
-  // written yet or the writer is stuck in a write. None of them waits, allocates or throws.
-  void write(const tegotae_shm_device& payload) noexcept;
-  void write(const tegotae_shm_application& payload) noexcept;
-  void write(const tegotae_shm_statistics& payload) noexcept;
+  // A read gives one whole write, or false (and an untouched argument) when nothing was written yet or the writer is
+  // stuck in a write. None of them waits, allocates or throws.
   bool read(tegotae_shm_device& payload) const noexcept;
   bool read(tegotae_shm_application& payload) const noexcept;
   bool read(tegotae_shm_statistics& payload) const noexcept;
 
+ protected:
+  explicit ChannelReader(std::unique_ptr<Segment> segment);
+  std::unique_ptr<Segment> segment_;
+};
+
+/// One end of a segment. The device's side creates it, the application attaches to it.
+class Channel : public ChannelReader {
+ public:
+  /// Creates a segment that only this user may open; an empty name chooses one that is unique to this process. A
+  /// segment that a dead process left is replaced, that of a living one refused. It is removed when the Channel goes.
+  /// Throws Error with the cause.
+  static Channel create(const std::string& name = {});
+  /// Attaches an application; a segment has one at a time. Throws Error as ChannelReader::open does, and when another
+  /// application is attached.
+  static Channel attach(const std::string& name);
+
+  // Each slot has one writer. None of them waits, allocates or throws.
+  void write(const tegotae_shm_device& payload) noexcept;
+  void write(const tegotae_shm_application& payload) noexcept;
+  void write(const tegotae_shm_statistics& payload) noexcept;
+
  private:
-  Channel(std::string name, tegotae_shm_segment* segment, bool owner);
-  std::string name_;
-  tegotae_shm_segment* segment_ = nullptr;
-  bool owner_ = false;
+  using ChannelReader::ChannelReader;
 };
 
 }  // namespace tegotae

@@ -1,15 +1,30 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "tegotae/core/pose.hpp"
+#include "tegotae/device/limits.hpp"
 #include "tegotae/device/shm.h"
 
 namespace tegotae {
 
+/// What a device is, as far as its vendor tells. The defaults are those of a PHANTOM Premium 1.5/6DOF.
+struct DeviceInfo {
+  std::string name = "pen";           ///< at most TEGOTAE_SHM_NAME - 1 bytes are told to applications
+  int motion_freedom = 6;             ///< degrees of freedom that it senses: 3 or 6
+  int force_freedom = 6;              ///< degrees of freedom that it renders: 0 (input only), 3 or 6
+  WrenchLimits limits;                ///< peak
+  double continuous_force = 1.4;      ///< N, what its motors stand for long; 0: not limited
+  double damping = 0;                 ///< N·s/m, of the device alone; 0: not known
+  double torsional_damping = 0;       ///< N·m·s/rad; 0: not known
+  double friction = 0.04;             ///< Coulomb, N
+  double position_resolution = 3e-5;  ///< m
+};
+
 /// One snapshot of the pen.
 struct DeviceState {
-  Pose pose;                   ///< X_WF: where the pen wants the held part's file frame, in the world
+  Pose pose;                   ///< X_WF: the pen's frame in the device's own space, whose axes are those of the world
   Twist velocity;              ///< of the pen's body; `v` is that of the held part's center of mass (Device::center)
   std::uint32_t buttons = 0;   ///< bit i: button i is pressed
   std::int64_t time_ns = 0;    ///< when it was sampled: the monotonic clock, or the device's own in virtual time
@@ -32,16 +47,29 @@ enum class ForceOff : std::uint32_t {
   disconnected = TEGOTAE_SHM_REASON_DISCONNECTED,
   dead_man = TEGOTAE_SHM_REASON_DEAD_MAN,
   not_finite = TEGOTAE_SHM_REASON_NOT_FINITE,
+  workspace = TEGOTAE_SHM_REASON_WORKSPACE,
+  energy = TEGOTAE_SHM_REASON_ENERGY,
+  thermal = TEGOTAE_SHM_REASON_THERMAL,
+  engage = TEGOTAE_SHM_REASON_ENGAGE,
+  clutched = TEGOTAE_SHM_REASON_CLUTCHED,
+  silent = TEGOTAE_SHM_REASON_SILENT,
+  device_fault = TEGOTAE_SHM_REASON_DEVICE_FAULT,
+  force_exceeded = TEGOTAE_SHM_REASON_FORCE_EXCEEDED,
+  no_force = TEGOTAE_SHM_REASON_NO_FORCE,
 };
 
 /// For people, e.g. "the contact loop's heartbeat is too old".
 const char* to_string(DeviceStatus status) noexcept;
 const char* to_string(ForceOff reason) noexcept;
 
-/// A haptic pen, scaled and placed so that it speaks of the held part. Called from one thread, the servo's.
+/// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. Called from one
+/// thread, the servo's, but for info().
 class Device {
  public:
   virtual ~Device() = default;
+
+  /// What it is; does not change while the device is started.
+  virtual DeviceInfo info() const { return {}; }
 
   /// Connects and makes the device ready or enabled. Throws Error with the cause.
   virtual void start() = 0;
@@ -56,10 +84,16 @@ class Device {
   virtual DeviceStatus status() const noexcept = 0;
   virtual ForceOff reason() const noexcept = 0;
 
-  /// The held part's center of mass in its file frame, m: the point of the pen's body of which DeviceState::velocity
-  /// tells the velocity and at which wrenches act. The servo sets it from what the application says.
+  /// The point of the pen, in its frame, m, of which DeviceState::velocity tells the velocity and at which wrenches
+  /// act: it carries the held part's center of mass. The servo proposes that center in the part's file frame, which
+  /// suits a pen that has the part for a body; a device whose wrench acts at a fixed point, such as a stylus tip,
+  /// overrides set_center() to keep its own.
   const Vec3& center() const noexcept { return center_; }
   virtual void set_center(const Vec3& center) noexcept { center_ = center; }
+
+  /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
+  /// read() while an application is attached; an input that is integrated stays near the part by it.
+  virtual void set_lead(const Displacement&) noexcept {}
 
  private:
   Vec3 center_ = Vec3::Zero();

@@ -33,6 +33,7 @@ struct SimulatedDeviceSettings {
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
   double velocity_cutoff_hz = 50.0;             ///< of the low-pass on differences of the reported pose
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
+  bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
 };
 
 /// A pen without hardware: a rigid body pushed by a hand that follows a script and by the rendered wrench. Same
@@ -43,6 +44,8 @@ class SimulatedDevice final : public Device {
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
+  /// Its damping is the hand's, which it has for good.
+  DeviceInfo info() const override;
   void start() override;
   void stop() override;
   DeviceState read() noexcept override;
@@ -50,6 +53,7 @@ class SimulatedDevice final : public Device {
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
   void set_center(const Vec3& center) noexcept override;
+  void set_lead(const Displacement& lead) noexcept override;  ///< an application is there
 
   /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
   /// keeps a reference.

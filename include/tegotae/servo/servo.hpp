@@ -1,26 +1,25 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
-#include "tegotae/device/limits.hpp"
 #include "tegotae/servo/latency_histogram.hpp"
+#include "tegotae/servo/mapping.hpp"
 #include "tegotae/servo/realtime.hpp"
+#include "tegotae/servo/safety.hpp"
 
 namespace tegotae {
-
-/// Settings of the chain that every wrench passes before it leaves.
-struct SafetySettings {
-  WrenchLimits limits;
-  double heartbeat_timeout = 0.02;  ///< s; an older heartbeat of the contact loop means no force
-};
 
 struct ServoSettings {
   double rate_hz = 1000.0;  ///< up to 4000
   RealtimeConfig realtime = RealtimeConfig::ignore;
+  int cpu = -1;  ///< that the thread is bound to; negative: wherever the system puts it
   SafetySettings safety;
+  MappingSettings mapping;
+  bool local_model = true;  ///< bring the proxy up to date on the contact planes between two ticks of the contact loop
 };
 
 /// What the servo has done since it was made.
@@ -30,13 +29,19 @@ struct ServoStatistics {
   double rate_hz = 0;         ///< achieved, mean; 0 before the second tick
   LatencySummary late_us;     ///< wake-up minus schedule
   LatencySummary compute_us;  ///< the servo's own work in a tick
+  /// How often the force went off, or stayed off for a new reason, by ForceOff.
+  std::array<std::uint64_t, TEGOTAE_SHM_REASONS> force_off{};
 };
 
-/// The fast loop: pen in, coupling to the newest proxy, safety chain, wrench out, pen state to the application. Either
-/// as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.
+/// What the servo at the other end of `channel` last told of itself; zeros before it has.
+ServoStatistics servo_statistics(const ChannelReader& channel) noexcept;
+
+/// The fast loop: pen in, mapping, coupling to the newest proxy, safety chain, wrench out, pen state to the
+/// application. Either as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.
 class Servo {
  public:
-  /// Keeps references to both; they must outlive the servo. Throws Error for a setting out of range.
+  /// Keeps references to both; they must outlive the servo. What the device is (Device::info) is asked here: a device
+  /// that learns it when it starts must have been started. Throws Error for a setting out of range.
   Servo(Device& device, Channel& channel, const ServoSettings& settings = {});
   ~Servo();  ///< stops
   Servo(const Servo&) = delete;

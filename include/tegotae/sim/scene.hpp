@@ -24,7 +24,8 @@ struct ContactSettings {
                  ///< clearance of the closest fit, NaN lets the loop adapt it (4 to 20 µm) to the room it finds
   double l_0;    ///< back-off length (m) after an intersection
   std::string resolver = "qp";  ///< "qp": least constraint; "lp": the paper's linear programme
-  std::string narrowphase = "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
+  std::string narrowphase =
+      "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
   /// Time (s) that a tick of HapticLoop::step may take; what is not done by then is left for the next tick. Infinite:
   /// bounded by work alone, so that the same pen gives the same motion bit for bit on any machine.
   double tick_budget = 0.8e-3;

@@ -4,6 +4,7 @@
 
 #include "tegotae/device/script.hpp"
 #include "tegotae/device/simulated_device.hpp"
+#include "tegotae/servo/safety.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
@@ -13,7 +14,9 @@ struct SceneFile {
   std::string path;
   Scene scene;
   SimulatedDeviceSettings device;
-  StylusScript script;  ///< what the operator's hand does
+  StylusScript script;      ///< what the operator's hand does
+  SafetySettings safety{};  ///< of the servo in this process; a device in another one has its own
+  double scale = 1;         ///< meters that the held part moves for a meter of the pen
 };
 
 /// Reads a scene file (TOML, see docs/scene-file.md) and the meshes it names; parts with the same file and unit share

@@ -15,10 +15,11 @@ namespace tegotae {
 /// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
 struct RunProgress {
   std::atomic<double> t{0};         ///< s since the start
-  std::atomic<double> duration{0};  ///< s the run will take
+  std::atomic<double> duration{0};  ///< s the run will take; infinite: until it is ended
   std::atomic<double> depth{0};     ///< m, as RunSummary::depth_m
   std::atomic<int> contacts{0};
-  std::atomic<double> force{0};  ///< N
+  std::atomic<double> force{0};    ///< N
+  std::atomic<bool> device{true};  ///< the device is there
 };
 
 /// A tick of the contact loop, for whoever looks on.
@@ -42,13 +43,16 @@ class RunObserver {
 };
 
 struct RunSettings {
+  /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
+  /// in a thread of this process. Only in real time.
+  std::string device;
   bool real_time = true;  ///< false: virtual time, as fast as it goes and the same on every run
-  double seconds = 0;     ///< how long; 0: to the end of the script and kSettleTime more
-  std::string record;     ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
-  std::string program;    ///< name and version, for the recording's info
+  double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
+  std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
+  std::string program;  ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
-  const HandGuide* guide = nullptr;         ///< leads the hand away from the script
+  const HandGuide* guide = nullptr;         ///< leads the simulated hand away from the script
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };
 
@@ -56,8 +60,9 @@ struct RunSettings {
 struct RunSummary {
   std::int64_t ticks = 0;  ///< of the contact loop
   double seconds = 0;      ///< simulated time; in real time also the time it took
-  /// The run went past the end of the script and the held part rests where the script ends: its center within 2 % of
-  /// the way plus the part's radius and what friction and resolution leave of the pen, its rotation within 0.1 rad.
+  /// The run went past the end of the script (with the device of another process: whenever it ended) and the held part
+  /// rests where the script ends: its center within 2 % of the way plus the part's radius and what friction and
+  /// resolution leave of the pen, its rotation within 0.1 rad.
   bool completed = false;
   /// How far (m) the held part's center has gone along the straight line from where the script starts to where it ends.
   double depth_m = 0;
@@ -65,10 +70,13 @@ struct RunSummary {
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked.
   std::int64_t penetrating = 0;
-  LatencySummary tick_us;  ///< time a tick of the contact loop takes
-  ServoStatistics servo;   ///< in virtual time only the number of ticks
-  double force_max_n = 0;  ///< largest rendered force
+  LatencySummary tick_us;        ///< time a tick of the contact loop takes
+  ServoStatistics servo;         ///< in virtual time only the number of ticks
+  std::string missing_realtime;  ///< what the system did not grant to the servo's thread; of this process's servo only
+  std::string stability;         ///< StabilityReport::text(); of this process's servo only
+  double force_max_n = 0;        ///< largest rendered force
   double torque_max_nm = 0;
+  std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
 };
 

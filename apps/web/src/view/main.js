@@ -63,7 +63,7 @@ function showScene(bundle) {
   overlay.setScene(about);
   overlay.applyTheme();
   hand.setScene(about);
-  hand.enabled = about.mode === "live";
+  hand.enabled = about.led === true;
   section.set(section.axis);
   showParts(stage, live && about.restartable ? (part) => live.send({ do: "hold", part }) : null);
   showLayers(overlay);

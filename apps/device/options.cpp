@@ -1,0 +1,34 @@
+#include "device/options.hpp"
+
+namespace tegotae::apps {
+
+namespace {
+constexpr int kButtons = 32;
+}
+
+void add_device_options(CLI::App& app, DeviceOptions& o) {
+  CLI::Option* type = app.add_option("--type", o.type, "The device: simulated, openhaptics, spacemouse or gamepad")
+                          ->check(CLI::IsMember({"simulated", "openhaptics", "spacemouse", "gamepad"}))
+                          ->type_name("TYPE");
+  app.add_option("--script", o.script, "Stylus script (CSV) of the simulated hand; begins when an application attaches")
+      ->type_name("FILE");
+  app.add_option("--pen", o.pen, "Name of the pen in the vendor's set-up (openhaptics; its default pen unless told)")
+      ->type_name("PEN");
+  app.add_option("--name", o.name, "Name of the shared-memory segment, one a device")
+      ->capture_default_str()
+      ->type_name("NAME");
+  app.add_option("--rate", o.rate_hz, "Servo ticks a second, 10 to 4000")->capture_default_str()->type_name("HZ");
+  app.add_option("--cpu", o.cpu, "Bind the servo to this CPU")->check(CLI::NonNegativeNumber)->type_name("N");
+  app.add_flag("--enforce", o.enforce, "Refuse to run when the system does not grant real time");
+  app.add_option("--clutch-button", o.clutch_button, "While this button (0, 1, ...) is pressed the part stays")
+      ->check(CLI::Range(0, kButtons - 1))
+      ->type_name("N");
+  app.add_option("--dead-man-button", o.dead_man_button, "Force only while this button is pressed")
+      ->check(CLI::Range(0, kButtons - 1))
+      ->type_name("N");
+  CLI::Option* status = app.add_flag("--status", o.status, "Print how a running device does, and exit");
+  app.add_flag("--json", o.json, "With --status: one line of JSON")->needs(status);
+  status->excludes(type);
+}
+
+}  // namespace tegotae::apps

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// A limit on the held part's motion near its pose X: the point `point` of it may move against `normal` by `room`.
+struct ContactPlane {
+  Vec3 normal = Vec3::Zero();  ///< unit, out of the obstacle, world
+  Vec3 point = Vec3::Zero();   ///< of the held part at X, m, world
+  double room = 0;             ///< m; below 0: the point should move out by so much
+};
+
+/// What the contact loop knows about the held part's next millimeter, for a servo that is faster: the limits that held
+/// it in its last tick, and after them the nearest others. A free body needs no more than six.
+struct ContactPlanes {
+  static constexpr int kMost = 6;
+  std::array<ContactPlane, kMost> planes;
+  int count = 0;  ///< 0: nothing is known, X stays where it is until the next tick
+  Pose pen;       ///< Y that the tick answered
+};
+
+}  // namespace tegotae

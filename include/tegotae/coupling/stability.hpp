@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "tegotae/coupling/coupling.hpp"
+#include "tegotae/device/device.hpp"
+
+namespace tegotae {
+
+/// How stiff a coupling may be so that a sampled wall never gives a hand energy, whatever the hand does. With b the
+/// damping of the device, B that of the coupling, T the period, f_c the Coulomb friction and Δ the position resolution:
+/// b > K T / 2 + |B| (Colgate and Schenkel, "Passivity of a class of sampled-data systems", 1997) and
+/// K <= 2 f_c / Δ (Abbott and Okamura, "Effects of position quantization and sampling rate on virtual-wall passivity",
+/// 2005). A hand that holds the pen adds damping: couplings above the limit can be stable in a hand, none below it is
+/// unstable.
+struct StabilityReport {
+  double rate_hz = 0;
+  CouplingSettings coupling;             ///< what is asked for
+  double sampling_limit = 0;             ///< N/m, 2 (b - |B|) / T; NaN when b is not known
+  double quantization_limit = 0;         ///< N/m, 2 f_c / Δ; infinite without quantization
+  double stiffness_limit = 0;            ///< N/m, the smaller one; NaN when not known
+  double torsional_stiffness_limit = 0;  ///< N·m/rad, by sampling alone; NaN when not known
+  /// In one line, for people.
+  std::string text() const;
+};
+
+/// Of `coupling` on `device` at `rate_hz`.
+StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coupling, double rate_hz);
+
+}  // namespace tegotae

@@ -1,0 +1,50 @@
+#include "tegotae/coupling/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace tegotae {
+
+namespace {
+
+/// The largest stiffness that leaves a sampled wall passive; NaN when the device's damping is not known.
+double sampling_limit(double device_damping, double damping, double rate_hz) {
+  if (!(device_damping > 0)) return std::numeric_limits<double>::quiet_NaN();
+  return std::max(0.0, 2 * (device_damping - std::abs(damping)) * rate_hz);
+}
+
+std::string limit_text(double limit, const char* unit) {
+  if (std::isnan(limit)) return "limit not known";
+  char text[64];
+  std::snprintf(text, sizeof text, "limit %.3g %s", limit, unit);
+  return text;
+}
+
+}  // namespace
+
+StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coupling, double rate_hz) {
+  StabilityReport r;
+  r.rate_hz = rate_hz;
+  r.coupling = coupling;
+  r.sampling_limit = sampling_limit(device.damping, coupling.damping, rate_hz);
+  r.quantization_limit = device.position_resolution > 0 ? 2 * device.friction / device.position_resolution
+                                                        : std::numeric_limits<double>::infinity();
+  r.stiffness_limit =
+      std::isnan(r.sampling_limit) ? r.sampling_limit : std::min(r.sampling_limit, r.quantization_limit);
+  r.torsional_stiffness_limit = sampling_limit(device.torsional_damping, coupling.torsional_damping, rate_hz);
+  return r;
+}
+
+std::string StabilityReport::text() const {
+  char text[128];
+  std::snprintf(text, sizeof text, "stiffness %.4g N/m", coupling.stiffness);
+  std::string line = std::string(text) + " (" + limit_text(stiffness_limit, "N/m") + ")";
+  std::snprintf(text, sizeof text, ", %.4g N·m/rad", coupling.torsional_stiffness);
+  line += std::string(text) + " (" + limit_text(torsional_stiffness_limit, "N·m/rad") + ")";
+  const bool above = coupling.stiffness > stiffness_limit || coupling.torsional_stiffness > torsional_stiffness_limit;
+  return above ? line + ": above the limit, only the hand and the passivity controller keep it quiet" : line;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,71 @@
+#include "servo/application_state.hpp"
+
+#include <cmath>
+
+#include "servo/safety_links.hpp"
+#include "servo/shm_convert.hpp"
+
+namespace tegotae {
+
+namespace {
+
+// Nothing that a hand moves is farther from the origin (m); beyond, a pose would lose its micrometers.
+constexpr double kFarthest = 1e4;
+
+bool near(const Vec3& v) {
+  return v.allFinite() && v.cwiseAbs().maxCoeff() <= kFarthest;
+}
+
+bool placed(const double (&position)[3], const double (&orientation)[4]) {
+  const Pose pose = {quaternion(orientation), vector(position)};
+  return proper(pose) && near(pose.p);
+}
+
+bool constant(double x) {
+  return std::isfinite(x) && x >= 0;
+}
+
+}  // namespace
+
+bool sane(const tegotae_shm_application& in) noexcept {
+  return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
+         vector(in.angular_velocity).allFinite() && near(vector(in.center)) && constant(in.stiffness) &&
+         constant(in.damping) && constant(in.torsional_stiffness) && constant(in.torsional_damping) &&
+         in.scale >= kLeastScale && in.scale <= kMostScale && in.clutch <= TEGOTAE_SHM_CLUTCH_ALL &&
+         (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
+}
+
+CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept {
+  return {in.stiffness, in.damping, in.torsional_stiffness, in.torsional_damping};
+}
+
+MappingCommand mapping_of(const tegotae_shm_application& in) noexcept {
+  return {in.scale,        static_cast<Clutch>(in.clutch),
+          in.home_counter, {quaternion(in.home_orientation), vector(in.home_position)},
+          in.session,      vector(in.center)};
+}
+
+ProxyState proxy_of(const tegotae_shm_application& in) noexcept {
+  return {{quaternion(in.orientation), vector(in.position)},
+          {vector(in.velocity), vector(in.angular_velocity)},
+          in.touching != 0};
+}
+
+ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
+  ContactPlanes out;
+  if (in.plane_count > ContactPlanes::kMost || !placed(in.pen_position, in.pen_orientation)) return out;
+  out.count = static_cast<int>(in.plane_count);
+  for (std::size_t i = 0; i < in.plane_count; ++i)
+    out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room};
+  out.pen = {quaternion(in.pen_orientation), vector(in.pen_position)};
+  return out;
+}
+
+Mat3 gyration_of(const tegotae_shm_application& in) noexcept {
+  const double* g = in.gyration;
+  Mat3 out;
+  out << g[0], g[3], g[4], g[3], g[1], g[5], g[4], g[5], g[2];
+  return out;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,40 @@
+#include "sim/run_goal.hpp"
+
+#include <algorithm>
+
+#include "broadphase/bounding_spheres.hpp"
+
+namespace tegotae {
+
+namespace {
+
+// Of the script's way and of the held part's radius: what a spring between hand and part leaves when the script ends a
+// little inside an obstacle.
+constexpr double kEndTolerance = 0.02;
+constexpr double kEndRotationTolerance = 0.1;  // rad
+
+}  // namespace
+
+const Part& held_part(const Scene& scene) {
+  return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+}
+
+RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
+    : center_(center),
+      end_(file.script.pose(file.script.end())),
+      from_(file.script.pose(file.script.begin()) * center) {
+  // The part goes `scale` times the pen's way.
+  end_ = displaced(end_, center, {(file.scale - 1) * (end_ * center - from_), Vec3::Zero()});
+  const Vec3 way = end_ * center - from_;
+  if (way.norm() > 0) direction_ = way.normalized();
+  const SimulatedDeviceSettings& pen = file.device;
+  tolerance_ = kEndTolerance * (way.norm() + radius_about(*held_part(file.scene).mesh, center)) +
+               pen.friction / pen.hand.stiffness + pen.position_resolution;
+}
+
+bool RunGoal::reached(const Pose& X) const {
+  const Displacement d = displacement(X, end_, center_);
+  return d.dp.norm() <= tolerance_ && d.dr.norm() <= kEndRotationTolerance;
+}
+
+}  // namespace tegotae

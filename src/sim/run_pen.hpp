@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tegotae/device/hand_guide.hpp"
+#include "tegotae/servo/contact_link.hpp"
+#include "tegotae/servo/servo.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+namespace tegotae {
+
+/// What a run has for a pen, with its servo.
+class RunPen {
+ public:
+  virtual ~RunPen() = default;
+  /// On the wall clock the servo runs from start() to stop(); in virtual time advance() drives it.
+  virtual void start() = 0;
+  virtual void stop() = 0;
+  /// In virtual time: a servo tick at `now_ns`, and after the contact loop's tick the pen `dt` seconds on.
+  virtual void tick_servo(std::int64_t now_ns) noexcept = 0;
+  virtual void advance(double dt) noexcept = 0;
+
+  /// The newest sample; false when there is none to follow, and the part stays.
+  virtual bool read(PenSample& pen, std::int64_t now_ns) noexcept = 0;
+  virtual void publish(const ProxyState& proxy, const ContactPlanes& planes, std::uint64_t tick,
+                       std::uint64_t device_sequence, std::int64_t now_ns) noexcept = 0;
+
+  virtual bool connected() const noexcept = 0;
+  virtual std::uint64_t losses() const noexcept = 0;
+  virtual ServoStatistics statistics() const noexcept = 0;
+  /// How late the servo's newest tick began, µs; NaN in virtual time and where it is not known.
+  virtual double servo_late_us() const noexcept = 0;
+  /// RunSummary::missing_realtime and stability.
+  virtual std::string missing_realtime() const = 0;
+  virtual std::string stability() const = 0;
+};
+
+/// The scene's simulated pen with a servo of its own, in this process.
+/// `guide` (may be null) leads its hand away from the script.
+std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock,
+                                       const HandGuide* guide);
+/// A device in another process, "shm:NAME". Throws Error when there is none.
+std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop);
+
+}  // namespace tegotae

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "tegotae/device/device.hpp"
+#include "tegotae/servo/contact_link.hpp"
+#include "tegotae/servo/servo.hpp"
+
+namespace tegotae::test {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+
+/// A pen that says what the test tells it to, and remembers what it was asked to render.
+class PuppetDevice : public Device {
+ public:
+  DeviceState state;
+  DeviceStatus now = DeviceStatus::enabled;
+  DeviceInfo facts;
+  Wrench rendered;
+  DeviceInfo info() const override { return facts; }
+  void start() override {}
+  void stop() override {}
+  DeviceState read() noexcept override {
+    ++state.sequence;
+    return state;
+  }
+  void write(const Wrench& wrench) noexcept override { rendered = wrench; }
+  DeviceStatus status() const noexcept override { return now; }
+  ForceOff reason() const noexcept override {
+    return now == DeviceStatus::enabled ? ForceOff::none : ForceOff::disconnected;
+  }
+};
+
+/// Ticks without contact until the force is engaged and ramped in; returns the time of the last tick.
+inline std::int64_t engage(Servo& servo, ContactLink& link, std::int64_t from_ns = 0) {
+  std::int64_t now = from_ns;
+  for (int i = 0; i < 250; ++i) {
+    now += kMs;
+    link.publish({}, 0, 0, now);
+    servo.tick(now);
+  }
+  return now;
+}
+
+}  // namespace tegotae::test
