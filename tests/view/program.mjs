@@ -13,9 +13,14 @@ export function launch() {
   });
 }
 
+// What still runs when a test fails ends with it.
+const children = [];
+process.on("exit", () => children.forEach((child) => child.kill("SIGKILL")));
+
 // A running program: {url, stop()}.
 export async function serve(program, ...options) {
   const child = spawn(`${bin}/${program}`, options, { stdio: ["ignore", "pipe", "inherit"] });
+  children.push(child);
   const ended = new Promise((resolve) => child.on("exit", (code, signal) => resolve(signal ?? code)));
   const lines = createInterface({ input: child.stdout });
   const url = await new Promise((resolve, reject) => {
