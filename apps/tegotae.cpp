@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
     if (import->parsed()) return import_file(import_options);
-    return run_and_report(load_with_progress(scene, {hold, true, {}}), options, scene);
+    const SceneOptions how{hold, true, {}};
+    return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
   });
 }
