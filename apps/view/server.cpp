@@ -24,7 +24,7 @@ namespace {
 
 // Threads that serve; each watcher keeps one, the rest is for requests.
 const std::string kThreads = std::to_string(kMostWatchers + 12);
-// A client that neither sends nor takes anything for so long (ms) is dropped.
+// CivetWeb gives up on a client that it waits for so long (ms) without a byte going either way.
 constexpr const char* kTimeout = "10000";
 constexpr std::size_t kMostHeader = 8192;
 // A command is a few numbers in two levels; a second has so many of them (a drag sends one a frame).
