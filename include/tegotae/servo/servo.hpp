@@ -61,6 +61,8 @@ class Servo {
   const RealtimeReport& realtime() const noexcept;
   /// While the thread runs: as of at most a tenth of a second ago.
   ServoStatistics statistics() const noexcept;
+  /// How late the thread's newest tick woke up, ns.
+  std::int64_t newest_late_ns() const noexcept;
 
  private:
   struct Impl;
