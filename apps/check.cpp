@@ -7,7 +7,6 @@
 
 #include "run_options.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
@@ -25,14 +24,14 @@ void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
   std::printf("  box %.6g..%.6g  %.6g..%.6g  %.6g..%.6g %s\n", lo.x(), hi.x(), lo.y(), hi.y(), lo.z(), hi.z(), unit);
 }
 
-void check_mesh(const std::string& file) {
-  const TriangleMesh mesh = load_mesh(file);
+void check_mesh(const std::string& file, const MeshLoader& load) {
+  const TriangleMesh mesh = load(file, 1.0);
   std::cout << file << "\n" << std::flush;
   print_mesh(report(mesh), 1.0, "(file units)");
 }
 
-void check_scene(const std::string& path) {
-  const SceneFile file = load_scene(path);
+void check_scene(const std::string& path, const MeshLoader& load) {
+  const SceneFile file = load_scene(path, load);
   std::cout << path << "\n" << std::flush;
   std::map<const TriangleMesh*, std::string> seen;
   for (const Part& part : file.scene.parts) {
@@ -56,14 +55,14 @@ void check_scene(const std::string& path) {
 
 }  // namespace
 
-int check_files(const std::vector<std::string>& files) {
+int check_files(const std::vector<std::string>& files, const MeshLoader& load) {
   int code = kDone;
   for (const std::string& file : files) {
     try {
       if (std::filesystem::path(file).extension() == ".toml")
-        check_scene(file);
+        check_scene(file, load);
       else
-        check_mesh(file);
+        check_mesh(file, load);
     } catch (const Error& e) {
       std::fflush(stdout);
       std::cerr << "tegotae: " << e.what() << "\n";

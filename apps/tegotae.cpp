@@ -7,6 +7,7 @@
 #include "bench/scenes.hpp"
 #include "check.hpp"
 #include "run_options.hpp"
+#include "tegotae/mesh/isolated_load.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -36,6 +37,10 @@ int main(int argc, char** argv) {
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
   check->add_option("FILE", files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
 
+  bool isolated = false;
+  for (CLI::App* reads : {run, check})
+    reads->add_flag("--isolated", isolated, "Load meshes in a process of their own, bounded in time and memory");
+
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
   measure->add_option("--scene", bench_options.scenes, "Only this scene (may be repeated)")
@@ -52,8 +57,11 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
 
   return guarded_main(app, argc, argv, [&] {
-    if (check->parsed()) return check_files(files);
+    const MeshLoader load = [isolated](const std::string& file, double unit) {
+      return isolated ? load_mesh_isolated(file, unit) : load_mesh(file, unit);
+    };
+    if (check->parsed()) return check_files(files, load);
     if (measure->parsed()) return bench::run_bench(bench_options);
-    return run_and_report(load_scene(scene), options, scene);
+    return run_and_report(load_scene(scene, load), options, scene);
   });
 }

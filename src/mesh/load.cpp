@@ -3,6 +3,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <exception>
@@ -10,6 +11,7 @@
 #include <new>
 
 #include "mesh/file_check.hpp"
+#include "mesh/load_files.hpp"
 #include "mesh/precision.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -48,6 +50,16 @@ void require_valid_indices(const aiScene& scene, const std::string& path) {
   }
 }
 
+/// A face without corners is marked as a polygon by assimp, whose triangulation then ends the program.
+void unmark_empty_polygons(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& mesh = *scene.mMeshes[m];
+    const aiFace* end = mesh.mFaces + mesh.mNumFaces;
+    if (std::none_of(mesh.mFaces, end, [](const aiFace& f) { return f.mNumIndices > 3; }))
+      mesh.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
+  }
+}
+
 void append(const aiMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {
   const std::size_t base = to.vertices.size();
   // Indices are 32 bits wide, and so are half-edges (3 per triangle).
@@ -78,9 +90,11 @@ void append(const aiScene& scene, const aiNode& node, const Matrix34& parent, do
 
 TriangleMesh import(const std::string& path, double unit) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr) throw Error(path + ": " + importer.GetErrorString());
   require_valid_indices(*scene, path);
+  unmark_empty_polygons(*scene);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) throw Error(path + ": " + importer.GetErrorString());
   TriangleMesh mesh;

@@ -11,7 +11,6 @@
 #include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
 
 namespace tegotae {
 
@@ -64,7 +63,7 @@ Pose read_pose(const TomlTable& t) {
   return X;
 }
 
-void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene& scene) {
+void read_parts(const TomlTable& top, const std::filesystem::path& folder, const MeshLoader& load, Scene& scene) {
   const double default_unit = read_unit(top, "m");
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
@@ -81,7 +80,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, Scene
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder);
     auto& mesh = meshes[{file, unit}];
-    if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(load_mesh(file, unit)); });
+    if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(load(file, unit)); });
     part.mesh = mesh;
     scene.parts.push_back(std::move(part));
   }
@@ -131,7 +130,7 @@ SimulatedDeviceSettings read_device(const TomlTable& t) {
 
 }  // namespace
 
-SceneFile load_scene(const std::string& path) {
+SceneFile load_scene(const std::string& path, const MeshLoader& load) {
   const toml::table parsed = parse_toml(path);
   const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -145,7 +144,7 @@ SceneFile load_scene(const std::string& path) {
   const SimulatedDeviceSettings settings = read_device(device);
   const std::string script_file = file_under(device, "script", folder);
   StylusScript script = about(device, "script", [&] { return read_script(script_file); });
-  read_parts(top, folder, scene);
+  read_parts(top, folder, load, scene);
   return {path, std::move(scene), settings, std::move(script)};
 }
 

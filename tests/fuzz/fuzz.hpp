@@ -8,8 +8,8 @@
 
 namespace tegotae {
 
-/// One fuzz target per program: this function, libFuzzer's entry point, and seeds(). Whatever the bytes, it returns; what
-/// the library promises about them is checked by require(). An Error is an answer, any other exception a finding.
+/// One fuzz target per program: this function, libFuzzer's entry point, and seeds(). Whatever the bytes, it returns;
+/// what the library promises about them is checked by require(). An Error is an answer, any other exception a finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 /// A small input to begin with.

@@ -1,6 +1,6 @@
-// Mesh files of one format (TEGOTAE_FUZZ_FORMAT, an extension): load_mesh and everything that a part goes through before
-// the first tick.
+// Mesh files of one format: load_mesh and everything that a part goes through before the first tick.
 #include "fuzz/fuzz.hpp"
+#include "fuzz/mesh_format.hpp"
 #include "fuzz/mesh_seeds.hpp"
 #include "mesh/surface.hpp"
 #include "tegotae/core/error.hpp"
@@ -11,11 +11,11 @@
 namespace tegotae {
 
 std::vector<Seed> seeds() {
-  return mesh_seeds(TEGOTAE_FUZZ_FORMAT);
+  return mesh_seeds(kFormat);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string path = write_input("input." TEGOTAE_FUZZ_FORMAT, data, size);
+  const std::string path = write_input(std::string("input.") + kFormat, data, size);
   try {
     const auto mesh = std::make_shared<const TriangleMesh>(load_mesh(path, 1e-3));
     require(!mesh->triangles.empty(), "a mesh that loads has triangles");

@@ -49,12 +49,13 @@ std::vector<Seed> seeds() {
                         "torsional_stiffness = 0.3\ntorsional_damping = 0.004\n" +
                         kDevice +
                         "type = \"simulated\"\nhand = { stiffness = 400, damping = 24, mass = 0.3, inertia = 2e-4 }\n"},
-          {"turned", "[[part]]\nname = 'a'\nmesh = './tet.obj'\nunit = 'in'\nrpy_deg = [10, 20, 30]\n"
-                     "[[part]]\nname = 'b'\nmesh = 'tet.obj'\nheld = true\nposition = [3.0, 0, inf]\n"
-                     "orientation = [0.5, 0.5, -0.5, 0.5]\n" +
-                         kDevice},
-          {"intersecting", "[[part]]\nname=\"a\"\nmesh=\"tet.obj\"\nheld=true\n[[part]]\nname=\"b\"\nmesh=\"tet.obj\"\n" +
-                               kDevice},
+          {"turned",
+           "[[part]]\nname = 'a'\nmesh = './tet.obj'\nunit = 'in'\nrpy_deg = [10, 20, 30]\n"
+           "[[part]]\nname = 'b'\nmesh = 'tet.obj'\nheld = true\nposition = [3.0, 0, inf]\n"
+           "orientation = [0.5, 0.5, -0.5, 0.5]\n" +
+               kDevice},
+          {"intersecting",
+           "[[part]]\nname=\"a\"\nmesh=\"tet.obj\"\nheld=true\n[[part]]\nname=\"b\"\nmesh=\"tet.obj\"\n" + kDevice},
           {"no_held", "[[part]]\nname=\"a\"\nmesh=\"tet.obj\"\n" + kDevice},
           {"unknown_key", "frobnicate = 1979-05-27T07:32:00Z\n" + kParts + kDevice},
           {"wrong_type", "part = 3\n[device]\nscript = [[1], {}]\n"},

@@ -60,8 +60,9 @@ std::vector<Seed> stl() {
 std::vector<Seed> obj() {
   const std::string body = corner_lines("v ") + face_lines("f", 1);
   return {{"plain", body},
-          {"rich", "mtllib t.mtl\no t\ng a b\ns 1\n" + corner_lines("v ") +
-                       "vt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 3/1/1 2/1/1\nf -4//1 -3//1 -1//1\nf 2/1 3/1 4/1 1/1\nl 1 2\np 1\n"},
+          {"rich",
+           "mtllib t.mtl\no t\ng a b\ns 1\n" + corner_lines("v ") +
+               "vt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 3/1/1 2/1/1\nf -4//1 -3//1 -1//1\nf 2/1 3/1 4/1 1/1\nl 1 2\np 1\n"},
           {"colors", "v 0 0 0 nan nan nan\nv 1 0 0 1 0 0\nv 0 1 0 0 1 0\nf 1 2 3\n"},
           {"short_face", "v 0 0 0\nv 1 0 0\nf 1 2\nf 1\nf\n"},
           {"continued", "v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 3\n"},

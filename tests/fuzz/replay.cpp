@@ -37,7 +37,8 @@ std::string mutated(std::string bytes, std::mt19937& random) {
       bytes.insert(from, std::string(bytes, from, length));
       break;
     default:
-      for (std::size_t i = 0; i < std::min<std::size_t>(length, 4); ++i) bytes[from + i] = static_cast<char>(below(256));
+      for (std::size_t i = 0; i < std::min<std::size_t>(length, 4); ++i)
+        bytes[from + i] = static_cast<char>(below(256));
   }
   return bytes;
 }

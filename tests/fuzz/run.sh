@@ -22,14 +22,17 @@ for target in "${targets[@]}"; do
   build/fuzz/bin/fuzz_"$target" --write-seeds "$dir/seeds"
   # Real files of the format, where they are; large ones only slow the fuzzer down.
   if [ -d "$parts" ]; then
-    find -L "$(realpath "$parts")" -iname "*.$target" -size -200k -exec ln -sf -t "$dir/seeds" {} +
+    find -L "$(realpath "$parts")" -iname "*.$target" -size -40k -exec ln -sf -t "$dir/seeds" {} +
   fi
   known=tests/fuzz/findings/$target
   [ -d "$known" ] || known=
+  # assimp leaks when it refuses a file; that is not ours to fix.
+  leaks=
+  [[ " stl obj ply off gltf glb " != *" $target "* ]] || leaks=-detect_leaks=0
   before=$(find "$dir/found" -type f | wc -l)
   # Each job is a process of its own, so that a crash inside assimp does not end the run.
   nice -n 10 build/fuzz/bin/fuzz_"$target" -fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1 \
-    -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=16384 \
+    $leaks -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=16384 \
     -artifact_prefix="$dir/found/" "$dir/corpus" "$dir/seeds" $known >"$dir/log" 2>&1 || true
   after=$(find "$dir/found" -type f | wc -l)
   echo "$target: $(grep -E '^#[0-9]+: cov' "$dir/log" | tail -n 1)"

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// A limit on the motion of the held part A: for a small displacement (dp, dr) of its center of mass the gap becomes
 /// gap + n · (dp + dr × r). Taken at a free pose, so the gap is never negative.

@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/shm.h"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// One end of a shared-memory segment (shm.h). The servo creates it or attaches to it, and so does the application.
 class Channel {

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/device/shm.h"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// One snapshot of the pen.
 struct DeviceState {

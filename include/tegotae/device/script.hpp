@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Where the operator's hand wants the held part's file frame to be, over time.
 class StylusScript {

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/servo/latency_histogram.hpp"
 #include "tegotae/servo/realtime.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Settings of the chain that every wrench passes before it leaves.
 struct SafetySettings {

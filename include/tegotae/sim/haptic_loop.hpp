@@ -4,11 +4,12 @@
 #include <memory>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What one tick of the contact loop did.
 struct TickReport {

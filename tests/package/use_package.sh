@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Uses the installed library the way a stranger does: use_package.sh BUILD_FOLDER.
+# Installs BUILD_FOLDER, moves the result, and builds and runs apps/examples against it, outside of this tree, by
+# find_package and by pkg-config.
+set -euo pipefail
+build=$(realpath "${1:?usage: use_package.sh BUILD_FOLDER}")
+root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
+
+fail() { echo "use_package: $*" >&2; exit 1; }
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+for component in development library; do
+  DESTDIR=$work/stage cmake --install "$build" --prefix /opt/tegotae --component "$component" >"$work/log" ||
+    { cat "$work/log"; fail "cmake --install"; }
+done
+mv "$work/stage/opt/tegotae" "$work/moved"
+rm -rf "$work/stage"
+if grep -rIlE "$build|$root|/opt/tegotae" "$work/moved"; then fail "the files above know where they were built"; fi
+
+quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log"; fail "$*"; }; }
+
+cp -r "$root/apps/examples" "$work/examples"
+cd "$work/examples"
+launcher=()
+if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+quietly cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wshadow -Werror" "${launcher[@]}"
+grep -q "^tegotae_DIR:PATH=$work/moved/" build/CMakeCache.txt || fail "another installed tegotae was found"
+quietly cmake --build build --parallel 2
+
+# What each of them must print; the numbers are coarse, the tests of the library look closely.
+run() {
+  local name=$1 expected=$2
+  shift 2
+  "build/$name" "$@" >"$work/out" || fail "$name failed: $(cat "$work/out")"
+  grep -qE "$expected" "$work/out" || { cat "$work/out"; fail "$name did not print $expected"; }
+  echo "$name: $(tail -n 1 "$work/out")"
+}
+(cd "$root" && "$work/examples/build/first_touch") >"$work/out" || fail "first_touch failed"
+grep -qE "500 ms: +[1-9][0-9]* contacts" "$work/out" || fail "first_touch felt nothing: $(cat "$work/out")"
+run scripted_pen "600 ms: .* [1-9][0-9]* contacts, +[1-9][0-9.]* N up" "$root/models"
+run own_loop "frame 60: +[1-9][0-9]* contacts, +[1-9][0-9.]* N up" "$root/models"
+run custom_device "at rest: (1[.]9|2[.]0)[0-9] N up" "$root/models"
+run meshes_from_memory "400 ms: pen at +4[.]0 mm, cube at +10[.]0[0-9]+ mm, +4 contacts"
+
+# A version of another interface is refused.
+sed -i 's/find_package(tegotae 0.1 /find_package(tegotae 0.0 /' CMakeLists.txt
+if cmake -S . -B build_other -DCMAKE_PREFIX_PATH="$work/moved" >/dev/null 2>&1; then fail "0.0 was taken for 0.1"; fi
+
+export PKG_CONFIG_PATH=$work/moved/lib/pkgconfig:$work/moved/lib/$(gcc -print-multiarch 2>/dev/null)/pkgconfig
+pkg-config --exists tegotae || fail "pkg-config does not know tegotae"
+# shellcheck disable=SC2046
+quietly ${CXX:-g++} -std=c++17 -O1 meshes_from_memory.cpp -o pkg $(pkg-config --cflags --libs tegotae)
+LD_LIBRARY_PATH=$work/moved/lib:$work/moved/lib/$(gcc -print-multiarch) ./pkg | grep -q "400 ms" || fail "the pkg-config build does not run"
+echo "pkg-config: $(pkg-config --modversion tegotae)"
