@@ -28,6 +28,9 @@ class Tegotae(ConanFile):
         self.requires("libccd/2.1")
         self.requires("assimp/5.2.2")
         self.requires("tomlplusplus/3.3.0")
+        self.requires("nlohmann_json/3.11.3")
+        self.requires("zlib/[>=1.2.11 <2]")
+        self.requires("zstd/[>=1.5 <1.6]")
 
     def layout(self):
         cmake_layout(self)

@@ -4,9 +4,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# pkg-config, dpkg-dev, file: the tests of the package. zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
+# pkg-config, dpkg-dev, file: the tests of the package.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev zlib1g-dev
-          libcli11-dev libtomlplusplus-dev nlohmann-json3-dev catch2
+          libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev catch2 python3-venv
           pkg-config dpkg-dev file)
 
 fail() { echo "setup: $*" >&2; exit 1; }

@@ -1,4 +1,5 @@
 // peg_in_hole: a scripted hand carries a peg into its hole.
+#include <filesystem>
 #include <string>
 
 #include "peg_scene.hpp"
@@ -18,11 +19,16 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("R");
   add_run_options(app, options);
-  app.add_option("--scene-out", folder, "Also write the scene, its meshes and its script to a folder")
+  app.add_option("--scene-out", folder,
+                 "Keep the scene, its meshes and its script in a folder (with --record: FILE.scene)")
       ->type_name("DIR");
 
   return guarded_main(app, argc, argv, [&] {
-    if (!folder.empty()) write_peg_scene(ratio, folder);
-    return run_and_report(make_peg_scene(ratio), options, "peg in hole, " + ratio_text(ratio), -kStartHeight);
+    // A recording wants its scene with it; one that cannot be written is told by the run.
+    if (folder.empty() && !options.record.empty() &&
+        std::filesystem::is_directory(std::filesystem::absolute(options.record).parent_path()))
+      folder = options.record + ".scene";
+    const SceneFile file = folder.empty() ? make_peg_scene(ratio) : load_scene(write_peg_scene(ratio, folder));
+    return run_and_report(file, options, "peg in hole, " + ratio_text(ratio), -kStartHeight);
   });
 }

@@ -33,7 +33,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
       ->type_name("NAME");
   app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
-  app.add_option("--record", options.record, "Write every pose and wrench to a CSV file")->type_name("FILE");
+  app.add_option("--record", options.record, "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
 }
 
@@ -63,6 +63,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
+  settings.program = "tegotae " TEGOTAE_VERSION;
   settings.progress = &progress;
   settings.stop = &interrupted;
   std::signal(SIGINT, on_signal);

@@ -11,4 +11,15 @@ if [ "${1:-}" = --quick ]; then
 fi
 
 bash .ci/setup.sh
+
+# Independent readers, for tests only.
+python=build/python
+if ! cmp -s tests/requirements.txt $python/requirements.txt; then
+  if python3 -m venv $python && $python/bin/pip install -q --disable-pip-version-check -r tests/requirements.txt; then
+    cp tests/requirements.txt $python/
+  else
+    echo "tests/run.sh: no Python packages; the tests that need them are skipped" >&2
+  fi
+fi
+
 exec ctest --preset release --parallel "$(nproc)" "${select[@]}" "$@"

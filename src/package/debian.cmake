@@ -21,9 +21,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtegotae${abi} (= ${PROJECT_VERSION}), libeigen3-dev")
 else()
-  # zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-      "libeigen3-dev, libfcl-dev, libccd-dev, libassimp-dev, zlib1g-dev, libtomlplusplus-dev")
+      "libeigen3-dev, libfcl-dev, libccd-dev, libassimp-dev, libtomlplusplus-dev, zlib1g-dev, libzstd-dev")
 endif()
 
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME tegotae)

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "record/frame_ring.hpp"
-#include "record/row_file.hpp"
+#include "record/record_file.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -18,9 +18,9 @@ constexpr std::chrono::milliseconds kDrainPeriod(10);
 }  // namespace
 
 struct Recorder::Impl {
-  explicit Impl(const std::string& path) : file(path) {}
+  Impl(const std::string& path, const RecordingInfo& info) : file(open_record_file(path, info)) {}
 
-  RowFile file;
+  std::unique_ptr<RecordFile> file;
   std::optional<FrameRing> ring;  // threaded mode
   std::thread writer;
   std::atomic<bool> stopping{false};
@@ -30,8 +30,8 @@ struct Recorder::Impl {
 
   void drain() noexcept {
     RecordFrame frame;
-    while (ring->pop(frame)) file.add(frame);
-    file.flush();
+    while (ring->pop(frame)) file->add(frame);
+    file->flush();
   }
 
   void write_until_stopped() noexcept {
@@ -49,12 +49,12 @@ struct Recorder::Impl {
       stopping.store(true, std::memory_order_release);
       writer.join();
     }
-    file.close();
+    file->close();
   }
 };
 
-Recorder::Recorder(const std::string& path, RecordMode mode, std::size_t capacity)
-    : impl_(std::make_unique<Impl>(path)) {
+Recorder::Recorder(const std::string& path, RecordMode mode, const RecordingInfo& info, std::size_t capacity)
+    : impl_(std::make_unique<Impl>(path, info)) {
   if (mode == RecordMode::synchronous) return;
   if (capacity == 0) throw Error(path + ": a recorder needs a capacity of at least one frame");
   impl_->ring.emplace(capacity);
@@ -72,7 +72,7 @@ Recorder::~Recorder() {
 void Recorder::push(const RecordFrame& frame) noexcept {
   if (!impl_->open) return;
   if (!impl_->ring) {
-    impl_->file.add(frame);
+    impl_->file->add(frame);
   } else if (!impl_->ring->push(frame)) {
     impl_->dropped.fetch_add(1, std::memory_order_relaxed);
     return;

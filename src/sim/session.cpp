@@ -70,7 +70,7 @@ class Session {
     way_ = way.norm();
     if (way_ > 0) direction_ = way / way_;
     if (!settings.record.empty())
-      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous);
+      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
   }
 
@@ -137,6 +137,10 @@ class Session {
     for (const Pose& X : report.pieces) check_.add(X);
     if (recorder_) record(number, t, pen, report, settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0);
     if (settings_.progress) show(t, pen, report);
+  }
+
+  RecordingInfo info() const {
+    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {

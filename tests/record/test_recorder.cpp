@@ -13,19 +13,15 @@
 #include <thread>
 
 #include "catch.hpp"
+#include "record/random_frames.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recorder.hpp"
 
 using namespace tegotae;
+using test::random_frame;
+using test::TemporaryFile;
 
 namespace {
-
-/// A file name that goes away with it.
-struct TemporaryFile {
-  std::string path = (std::filesystem::temp_directory_path() / "tegotae_recording_XXXXXX").string();
-  TemporaryFile() { close(mkstemp(path.data())); }
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
 
 std::vector<std::string> lines_of(const std::string& path) {
   std::ifstream file(path);
@@ -44,16 +40,6 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-/// Any bits, all finite.
-double random_double(std::mt19937_64& rng) {
-  for (;;) {
-    const std::uint64_t bits = rng();
-    double value;
-    std::memcpy(&value, &bits, sizeof value);
-    if (std::isfinite(value)) return value;
-  }
-}
-
 std::vector<double> numbers_of(const RecordFrame& f) {
   std::vector<double> v = {f.t};
   for (const Pose* X : {&f.y, &f.x})
@@ -61,24 +47,6 @@ std::vector<double> numbers_of(const RecordFrame& f) {
   for (const Vec3* u : {&f.wrench.force, &f.wrench.torque})
     for (int i = 0; i < 3; ++i) v.push_back((*u)[i]);
   return v;
-}
-
-RecordFrame random_frame(std::mt19937_64& rng) {
-  const auto number = [&rng] { return random_double(rng); };
-  RecordFrame f;
-  f.tick = rng();
-  f.substep = static_cast<std::uint32_t>(rng());
-  f.t = number();
-  for (Pose* X : {&f.y, &f.x}) {
-    X->p = Vec3(number(), number(), number());
-    X->q = Quat(number(), number(), number(), number());
-  }
-  f.wrench.force = Vec3(number(), number(), number());
-  f.wrench.torque = Vec3(number(), number(), number());
-  f.contacts = static_cast<int>(rng());
-  f.gap = number();
-  f.tick_us = number();
-  return f;
 }
 
 const char* const kHeader =
@@ -158,7 +126,7 @@ TEST_CASE("a disk that becomes full is told when closing", "[record]") {
 
 TEST_CASE("a full ring drops frames and counts them", "[record]") {
   const TemporaryFile file;
-  Recorder recorder(file.path, RecordMode::threaded, 8);
+  Recorder recorder(file.path, RecordMode::threaded, {}, 8);
   RecordFrame frame;
   // Far more and faster than the ring holds between two visits of the writer.
   for (int i = 0; i < 10'000; ++i) {

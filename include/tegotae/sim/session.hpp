@@ -22,7 +22,8 @@ struct RunProgress {
 struct RunSettings {
   bool real_time = true;  ///< false: virtual time, as fast as it goes and the same on every run
   double seconds = 0;     ///< how long; 0: to the end of the script and kSettleTime more
-  std::string record;     ///< recording (CSV); empty: none
+  std::string record;     ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
+  std::string program;    ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };

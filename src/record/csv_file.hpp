@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "record/output_file.hpp"
+#include "record/record_file.hpp"
+
+namespace tegotae {
+
+/// A CSV recording: a header row, then one row a frame, handed to the system in whole rows.
+class CsvFile final : public RecordFile {
+ public:
+  CsvFile(const std::string& path, const RecordingInfo& info);
+
+  void add(const RecordFrame& frame) noexcept override;
+  void flush() noexcept override;
+  void close() override;
+
+ private:
+  OutputFile file_;
+  std::string rows_;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,116 @@
+#include "record/frame_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace tegotae {
+
+namespace {
+
+using nlohmann::json;
+
+// Poses are as foxglove.PoseInFrame describes them, so that viewers that know the name show them.
+#define TEGOTAE_XYZ \
+  R"({"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}})"
+constexpr const char* kPoseSchema =
+    R"({"title":"foxglove.PoseInFrame","type":"object","properties":{)"
+    R"("timestamp":{"type":"object","title":"time","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},)"
+    R"("frame_id":{"type":"string"},"pose":{"type":"object","properties":{"position":)" TEGOTAE_XYZ
+    R"(,"orientation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},)"
+    R"("z":{"type":"number"},"w":{"type":"number"}}}}}}})";
+constexpr const char* kWrenchSchema =
+    R"({"title":"tegotae.Wrench","description":"on the pen, at the held part's center of mass, world; N and N*m",)"
+    R"("type":"object","properties":{"force":)" TEGOTAE_XYZ R"(,"torque":)" TEGOTAE_XYZ "}}";
+constexpr const char* kContactSchema =
+    R"({"title":"tegotae.Contact","type":"object","properties":{"contacts":{"type":"integer"},)"
+    R"("gap":{"type":["number","null"],"description":"smallest known gap, m; null when nothing is near"}}})";
+constexpr const char* kTickSchema =
+    R"({"title":"tegotae.Tick","type":"object","properties":{"tick":{"type":"integer"},)"
+    R"("substep":{"type":"integer","description":"number of the certified piece in its tick"},)"
+    R"("t":{"type":"number","description":"s since the start"},)"
+    R"("tick_us":{"type":"number","description":"time the tick took; 0 in virtual time"}}})";
+#undef TEGOTAE_XYZ
+
+json xyz(const Vec3& v) {
+  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
+}
+
+/// JSON has no infinity and no NaN, and the library writes them as null.
+double number(const json& j) {
+  return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
+}
+Vec3 vector(const json& j) {
+  return {number(j.at("x")), number(j.at("y")), number(j.at("z"))};
+}
+
+json pose_message(const RecordFrame& frame, const Pose& X) {
+  constexpr std::uint64_t second = 1'000'000'000;
+  const std::uint64_t time = log_time(frame);
+  json orientation = xyz(X.q.vec());
+  orientation["w"] = X.q.w();
+  return {{"timestamp", {{"sec", time / second}, {"nsec", time % second}}},
+          {"frame_id", "world"},
+          {"pose", {{"position", xyz(X.p)}, {"orientation", std::move(orientation)}}}};
+}
+
+Pose pose(const json& message) {
+  const json& X = message.at("pose");
+  const json& q = X.at("orientation");
+  const Vec3 v = vector(q);
+  return {Quat(number(q.at("w")), v.x(), v.y(), v.z()), vector(X.at("position"))};
+}
+
+}  // namespace
+
+const std::array<FrameTopic, kFrameTopics> kTopics = {{{"/tick", "tegotae.Tick", kTickSchema},
+                                                       {"/pen", "foxglove.PoseInFrame", kPoseSchema},
+                                                       {"/part", "foxglove.PoseInFrame", kPoseSchema},
+                                                       {"/wrench", "tegotae.Wrench", kWrenchSchema},
+                                                       {"/contact", "tegotae.Contact", kContactSchema}}};
+
+std::uint64_t log_time(const RecordFrame& frame) {
+  constexpr double most = 9e9;  // s; the time of a frame is never near it, but the cast must be defined
+  return static_cast<std::uint64_t>(1e9 * std::clamp(std::isnan(frame.t) ? 0.0 : frame.t, 0.0, most) + 0.5);
+}
+
+std::string message_text(const RecordFrame& f, std::size_t i) {
+  switch (i) {
+    case 0:
+      return json{{"tick", f.tick}, {"substep", f.substep}, {"t", f.t}, {"tick_us", f.tick_us}}.dump();
+    case 1:
+      return pose_message(f, f.y).dump();
+    case 2:
+      return pose_message(f, f.x).dump();
+    case 3:
+      return json{{"force", xyz(f.wrench.force)}, {"torque", xyz(f.wrench.torque)}}.dump();
+    default:
+      return json{{"contacts", f.contacts}, {"gap", f.gap}}.dump();
+  }
+}
+
+void take_message(const json& m, std::size_t i, RecordFrame& f) {
+  switch (i) {
+    case 0:
+      f.tick = m.at("tick").get<std::uint64_t>();
+      f.substep = m.at("substep").get<std::uint32_t>();
+      f.t = number(m.at("t"));
+      f.tick_us = number(m.at("tick_us"));
+      return;
+    case 1:
+      f.y = pose(m);
+      return;
+    case 2:
+      f.x = pose(m);
+      return;
+    case 3:
+      f.wrench = {vector(m.at("force")), vector(m.at("torque"))};
+      return;
+    default:
+      f.contacts = m.at("contacts").get<int>();
+      f.gap = m.at("gap").is_null() ? std::numeric_limits<double>::infinity() : m.at("gap").get<double>();
+  }
+}
+
+}  // namespace tegotae
