@@ -54,7 +54,7 @@ void require_valid_indices(const aiScene& scene, const std::string& path) {
 void unmark_empty_polygons(const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     aiMesh& mesh = *scene.mMeshes[m];
-    const aiFace* end = mesh.mFaces + mesh.mNumFaces;
+    aiFace* end = mesh.mFaces + mesh.mNumFaces;
     if (std::none_of(mesh.mFaces, end, [](const aiFace& f) { return f.mNumIndices > 3; }))
       mesh.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
   }

@@ -15,6 +15,9 @@ std::vector<Seed> seeds() {
           {"not_finite", header + "0,nan,0,0,1,0,0,0\n"},
           {"zero_quaternion", header + "0,0,0,0,0,0,0,0\n"},
           {"far", header + "0,1e5,0,0,1,0,0,0\n1e-9,-1e5,0,0,0,1,0,0\n1e9,0,0,0,0,0,1,0\n"},
+          {"too_fast", header + "0,0,0,0,1,0,0,0\n1e-320,1,0,0,1,0,0,0\n"},
+          {"long_quaternion", header + "0,0,0,0,1e200,0,0,0\n"},
+          {"too_far", header + "0,1e308,0,0,1,0,0,0\n1,-1e308,0,0,1,0,0,0\n"},
           {"time_back", header + "1,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n"},
           {"short_row", header + "0,0,0\n"},
           {"header_only", header}};
