@@ -33,7 +33,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver, "Contact resolver, lp or qp, overrides the scene's")
       ->type_name("NAME");
   app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
-  app.add_option("--record", options.record, "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")->type_name("FILE");
+  app.add_option("--record", options.record,
+                 "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
+      ->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
 }
 
