@@ -1,6 +1,7 @@
 // A device of one's own: six virtual functions between a vendor's driver and the servo. This one has no driver; its
 // "hardware" is a mass on a rail along z that somebody pushes down with 2 N.
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "tegotae/mesh/load.hpp"
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
   Scene scene;
   scene.parts.push_back({"hole", load("hole_20.obj"), Pose{}, false});
   scene.parts.push_back({"peg", load("peg_0.94.obj"), Pose{Quat::Identity(), Vec3(0, 0, 0.03)}, true});
+  scene.contact.tick_budget = std::numeric_limits<double>::infinity();  // not bounded by the clock: repeatable
   HapticLoop loop(scene);
   RailPen pen;
   Channel channel = Channel::create();

@@ -50,13 +50,15 @@ void require_valid_indices(const aiScene& scene, const std::string& path) {
   }
 }
 
-/// A face without corners is marked as a polygon by assimp, whose triangulation then ends the program.
+/// A face without corners is marked as a polygon by assimp, whose triangulation then ends the program; it also does
+/// when nothing is marked.
 void unmark_empty_polygons(const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     aiMesh& mesh = *scene.mMeshes[m];
     aiFace* end = mesh.mFaces + mesh.mNumFaces;
     if (std::none_of(mesh.mFaces, end, [](const aiFace& f) { return f.mNumIndices > 3; }))
-      mesh.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
+      mesh.mPrimitiveTypes =
+          (mesh.mPrimitiveTypes & ~static_cast<unsigned>(aiPrimitiveType_POLYGON)) | aiPrimitiveType_POINT;
   }
 }
 
