@@ -4,12 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What one tick of the contact loop did.
 struct TickReport {
