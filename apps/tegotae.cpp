@@ -93,6 +93,7 @@ int main(int argc, char** argv) {
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (experiment->parsed()) return experiments::run(trials);
     if (import->parsed()) return import_file(import_options);
-    return run_and_report(load_with_progress(scene, {hold, true, {}, load}), options, scene);
+    const SceneOptions how{hold, true, {}, load};
+    return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
   });
 }

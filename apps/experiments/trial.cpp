@@ -21,9 +21,14 @@ std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_se
                               double seconds, const std::function<bool(const Sample&)>& done) {
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   HapticLoop loop(scene);
-  SimulatedDevice device(pen_settings, hand, loop.center());
+  // Pushes of seconds would come under the motors' thermal budget; here the force itself is looked at.
+  SimulatedDeviceSettings tireless = pen_settings;
+  tireless.continuous_force = 0;
+  ServoSettings servo_settings;
+  servo_settings.safety.continuous_force = 0;
+  SimulatedDevice device(tireless, hand, loop.center());
   Channel channel = Channel::create();
-  Servo servo(device, channel);
+  Servo servo(device, channel, servo_settings);
   ContactLink link(channel, scene.coupling, loop.center());
   std::vector<Sample> samples;
   device.start();

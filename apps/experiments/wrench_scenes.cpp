@@ -46,9 +46,9 @@ WrenchScene ball_in_sphere(int probes) {
   WrenchScene w{"sphere in a spherical socket", "F = −k (d − c) u, T = 0", {}, {}};
   constexpr double kRadius = 0.01, kPush = 3e-3;
   TriangleMesh socket = shapes::sphere(4 * kRadius, 16, 8);  // a ball with a cavity
-  append(inside_out(shapes::sphere(2 * (kRadius + kPlay), 128, 64)), socket);
+  append(inside_out(shapes::sphere(2 * (kRadius + kPlay), 192, 96)), socket);
   w.scene.parts.push_back(part("socket", socket, {}, false));
-  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 128, 64), {}, true));
+  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 192, 96), {}, true));
   const double k = w.scene.coupling.stiffness;
   for (int i = 0; i < probes; ++i) {
     const Vec3 u = direction(i, probes);
@@ -65,7 +65,7 @@ WrenchScene ball_in_tube(int probes) {
   block.segments = 128;
   block.through = true;
   w.scene.parts.push_back(part("socket", shapes::block_with_hole(block), at(0, 0, 0.025), false));
-  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 128, 64), {}, true));
+  w.scene.parts.push_back(part("sphere", shapes::sphere(2 * kRadius, 192, 96), {}, true));
   const double k = w.scene.coupling.stiffness;
   for (int i = 0; i < probes; ++i) {
     const double a = 2.4 * i, along = 6e-3 * std::cos(1.7 * i);  // along the axis nothing holds it

@@ -150,6 +150,7 @@ DeviceInfo SimulatedDevice::info() const {
   DeviceInfo info;
   info.name = "simulated";
   info.limits = s.limits;
+  info.continuous_force = s.continuous_force;
   info.damping = s.hand.damping;
   info.torsional_damping = s.hand.torsional_damping;
   info.friction = s.friction;

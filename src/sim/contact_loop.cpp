@@ -168,9 +168,10 @@ void ContactLoop::adapt_keep(const Pose& Y) {
   }
   metric_.set_orientation(X_.q);
   rows_.clear();
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    rows_.push_row(metric_.row(limits[i]));
-    bounds_[i] = 2 * keep_ - limits[i].gap;
+  for (const Contact& c : limits) {
+    if (c.age == kCutAge) continue;  // planes for one motion, not surfaces
+    bounds_[static_cast<std::size_t>(rows_.rows())] = 2 * keep_ - c.gap;
+    rows_.push_row(metric_.row(c));
   }
   const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
   if (!room) keep_ = std::max(0.5 * keep_, least_keep_);
@@ -180,10 +181,10 @@ void ContactLoop::adapt_keep(const Pose& Y) {
 bool ContactLoop::wedged() const {
   const auto& limits = contacts_->limits();
   const std::size_t n = std::min(limits.size(), kMostWedging);
+  const auto presses = [this](const Contact& c) { return c.age != kCutAge && c.gap <= keep_ / kKeepShare; };
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (std::max(limits[i].gap, limits[j].gap) <= keep_ / kKeepShare && limits[i].n.dot(limits[j].n) < kOpposite)
-        return true;
+    for (std::size_t j = 0; j < i && presses(limits[i]); ++j)
+      if (presses(limits[j]) && limits[i].n.dot(limits[j].n) < kOpposite) return true;
   return false;
 }
 

@@ -92,7 +92,9 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
     INFO(c.scene);
     folder.write("bad.toml", c.scene);
     check_refused(run_program("tegotae", "run --fast " + (folder / "bad.toml")), c.named);
-    check_refused(run_program("tegotae", "check " + (folder / "bad.toml")), c.named);
+    // A scene without a held part may be looked at; --hold can name one later.
+    if (c.named.front().find("no part is held") == std::string::npos)
+      check_refused(run_program("tegotae", "check " + (folder / "bad.toml")), c.named);
   }
   check_refused(run_program("tegotae", "run --fast " + (folder / "none.toml")), {"none.toml: no such file"});
 }

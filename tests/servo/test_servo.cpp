@@ -375,7 +375,7 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
     allocations = guard.count();
   }
   CHECK(allocations == 0);
-  CHECK(local > 300);
+  CHECK(local > 100);  // until the pen has turned farther than flat planes can tell
 }
 
 TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[servo]") {

@@ -30,6 +30,7 @@ struct SimulatedDeviceSettings {
   Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
   double friction = 0.04;                       ///< Coulomb, N
   WrenchLimits limits;                          ///< of what is rendered, whatever is asked for
+  double continuous_force = 1.4;                ///< what the motors stand for long, N; 0: not limited
   double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
   double velocity_cutoff_hz = 50.0;             ///< of the low-pass on differences of the reported pose
