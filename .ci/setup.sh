@@ -5,10 +5,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
+# pkg-config, dpkg-dev, file: the tests of the package.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev zlib1g-dev
           libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libcivetweb-dev catch2 python3-venv
-          libspnav-dev libsdl2-dev libocct-data-exchange-dev)
+          libspnav-dev libsdl2-dev libocct-data-exchange-dev pkg-config dpkg-dev file)
 
 browser=false
 if [ "${1:-}" = --browser ]; then

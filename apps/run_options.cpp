@@ -9,6 +9,7 @@
 #include "progress_line.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
 #include "view/view_run.hpp"
 
@@ -68,7 +69,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
 }
 
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION);
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   try {
     app.parse(argc, argv);
     set_hierarchy_cache(default_cache_folder());
@@ -95,7 +96,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
-  settings.program = "tegotae " TEGOTAE_VERSION;
+  settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
   settings.stop = &catch_interrupts();
 

@@ -11,6 +11,7 @@
 #include "length_option.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
+#include "tegotae/mesh/isolated_load.hpp"
 #include "view/replay.hpp"
 
 using namespace tegotae;
@@ -70,6 +71,10 @@ int main(int argc, char** argv) {
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
 
+  bool isolated = false;
+  for (CLI::App* reads : {run, check})
+    reads->add_flag("--isolated", isolated, "Load meshes in a process of their own, bounded in time and memory");
+
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
   measure->add_option("--scene", bench_options.scenes, "Only this scene (may be repeated)")
@@ -101,12 +106,16 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
+    const MeshLoader load = [isolated](const std::string& file, double unit) {
+      return isolated ? load_mesh_isolated(file, unit) : load_mesh(file, unit);
+    };
+    check_options.load = load;
     if (check->parsed()) return check_files(check_options);
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
     if (import->parsed()) return import_file(import_options);
-    const SceneOptions how{hold, true, {}};
+    const SceneOptions how{hold, true, {}, load};
     return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
   });
 }

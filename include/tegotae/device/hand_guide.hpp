@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Where somebody (a mouse, a test) leads the hand of a simulated pen. One thread leads, the servo's looks; neither
 /// waits for the other.

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/device/hand_guide.hpp"
 #include "tegotae/device/hand_intent.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// The hand that holds the pen: springs and dampers from the script's pose to the pen's, and the effective mass of the
 /// hand, which moves with the pen. The defaults are a relaxed pen grip, near critical damping.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/servo/latency_histogram.hpp"
@@ -11,7 +12,7 @@
 #include "tegotae/servo/realtime.hpp"
 #include "tegotae/servo/safety.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 struct ServoSettings {
   double rate_hz = 1000.0;  ///< up to 4000

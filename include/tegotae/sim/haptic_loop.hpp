@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "tegotae/contact/contact.hpp"
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What one tick of the contact loop did.
 struct TickReport {

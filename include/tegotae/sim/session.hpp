@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/hand_guide.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
 struct RunProgress {
