@@ -37,7 +37,7 @@ async function pressUntil(page, press, letGo, felt) {
     const now = await until(page, (s) => felt(s) || !s.frame.forceOn);
     if (felt(now)) return now;
     assert.match(await page.textContent(".force-state"), /^Force is (on|off: [a-z].+)$/);
-    assert.ok(attempt < 5, "the force goes off whenever one presses");
+    assert.ok(attempt < 5, `the force goes off whenever one presses: ${await page.textContent(".force-state")}, reason ${now.frame.reason}`);
     await letGo();
   }
 }
