@@ -74,7 +74,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
-  settings.program = "tegotae " TEGOTAE_VERSION;
+  settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
   settings.stop = &interrupted;
   std::signal(SIGINT, on_signal);
