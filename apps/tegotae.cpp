@@ -106,8 +106,8 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
-    const MeshLoader load = [isolated](const std::string& file, double unit) {
-      return isolated ? load_mesh_isolated(file, unit) : load_mesh(file, unit);
+    const MeshLoader load = [isolated](const std::string& mesh, double unit) {
+      return isolated ? load_mesh_isolated(mesh, unit) : load_mesh(mesh, unit);
     };
     check_options.load = load;
     if (check->parsed()) return check_files(check_options);
