@@ -1,13 +1,24 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12, apt), configures and builds: setup.sh [TARGET...] (everything without targets).
+# Installs what is missing (Debian 12, apt), configures and builds: setup.sh [--browser] [TARGET...] (everything without
+# targets). --browser adds what the browser test needs.
 # Shared by apps/demo.sh and tests/run.sh; a second call only builds what changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# zlib1g-dev: assimp's CMake target names libz.so, but its package does not bring it.
+# pkg-config, dpkg-dev, file: the tests of the package.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev zlib1g-dev
-          libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev catch2 python3-venv libspnav-dev libsdl2-dev
-          libocct-data-exchange-dev)
+          libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libcivetweb-dev catch2 python3-venv
+          libspnav-dev libsdl2-dev libocct-data-exchange-dev pkg-config dpkg-dev file)
+
+browser=false
+if [ "${1:-}" = --browser ]; then
+  browser=true
+  shift
+  # By command: Node may come from elsewhere, with npm in it.
+  for command in node:nodejs npm:npm chromium:chromium; do
+    command -v "${command%:*}" >/dev/null || packages+=("${command#*:}")
+  done
+fi
 
 fail() { echo "setup: $*" >&2; exit 1; }
 
@@ -46,6 +57,10 @@ if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
   fi
 else
   echo "setup: no apt here; going on with what is installed (needed: ${packages[*]})" >&2
+fi
+
+if $browser && [ ! -d tests/view/node_modules ]; then
+  npm --prefix tests/view ci --silent || echo "setup: npm could not install; the browser test is skipped" >&2
 fi
 
 # A build tree that exists keeps its generator.

@@ -10,7 +10,6 @@
 #include "run_options.hpp"
 #include "status_line.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
 #include "tegotae/sim/clash.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -29,14 +28,14 @@ void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
   std::printf("  box %.6g..%.6g  %.6g..%.6g  %.6g..%.6g %s\n", lo.x(), hi.x(), lo.y(), hi.y(), lo.z(), hi.z(), unit);
 }
 
-void check_mesh(const std::string& file) {
-  const TriangleMesh mesh = load_mesh(file);
+void check_mesh(const std::string& file, const MeshLoader& load) {
+  const TriangleMesh mesh = load(file, 1.0);
   std::cout << file << "\n" << std::flush;
   print_mesh(report(mesh), 1.0, "(file units)");
 }
 
-void check_scene(const std::string& path) {
-  const SceneFile file = load_with_progress(path, {"", false, {}});
+void check_scene(const std::string& path, const MeshLoader& load) {
+  const SceneFile file = load_with_progress(path, {"", false, {}, load});
   std::cout << path << "\n" << std::flush;
   std::map<const TriangleMesh*, std::string> seen;
   for (const Part& part : file.scene.parts) {
@@ -77,8 +76,8 @@ void print_clash(const Clash& c, const Scene& scene) {
               how, p.x(), p.y(), p.z());
 }
 
-void check_clashes(const std::string& path, double within) {
-  const SceneFile file = load_with_progress(path, {"", false, {}});
+void check_clashes(const std::string& path, double within, const MeshLoader& load) {
+  const SceneFile file = load_with_progress(path, {"", false, {}, load});
   ClashOptions options;
   options.within = within;
   std::vector<Clash> clashes;
@@ -111,11 +110,11 @@ int check_files(const CheckOptions& options) {
       if (options.clash && !is_scene(file))
         throw Error(file + ": --clash needs a scene file (.toml); `tegotae import` makes one");
       if (options.clash)
-        check_clashes(file, options.within);
+        check_clashes(file, options.within, options.load);
       else if (is_scene(file))
-        check_scene(file);
+        check_scene(file, options.load);
       else
-        check_mesh(file);
+        check_mesh(file, options.load);
     } catch (const Error& e) {
       std::fflush(stdout);
       std::cerr << "tegotae: " << e.what() << "\n";

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/sim/scene_file.hpp"
+
 namespace tegotae::apps {
 
 /// What `check` is asked.
@@ -10,6 +12,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   bool clash = false;  ///< list the pairs of parts that clash, and nothing else
   double within = 0;   ///< m: also those that are apart by up to this
+  MeshLoader load;     ///< reads the meshes
 };
 
 /// Prints a report on each mesh or scene file. A file that cannot be used is one line on stderr; returns the exit code.

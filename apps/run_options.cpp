@@ -9,7 +9,9 @@
 #include "progress_line.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
+#include "view/view_run.hpp"
 
 namespace tegotae::apps {
 
@@ -29,6 +31,25 @@ std::string first_line(const std::string& text) {
 
 }  // namespace
 
+std::atomic<bool>& catch_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  return interrupted;
+}
+
+CLI::Option* add_view_address(CLI::App& app, std::string& address) {
+  return app.add_option("--view-address", address, "Where to serve the page (127.0.0.1, any free port)")
+      ->type_name("ADDRESS[:PORT]");
+}
+
+view::Address view_address(const std::string& text) {
+  return text.empty() ? view::Address() : view::parse_address(text);
+}
+
+void announce_page(const std::string& url, bool quiet) {
+  (quiet ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends it)" << std::endl;
+}
+
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver,
                  "Contact resolver: qp or lp, or for comparison impulse or penalty; overrides the scene's")
@@ -43,10 +64,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                  "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
       ->type_name("FILE");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
+  auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
+  add_view_address(app, options.view_address)->needs(view);
 }
 
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION);
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   try {
     app.parse(argc, argv);
     set_hierarchy_cache(default_cache_folder());
@@ -73,25 +96,27 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
-  settings.program = "tegotae " TEGOTAE_VERSION;
+  settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
-  settings.stop = &interrupted;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  settings.stop = &catch_interrupts();
 
   RunSummary summary;
   {
-    const bool show = !options.json && isatty(STDOUT_FILENO) != 0;
+    const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
     ProgressLine line(progress, depth_offset, show);
-    summary = run_session(file, settings);
+    summary = options.view ? view::run_viewed(file, settings, view_address(options.view_address), interrupted,
+                                              [&](const std::string& url) { announce_page(url, options.json); })
+                           : run_session(file, settings);
   }
   summary.depth_m += depth_offset;
   if (options.json)
     std::cout << json_line(summary, file) << std::endl;
   else
     std::cout << summary_text(summary, options, goal, file.scene.contact.resolver, interrupted.load()) << std::flush;
-  // A run that was asked to be short is done when its time is over, one with another process's pen when it is ended.
-  const bool done = summary.completed || !options.device.empty() || (options.seconds > 0 && !interrupted.load());
+  // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
+  // whenever it ends.
+  const bool done = summary.completed || options.view || !options.device.empty() ||
+                    (options.seconds > 0 && !interrupted.load());
   const bool clean = summary.penetrating == 0 || file.scene.contact.resolver == "penalty";
   return done && clean ? kDone : kRunFailed;
 }

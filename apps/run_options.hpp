@@ -1,10 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <functional>
 #include <string>
 
 #include "tegotae/sim/session.hpp"
+#include "view/address.hpp"
 
 namespace tegotae::apps {
 
@@ -21,7 +23,21 @@ struct RunOptions {
   double seconds = 0;  ///< 0: to the end of the script
   std::string record;
   bool json = false;
+  bool view = false;
+  std::string view_address;  ///< empty: the loopback, any free port
 };
+
+/// From now on Ctrl-C and SIGTERM set the flag that this returns, and end nothing themselves.
+std::atomic<bool>& catch_interrupts();
+
+/// The option --view-address.
+CLI::Option* add_view_address(CLI::App& app, std::string& address);
+
+/// Reads it; the default where it was not given. Throws Error.
+view::Address view_address(const std::string& text);
+
+/// Tells where the page is: on stdout, or on stderr where `quiet` keeps that for data.
+void announce_page(const std::string& url, bool quiet = false);
 
 void add_run_options(CLI::App& app, RunOptions& options);
 

@@ -11,12 +11,26 @@
 #include "length_option.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
+#include "tegotae/mesh/isolated_load.hpp"
+#include "view/replay.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
 
 namespace {
 constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+
+int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
+                   const std::string& address) {
+  const std::string bundle =
+      view::replay_bundle(recording, load_scene(scene.empty() ? view::recorded_scene(recording) : scene));
+  if (html.empty())
+    view::serve_replay(bundle, view_address(address), catch_interrupts(),
+                       [](const std::string& url) { announce_page(url); });
+  else
+    view::write_replay(bundle, html);
+  return kDone;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -38,6 +52,14 @@ int main(int argc, char** argv) {
       })
       ->type_name("S");
 
+  std::string recording, recorded_scene, html, address;
+  CLI::App* replay = app.add_subcommand("replay", "Serve a page that shows a recording, until Ctrl-C");
+  replay->add_option("RECORDING", recording, "What --record wrote")->required();
+  replay->add_option("SCENE", recorded_scene, "Its scene file (the one that the recording names)");
+  auto* file = replay->add_option("--html", html, "Write the page to a file that needs no server, and be done")
+                   ->type_name("FILE");
+  add_view_address(*replay, address)->excludes(file);
+
   CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
   check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
@@ -48,6 +70,10 @@ int main(int argc, char** argv) {
 
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
+
+  bool isolated = false;
+  for (CLI::App* reads : {run, check})
+    reads->add_flag("--isolated", isolated, "Load meshes in a process of their own, bounded in time and memory");
 
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
@@ -80,11 +106,16 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
+    const MeshLoader load = [isolated](const std::string& mesh, double unit) {
+      return isolated ? load_mesh_isolated(mesh, unit) : load_mesh(mesh, unit);
+    };
+    check_options.load = load;
     if (check->parsed()) return check_files(check_options);
     if (measure->parsed()) return bench::run_bench(bench_options);
+    if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
     if (import->parsed()) return import_file(import_options);
-    const SceneOptions how{hold, true, {}};
+    const SceneOptions how{hold, true, {}, load};
     return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
   });
 }

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs the tests: `bash tests/run.sh`. With --quick the tests labeled `long` are
-# left out; other arguments go to ctest.
+# Installs what is missing, builds, and runs the tests: `bash tests/run.sh`. With --quick the tests labeled `long` and
+# `browser` are left out; other arguments go to ctest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 select=()
+setup=(--browser)
 if [ "${1:-}" = --quick ]; then
-  select=(--label-exclude '^long$')
+  select=(--label-exclude '^(long|browser)$')
+  setup=()
   shift
 fi
 
-bash .ci/setup.sh
+bash .ci/setup.sh "${setup[@]}"
 
 # Independent readers, for tests only.
 python=build/python

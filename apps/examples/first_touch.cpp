@@ -16,7 +16,7 @@ int main() {
   for (int ms = 0; ms <= 500; ++ms) {
     const Pose pen{Quat::Identity(), Vec3(0.004, 0, 0.03 - 2e-5 * ms)};  // m: down, four millimeters off the axis
     const TickReport& tick = loop.step(pen, 1e-3);                       // as near to the pen as the parts allow
-    const Wrench feel = coupling_wrench(scene.coupling, tick.proxy, pen, {Vec3(0, 0, -0.02), {}}, loop.center());
+    const Wrench feel = coupling_wrench(scene.coupling, tick.proxy, pen, {Vec3(0, 0, -0.02)}, loop.center());
     if (ms % 100 == 0) std::printf("%3d ms: %2d contacts, %5.2f N up\n", ms, tick.contacts, feel.force.z());
   }
 }

@@ -1,5 +1,6 @@
 #include "web/page.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -19,26 +20,60 @@
   }
 
 TEGOTAE_EMBED(tegotae_report_html, TEGOTAE_WEB_DIST "/report.html")
+TEGOTAE_EMBED(tegotae_view_html, TEGOTAE_WEB_DIST "/view.html")
 
 namespace tegotae::apps {
 namespace {
 
+std::string_view between(const char* begin, const char* end) {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+/// `page` with the only `marker` replaced by `text`.
+std::string replaced(std::string_view page, std::string_view marker, std::string_view text) {
+  const std::size_t at = page.find(marker);
+  std::string out;
+  out.reserve(page.size() + text.size());
+  return out.append(page.substr(0, at)).append(text).append(page.substr(at + marker.size()));
+}
+
 /// Puts `data` where the page looks for it.
 std::string filled(std::string_view page, const nlohmann::json& data) {
-  constexpr std::string_view marker = "/*DATA*/";
-  const std::size_t at = page.find(marker);
   // Names come from files and may not be UTF-8; "</script" in a string would end the element.
   std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
-  std::string out(page.substr(0, at));
-  out += text;
-  return out += page.substr(at + marker.size());
+  return replaced(page, "/*DATA*/", text);
 }
 
 }  // namespace
 
 std::string report_page(const nlohmann::json& report) {
-  return filled({tegotae_report_html, static_cast<std::size_t>(tegotae_report_html_end - tegotae_report_html)}, report);
+  return filled(between(tegotae_report_html, tegotae_report_html_end), report);
+}
+
+std::string view_page(const std::string& nonce) {
+  std::string page(between(tegotae_view_html, tegotae_view_html_end));
+  constexpr std::string_view marker = "nonce=\"NONCE\"";
+  for (std::size_t at = page.find(marker); at != std::string::npos; at = page.find(marker, at))
+    page.replace(at, marker.size(), "nonce=\"" + nonce + "\"");
+  return replaced(page, "/*DATA*/", "");
+}
+
+std::string view_file(const std::string& bundle) {
+  return replaced(between(tegotae_view_html, tegotae_view_html_end), "/*DATA*/", base64(bundle));
 }
 
 }  // namespace tegotae::apps

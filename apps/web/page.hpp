@@ -10,4 +10,9 @@ namespace tegotae::apps {
 /// rows}. Numbers that are not finite come out as gaps.
 std::string report_page(const nlohmann::json& report);
 
+/// The view page for a server: its scripts and styles carry `nonce`, and its data come over the network.
+std::string view_page(const std::string& nonce);
+/// The view page with its data (a view::Bundle's bytes) inside, to be opened without a server.
+std::string view_file(const std::string& bundle);
+
 }  // namespace tegotae::apps

@@ -39,7 +39,7 @@ const char* to_string(ForceOff reason) noexcept {
     case ForceOff::thermal:
       return "the motors of the device are too warm";
     case ForceOff::engage:
-      return "waiting for a small force before it is turned on";
+      return "waiting for a small force: let go a little";
     case ForceOff::clutched:
       return "the pen is clutched";
     case ForceOff::silent:

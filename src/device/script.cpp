@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <string_view>
 
 #include "tegotae/core/error.hpp"
@@ -16,6 +15,11 @@ namespace {
 
 // Shorter quaternions are no rotation but a forgotten column; files round to a few digits at worst.
 constexpr double kMinQuaternionNorm = 1e-3;
+// The square of a longer one overflows.
+constexpr double kMaxQuaternionNorm = 1e100;
+
+// No hand moves at this speed (m/s, rad/s); beyond it, numbers run out.
+constexpr double kFastest = 1e12, kHalfTurn = 3.15;
 
 constexpr std::array<std::string_view, 8> kColumns = {"t", "px", "py", "pz", "qw", "qx", "qy", "qz"};
 
@@ -35,13 +39,19 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-/// Why `key` cannot follow a key at `previous` (s); empty when it can.
-std::string refusal(const StylusScript::Key& key, double previous) {
+/// Why `key` cannot follow `previous` (null: it is the first); empty when it can.
+std::string refusal(const StylusScript::Key& key, const StylusScript::Key* previous) {
   if (!std::isfinite(key.t) || !key.pose.p.allFinite() || !key.pose.q.coeffs().allFinite())
     return "a value is not finite";
-  if (!(key.t > previous)) return "the time does not increase";
   const double norm = key.pose.q.coeffs().stableNorm();
   if (norm < kMinQuaternionNorm) return "the quaternion is zero";
+  if (norm > kMaxQuaternionNorm) return "the quaternion is too long";
+  if (previous == nullptr) return {};
+  const double dt = key.t - previous->t;
+  if (!(dt > 0)) return "the time does not increase";
+  // A half turn at most; velocities that are no numbers make poses that are none.
+  const double speed = ((key.pose.p - previous->pose.p).cwiseAbs().maxCoeff() + kHalfTurn) / dt;
+  if (!(speed <= kFastest)) return "the way from the key before is too fast";
   return {};
 }
 
@@ -80,11 +90,9 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
 
 StylusScript::StylusScript(std::vector<Key> keys) : keys_(std::move(keys)) {
   if (keys_.empty()) throw Error("stylus script: no key");
-  double previous = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const std::string reason = refusal(keys_[i], previous);
+    const std::string reason = refusal(keys_[i], i > 0 ? &keys_[i - 1] : nullptr);
     if (!reason.empty()) throw Error("stylus script: key " + std::to_string(i + 1) + ": " + reason);
-    previous = keys_[i].t;
     keys_[i].pose.q.normalize();
   }
   for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
@@ -127,8 +135,7 @@ StylusScript read_script(const std::string& path) {
         continue;
       }
       keys.push_back(read_row(split(text), order));
-      const double previous = keys.size() > 1 ? keys[keys.size() - 2].t : -std::numeric_limits<double>::infinity();
-      const std::string reason = refusal(keys.back(), previous);
+      const std::string reason = refusal(keys.back(), keys.size() > 1 ? &keys[keys.size() - 2] : nullptr);
       if (!reason.empty()) throw Error(reason);
     } catch (const Error& error) {
       throw Error(path + ":" + std::to_string(number) + ": " + error.what());

@@ -21,6 +21,10 @@ constexpr std::int64_t kMaxStepNs = 100'000;
 // A servo that was held up for longer does not find the hand far away: the script waits.
 constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
 
+// How a led hand moves: it lags by this time (s), which smooths the steps in which a mouse reports, and is never faster
+// than this (m/s, rad/s), so that a jump of the mouse is a motion of the hand.
+constexpr double kHandLag = 0.03, kHandSpeed = 0.4, kHandTurning = 6.0;
+
 void require(bool good, const char* setting) {
   if (!good) throw Error(std::string("simulated device: ") + setting + " is out of range");
 }
@@ -57,6 +61,11 @@ PenBodySettings body_settings(const SimulatedDeviceSettings& s) {
           s.hand.torsional_stiffness,
           s.hand.torsional_damping,
           s.friction};
+}
+
+Vec3 at_most(const Vec3& value, double norm) {
+  const double n = value.norm();
+  return n > norm ? Vec3((norm / n) * value) : value;
 }
 
 Vec3 rounded(const Vec3& value, double resolution) {
@@ -97,10 +106,33 @@ struct SimulatedDevice::Impl {
   VelocityFilter velocity;
   std::uint64_t sequence = 0;
 
+  const HandGuide* guide = nullptr;
+  bool led = false;     // by the guide; until then the hand goes where it wants
+  Pose goal, led_hand;  // where the guide leads, and where the led hand is
+  Twist led_rate;       // `v` of the file frame
+
   double script_time(std::int64_t ns) const { return hand.begin() + 1e-9 * static_cast<double>(ns); }
 
+  HandTarget intent(double t, const Vec3& center) {
+    return hand.target(t, {body.rotation, body.center - body.rotation * center});
+  }
+
+  void look_at_guide(const Vec3& center) {
+    if (!guide || !guide->target(goal) || led) return;
+    led = true;
+    led_hand = intent(script_time(time_ns.load(std::memory_order_relaxed)), center).pose;
+  }
+
+  void move_hand(double h, const Vec3& center) {
+    const Displacement way = displacement(led_hand, goal, center);
+    const double rate = 1 / (kHandLag + h);
+    const Twist of_center = {at_most(rate * way.dp, kHandSpeed), at_most(rate * way.dr, kHandTurning)};
+    led_hand = displaced(led_hand, center, h * Displacement{of_center.v, of_center.w});
+    led_rate = {of_center.v - of_center.w.cross(led_hand.q * center), of_center.w};
+  }
+
   PenTarget target(double t, const Vec3& center) {
-    const auto [pose, rate] = hand.target(t, {body.rotation, body.center - body.rotation * center});
+    const auto [pose, rate] = led ? HandTarget{led_hand, led_rate} : intent(t, center);
     const Vec3 arm = pose.q * center;
     return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
   }
@@ -108,9 +140,11 @@ struct SimulatedDevice::Impl {
   void advance(std::int64_t dt_ns, const Vec3& center) {
     std::int64_t now = time_ns.load(std::memory_order_relaxed);
     const std::int64_t end = now + dt_ns;
+    look_at_guide(center);
     while (now < end) {
       const std::int64_t step = std::min(kMaxStepNs, end - now);
       const double h = 1e-9 * static_cast<double>(step);
+      if (led) move_hand(h, center);
       body.step(h, body_constants, target(script_time(now) + 0.5 * h, center), rendered);
       now += step;
     }
@@ -202,6 +236,10 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   // The difference to the last sample would be a jump of the point, not a motion.
   impl_->velocity.forget();
   Device::set_center(center_now);
+}
+
+void SimulatedDevice::follow(const HandGuide& guide) noexcept {
+  impl_->guide = &guide;
 }
 
 void SimulatedDevice::set_lead(const Displacement&) noexcept {

@@ -1,5 +1,6 @@
 #include "tegotae/mesh/assembly.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -84,13 +85,21 @@ void center_far_shapes(Assembly& assembly) {
   for (AssemblyPart& part : assembly.parts) part.pose.p = part.pose * shift[part.shape];
 }
 
+/// `text` in UTF-8 and on one line, as scene files want it: control characters become spaces.
+std::string printable(const std::string& text) {
+  std::string line = to_utf8(text);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(line.begin(), line.end(), is_control, ' ');
+  return line;
+}
+
 void name_parts(Assembly& assembly) {
   std::set<std::string> given;  // names in the file: a number added to one must not make another of them
   for (AssemblyPart& part : assembly.parts) {
-    part.name = to_utf8(part.name);
+    part.name = printable(part.name);
     if (part.name.empty()) part.name = "part";
     given.insert(part.name);
-    for (std::string& group : part.path) group = to_utf8(group);
+    for (std::string& group : part.path) group = printable(group);
   }
   std::set<std::string> used;
   std::map<std::string, int> last;

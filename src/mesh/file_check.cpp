@@ -118,7 +118,8 @@ void check_off(const std::string& path, std::string_view bytes) {
   }
   for (std::int64_t i = 0; i < faces; ++i) {
     std::int64_t corners = 0;
-    if (!words.next_integer(corners)) refuse(path, "truncated or damaged at face " + std::to_string(i));
+    // assimp reads on past a face without corners and ends in a segmentation fault.
+    if (!words.next_integer(corners) || corners < 1) refuse(path, "truncated or damaged at face " + std::to_string(i));
     for (std::int64_t k = 0; k < corners; ++k) {
       std::int64_t index = 0;
       if (!words.next_integer(index)) refuse(path, "truncated or damaged in face " + std::to_string(i));

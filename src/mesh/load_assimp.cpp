@@ -2,9 +2,11 @@
 
 #include <assimp/postprocess.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "mesh/file_check.hpp"
+#include "mesh/load_files.hpp"
 #include "mesh/precision.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -29,6 +31,18 @@ void require_valid_indices(const aiScene& scene, const std::string& path) {
   }
 }
 
+/// A face without corners is marked as a polygon by assimp, whose triangulation then ends the program; it also does
+/// when nothing is marked.
+void unmark_empty_polygons(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& mesh = *scene.mMeshes[m];
+    aiFace* end = mesh.mFaces + mesh.mNumFaces;
+    if (std::none_of(mesh.mFaces, end, [](const aiFace& f) { return f.mNumIndices > 3; }))
+      mesh.mPrimitiveTypes =
+          (mesh.mPrimitiveTypes & ~static_cast<unsigned>(aiPrimitiveType_POLYGON)) | aiPrimitiveType_POINT;
+  }
+}
+
 }  // namespace
 
 Matrix34 transform_of(const aiMatrix4x4& m) {
@@ -45,9 +59,11 @@ Matrix34 product(const Matrix34& a, const Matrix34& b) {
 
 const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
   check_mesh_file(path);
+  importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr) throw Error(path + ": " + importer.GetErrorString());
   require_valid_indices(*scene, path);
+  unmark_empty_polygons(*scene);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) throw Error(path + ": " + importer.GetErrorString());
   return *scene;

@@ -53,6 +53,7 @@ struct Servo::Impl {
   std::int64_t first_ns = 0;
   std::int64_t last_ns = 0;
   LatencyHistogram late;
+  std::atomic<std::int64_t> newest_late_ns{0};
   LatencyHistogram compute;
 
   RealtimeReport realtime;
@@ -100,6 +101,7 @@ struct Servo::Impl {
       sleep_until(next);
       const std::int64_t begin = monotonic_ns();
       late.add(begin - next);
+      newest_late_ns.store(begin - next, std::memory_order_relaxed);
       tick(begin);
       const std::int64_t end = monotonic_ns();
       compute.add(end - begin);
@@ -158,6 +160,10 @@ void Servo::tick(std::int64_t now_ns) noexcept {
 
 const RealtimeReport& Servo::realtime() const noexcept {
   return impl_->realtime;
+}
+
+std::int64_t Servo::newest_late_ns() const noexcept {
+  return impl_->newest_late_ns.load(std::memory_order_relaxed);
 }
 
 ServoStatistics Servo::statistics() const noexcept {

@@ -309,10 +309,11 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
 
 void ContactLoop::gather(TickReport& report) const {
   report.contacts = 0;
+  report.contact_gap = keep_ / kKeepShare;
   report.gap = std::numeric_limits<double>::infinity();
   for (const Contact& c : contacts_->limits()) {
     if (c.age == kCutAge) continue;
-    report.contacts += c.gap <= keep_ / kKeepShare ? 1 : 0;
+    report.contacts += c.gap <= report.contact_gap ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(contacts_->limits().size());

@@ -22,7 +22,7 @@ class ContactLoop final : public ProxyLoop {
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
   /// The limits at the end of the last tick.
-  const std::vector<Contact>& limits() const { return contacts_->limits(); }
+  const std::vector<Contact>& limits() const override { return contacts_->limits(); }
 
  private:
   /// A displacement together with the pose it leads to.

@@ -91,6 +91,9 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
 const TickReport& HapticLoop::report() const {
   return state_->report;
 }
+const std::vector<Contact>& HapticLoop::limits() const {
+  return state_->loop->limits();
+}
 const Vec3& HapticLoop::center() const {
   return state_->mass.center;
 }

@@ -201,10 +201,11 @@ ImpulseLoop::Advance ImpulseLoop::advance(double& time, TickReport& report) {
 
 void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const {
   report.contacts = 0;
+  report.contact_gap = 2 * envelope_;
   report.gap = std::numeric_limits<double>::infinity();
   for (const Contact& c : at_.contacts->limits()) {
     if (c.age == kCutAge) continue;
-    report.contacts += c.gap <= 2 * envelope_ ? 1 : 0;
+    report.contacts += c.gap <= report.contact_gap ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(at_.contacts->limits().size());

@@ -21,6 +21,7 @@ class ImpulseLoop final : public ProxyLoop {
 
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
+  const std::vector<Contact>& limits() const override { return at_.contacts->limits(); }
 
  private:
   struct Collision {

@@ -46,6 +46,7 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
   near_.reserve(parts.fixed.size());
   points_.reserve(kMostSprings);
   springs_.reserve(kMostSprings);
+  limits_.reserve(kMostSprings);
 }
 
 void PenaltyLoop::move(const Displacement& d) {
@@ -56,8 +57,10 @@ void PenaltyLoop::move(const Displacement& d) {
 
 void PenaltyLoop::collect(double reach, TickReport& report) {
   springs_.clear();
+  limits_.clear();
   collected_ = true;
   report.contacts = 0;
+  report.contact_gap = 0;
   report.depth = 0;
   report.gap = std::numeric_limits<double>::infinity();
   spheres_.query(X_ * center_, radius_, reach, near_);
@@ -76,6 +79,7 @@ void PenaltyLoop::collect(double reach, TickReport& report) {
       s.gap = p.gap;
       s.row << n, r.cross(n);
       springs_.push_back(s);
+      limits_.push_back({n, r, p.gap, part, 0});
       report.contacts += p.gap < 0 ? 1 : 0;
       report.depth = std::max(report.depth, -p.gap);
       report.gap = std::min(report.gap, p.gap);

@@ -22,6 +22,7 @@ class PenaltyLoop final : public ProxyLoop {
 
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
+  const std::vector<Contact>& limits() const override { return limits_; }
 
  private:
   /// A spring at a vertex: gap + row · (dp, dr), in the world.
@@ -47,6 +48,7 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;
+  std::vector<Contact> limits_;  ///< the springs' vertices, for whoever looks on; gaps may be negative
   bool collected_ = false;  ///< the springs are those of X_
   Pose X_;
 };

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "tegotae/contact/contact.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
@@ -14,6 +16,8 @@ class ProxyLoop {
   /// See HapticLoop::step; `Y` is finite and its quaternion of unit length.
   virtual void step(const Pose& Y, double dt, TickReport& report) = 0;
   virtual const Pose& pose() const = 0;
+  /// See HapticLoop::limits.
+  virtual const std::vector<Contact>& limits() const = 0;
 };
 
 /// The loop of `settings.resolver` (completed settings) over a scene with one held part. Throws Error for an unknown

@@ -1,5 +1,7 @@
 #include "sim/run_pen.hpp"
 
+#include <limits>
+
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/servo/attachment.hpp"
@@ -21,7 +23,7 @@ ServoSettings servo_settings(const SceneFile& file) {
 
 class LocalPen final : public RunPen {
  public:
-  LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock)
+  LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, const HandGuide* guide)
       : wall_clock_(wall_clock),
         device_(with_clock(file.device, wall_clock), file.script, loop.center()),
         channel_(Channel::create()),
@@ -29,6 +31,7 @@ class LocalPen final : public RunPen {
         link_(channel_, file.scene.coupling, loop.center(), loop.gyration()),
         stability_(tegotae::stability(device_.info(), file.scene.coupling, ServoSettings().rate_hz).text()) {
     link_.set_scale(file.scale);
+    if (guide) device_.follow(*guide);
   }
 
   void start() override {
@@ -51,6 +54,9 @@ class LocalPen final : public RunPen {
   bool connected() const noexcept override { return true; }
   std::uint64_t losses() const noexcept override { return 0; }
   ServoStatistics statistics() const noexcept override { return servo_.statistics(); }
+  double servo_late_us() const noexcept override {
+    return wall_clock_ ? 1e-3 * static_cast<double>(servo_.newest_late_ns()) : std::numeric_limits<double>::quiet_NaN();
+  }
   std::string missing_realtime() const override { return servo_.realtime().missing; }
   std::string stability() const override { return stability_; }
 
@@ -82,6 +88,7 @@ class RemotePen final : public RunPen {
   bool connected() const noexcept override { return attachment_.connected(); }
   std::uint64_t losses() const noexcept override { return attachment_.losses(); }
   ServoStatistics statistics() const noexcept override { return attachment_.statistics(); }
+  double servo_late_us() const noexcept override { return std::numeric_limits<double>::quiet_NaN(); }
   std::string missing_realtime() const override { return {}; }
   std::string stability() const override { return {}; }
 
@@ -91,8 +98,9 @@ class RemotePen final : public RunPen {
 
 }  // namespace
 
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock) {
-  return std::make_unique<LocalPen>(file, loop, wall_clock);
+std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock,
+                                       const HandGuide* guide) {
+  return std::make_unique<LocalPen>(file, loop, wall_clock, guide);
 }
 
 std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "tegotae/device/hand_guide.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -29,13 +30,17 @@ class RunPen {
   virtual bool connected() const noexcept = 0;
   virtual std::uint64_t losses() const noexcept = 0;
   virtual ServoStatistics statistics() const noexcept = 0;
+  /// How late the servo's newest tick began, µs; NaN in virtual time and where it is not known.
+  virtual double servo_late_us() const noexcept = 0;
   /// RunSummary::missing_realtime and stability.
   virtual std::string missing_realtime() const = 0;
   virtual std::string stability() const = 0;
 };
 
 /// The scene's simulated pen with a servo of its own, in this process.
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock);
+/// `guide` (may be null) leads its hand away from the script.
+std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock,
+                                       const HandGuide* guide);
 /// A device in another process, "shm:NAME". Throws Error when there is none.
 std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop);
 

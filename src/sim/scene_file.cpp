@@ -12,7 +12,6 @@
 #include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
 #include "tegotae/servo/mapping.hpp"
 
 namespace tegotae {
@@ -99,7 +98,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder);
     auto& mesh = meshes[{file, unit}];
-    if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(load_mesh(file, unit)); });
+    if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(options.load(file, unit)); });
     part.mesh = mesh;
     scene.parts.push_back(std::move(part));
   }

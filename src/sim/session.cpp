@@ -33,7 +33,7 @@ HapticLoop make_loop(const SceneFile& file, bool real_time) try {
 }
 
 std::unique_ptr<RunPen> make_pen(const SceneFile& file, const RunSettings& settings, const HapticLoop& loop) {
-  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time);
+  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time, settings.guide);
   if (!settings.real_time) throw Error("a device in another process has its own clock; it cannot run in virtual time");
   return make_remote_pen(settings.device, file, loop);
 }
@@ -92,8 +92,10 @@ class Session {
 
   void run_virtual_time() {
     const auto ticks = static_cast<std::int64_t>(std::ceil(duration_ / kPeriod - 1e-6));
-    for (std::int64_t i = 0; i < ticks && !stopped(); ++i) {
+    for (std::int64_t i = 0; i < ticks; ++i) {
       const std::int64_t now = i * kPeriodNs;
+      if (settings_.observer) settings_.observer->before_tick(1e-9 * static_cast<double>(now));
+      if (stopped()) break;
       pen_->tick_servo(now);
       tick(static_cast<double>(i) * kPeriod, kPeriod, now);
       pen_->advance(kPeriod);
@@ -132,7 +134,9 @@ class Session {
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     for (const Pose& X : report.pieces) check_.add(X);
-    if (recorder_) record(number, t, pen, report, settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0);
+    const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
+    if (recorder_) record(number, t, pen, report, tick_us);
+    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us()});
     if (settings_.progress) show(t, pen, report);
   }
 

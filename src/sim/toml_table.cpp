@@ -20,6 +20,16 @@ std::string at(const std::string& file, const toml::source_region& where) {
   return where.begin ? file + ":" + std::to_string(where.begin.line) : file;
 }
 
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+}
+
+/// Keys and values may hold line breaks and worse; a message is one line.
+std::string one_line(std::string text) {
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
 std::string type_name(const toml::node& node) {
   std::ostringstream s;
   s << node.type();
@@ -46,7 +56,7 @@ toml::table parse_toml(const std::string& path) {
   try {
     return toml::parse(in, path);
   } catch (const toml::parse_error& e) {
-    throw Error(at(path, e.source()) + ": not valid TOML: " + std::string(e.description()));
+    throw Error(at(path, e.source()) + ": not valid TOML: " + one_line(std::string(e.description())));
   }
 }
 
@@ -64,7 +74,7 @@ TomlTable::TomlTable(const toml::table& table, const std::string& file, const st
 void TomlTable::fail(const std::string& key, const std::string& reason) const {
   const auto it = table_.find(key);
   const toml::source_region& where = it == table_.end() ? table_.source() : it->first.source();
-  throw Error(at(file_, where) + ": " + (name_.empty() ? "" : name_ + ".") + key + ": " + reason);
+  throw Error(at(file_, where) + ": " + one_line((name_.empty() ? "" : name_ + ".") + key + ": " + reason));
 }
 
 std::string TomlTable::text(const char* key) const {
@@ -78,6 +88,7 @@ std::string TomlTable::text(const char* key, const std::string& fallback) const 
   if (!node->is_string()) fail(key, "must be a string, not " + type_name(*node));
   const std::string value = node->as_string()->get();
   if (value.empty()) fail(key, "must not be empty");
+  if (std::any_of(value.begin(), value.end(), is_control)) fail(key, "must be one line of printable text");
   return value;
 }
 

@@ -57,6 +57,15 @@ TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
   check_refused(run_program("tegotae", "import " + file + " -o " + (folder / "plain")), {"plain"});
 }
 
+TEST_CASE("control characters in names become spaces, so that the scene can be read", "[import]") {
+  const TempFolder folder;
+  folder.write("two.obj",
+               "g a\x01" "b\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+               "g c\nv 40 0 0\nv 50 0 0\nv 40 10 0\nv 40 0 10\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n");
+  REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --split -o " + (folder / "out")).code == 0);
+  CHECK(load_scene(folder / "out/scene.toml", {"a b", true, {}}).scene.parts.size() == 2);
+}
+
 TEST_CASE("clashes are listed by name, depth and place", "[import]") {
   const TempFolder folder;
   write_small_scene(folder);

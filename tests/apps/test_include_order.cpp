@@ -39,6 +39,11 @@ bool starts_with(const std::string& s, const std::string& prefix) {
   return s.rfind(prefix, 0) == 0;
 }
 
+// What a public header may include: its own kind, Eigen, and the system's headers.
+bool may_be_public(const std::string& inc) {
+  return starts_with(inc, "tegotae/") || starts_with(inc, "Eigen/") || inc.find('/') == std::string::npos;
+}
+
 // What is wrong with `line` in the file `file` (relative to the project, with /); empty when nothing is.
 std::string violation(const std::string& file, const std::string& line) {
   static const std::regex in_part(R"((?:src|include/tegotae)/(\w+)/.*)");
@@ -56,7 +61,7 @@ std::string violation(const std::string& file, const std::string& line) {
     return "assimp belongs to src/mesh/load*";
   if (!test && inc.size() > 4 && inc.substr(inc.size() - 4) == ".hxx" && file != "src/mesh/step_occt.cpp")
     return "OpenCASCADE belongs to src/mesh/step_occt.cpp";
-  if (starts_with(file, "include/") && starts_with(inc, "toml++")) return "toml++ is private";
+  if (starts_with(file, "include/") && !inc.empty() && !may_be_public(inc)) return inc + " is no public include";
   return "";
 }
 
@@ -84,6 +89,9 @@ TEST_CASE("the check sees an arrow to the right", "[include]") {
   CHECK(violation("src/sim/a.cpp", "#include <fcl/fcl.h>") == "FCL and libccd belong to src/narrowphase");
   CHECK(violation("apps/a.cpp", "#include <assimp/scene.h>") == "assimp belongs to src/mesh/load*");
   CHECK(violation("src/mesh/a.cpp", "#include <BRep_Tool.hxx>") == "OpenCASCADE belongs to src/mesh/step_occt.cpp");
+  CHECK(violation("include/tegotae/sim/a.hpp", "#include <toml++/toml.h>") == "toml++/toml.h is no public include");
+  CHECK(violation("include/tegotae/sim/a.hpp", "#include \"sim/a.hpp\"") == "sim/a.hpp is no public include");
+  CHECK(violation("include/tegotae/sim/a.hpp", "#include <vector>").empty());
   CHECK(violation("src/view/a.cpp", "int a;") == "folder view has no place in the order");
   CHECK(violation("src/sim/a.cpp", "#include \"tegotae/core/pose.hpp\"").empty());
   CHECK(violation("src/narrowphase/a.cpp", "#include <fcl/fcl.h>").empty());
@@ -105,6 +113,31 @@ TEST_CASE("includes go only leftwards", "[include]") {
   CHECK(wrong == "");
   CHECK(shm_files.size() <= 1);
   for (const std::string& file : shm_files) CHECK(starts_with(file, "src/device/"));
+}
+
+TEST_CASE("every public header says what the shared library shows", "[include]") {
+  std::map<std::string, int> shown;
+  for (const auto& [file, line] : project_lines()) {
+    if (!starts_with(file, "include/") || fs::path(file).extension() != ".hpp") continue;
+    shown[file] += line == "namespace tegotae TEGOTAE_EXPORT {";
+    CHECK((file + ": " + line) != file + ": namespace tegotae {");
+  }
+  CHECK(shown.size() > 10);
+  for (const auto& [file, times] : shown) {
+    const bool macros_only = file == "include/tegotae/core/export.hpp" || file == "include/tegotae/core/version.hpp";
+    INFO(file);
+    CHECK(times == (macros_only ? 0 : 1));
+  }
+}
+
+TEST_CASE("the version is one", "[include]") {
+  const fs::path root = fs::path(TEGOTAE_TEST_DATA_DIR).parent_path();
+  std::ifstream in(root / "include/tegotae/core/version.hpp");
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  std::smatch numbers, whole;
+  REQUIRE(std::regex_search(text, numbers, std::regex(R"(MAJOR (\d+)\n[^\n]*MINOR (\d+)\n[^\n]*PATCH (\d+)\n)")));
+  REQUIRE(std::regex_search(text, whole, std::regex(R"re(VERSION_STRING "([0-9.]+)")re")));
+  CHECK(whole[1].str() == numbers[1].str() + "." + numbers[2].str() + "." + numbers[3].str());
 }
 
 TEST_CASE("the README's code is the example that is built", "[include]") {

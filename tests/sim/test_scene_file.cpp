@@ -221,6 +221,9 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {"part = 1\n" + kDevice, "scene.toml:1: part: must be written [[part]]"},
       {good + "[contact]\nl_min = true\n", "scene.toml:13: contact.l_min: must be a number"},
       {good + "hand = 3\n", "scene.toml:12: device.hand: must be a table"},
+      // Line breaks in keys and values.
+      {"\"a\\nb\" = 1\n" + good, "scene.toml:1: a?b: unknown key"},
+      {replaced(good, "\"block\"", "\"a\\nb\""), "scene.toml:3: part.name: must be one line"},
       // Impossible values.
       {replaced(good, "\"mm\"", "\"mile\""), "scene.toml:1: unit: "},
       {replaced(good, "[0, 0, 0.1]", "[0, 0, nan]"), "scene.toml:9: part.position: must be finite"},

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Contact::age of a limit that is no contact: a plane between two triangles, of use for one motion alone. Its gap is not
 /// the distance of anything.

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <limits>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Time of the monotonic clock, ns. The same clock in every process of the machine.
 inline std::int64_t monotonic_ns() noexcept {

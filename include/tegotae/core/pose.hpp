@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 using Vec3 = Eigen::Vector3d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -54,6 +56,8 @@ Pose displaced(const Pose& X, const Vec3& center_B, const Displacement& d);
 /// The displacement of `center_B` that takes `from` to `to`: displaced(from, center_B, d) == to up to rounding.
 Displacement displacement(const Pose& from, const Pose& to, const Vec3& center_B);
 /// `d` scaled by `s`; the path s -> displaced(X, c, s·d), s in [0, 1], has a linear center and constant angular rate.
-inline Displacement operator*(double s, const Displacement& d) { return {s * d.dp, s * d.dr}; }
+inline Displacement operator*(double s, const Displacement& d) {
+  return {s * d.dp, s * d.dr};
+}
 
 }  // namespace tegotae

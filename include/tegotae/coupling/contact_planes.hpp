@@ -2,9 +2,10 @@
 
 #include <array>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// A limit on the held part's motion near its pose X: the point `point` of it may move against `normal` by `room`.
 struct ContactPlane {

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Spring and damper between the held part and the pen (the paper's section 4.2). The defaults are the closed-loop
 /// stiffness that a PHANTOM Premium 1.5/6DOF renders without vibrating.

@@ -2,10 +2,11 @@
 
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/device/device.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// How stiff a coupling may be so that a sampled wall never gives a hand energy, whatever the hand does. With b the
 /// damping of the device, B that of the coupling, T the period, f_c the Coulomb friction and Δ the position resolution:

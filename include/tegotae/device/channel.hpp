@@ -3,9 +3,10 @@
 #include <memory>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/shm.h"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 class Segment;
 

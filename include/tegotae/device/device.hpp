@@ -3,11 +3,12 @@
 #include <cstdint>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/shm.h"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What a device is, as far as its vendor tells. The defaults are those of a PHANTOM Premium 1.5/6DOF.
 struct DeviceInfo {

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Where a hand wants the held part's file frame to be.
 struct HandTarget {

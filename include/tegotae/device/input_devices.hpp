@@ -2,9 +2,10 @@
 
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// How the deflection of an input that springs back to its middle moves the pen. Speeds grow with the square of the
 /// deflection beyond the dead zone.

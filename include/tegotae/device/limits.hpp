@@ -1,8 +1,9 @@
 #pragma once
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// The most that is rendered. The defaults are the peak figures of a PHANTOM Premium 1.5/6DOF.
 struct WrenchLimits {

@@ -3,9 +3,10 @@
 #include <memory>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// The device's axes (right, up, toward the user) as those of a world whose z points up and y away from the user.
 Quat desktop_axes();

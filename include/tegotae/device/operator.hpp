@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/hand_intent.hpp"
 #include "tegotae/device/simulated_device.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// How an operator works. Where no source is named the figure is an assumption of ours, chosen so that the three
 /// profiles span what people do with a pen.

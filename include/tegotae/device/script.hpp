@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Where the operator's hand wants the held part's file frame to be, over time.
 class StylusScript {
@@ -15,8 +16,8 @@ class StylusScript {
     Pose pose;
   };
 
-  /// Throws Error when `keys` is empty, a value is not finite, a quaternion is zero or the times do not increase (the
-  /// message counts keys from 1). Quaternions are normalized.
+  /// Throws Error when `keys` is empty, a value is not finite, a quaternion is zero, the times do not increase, or the
+  /// way from one key to the next is faster than 1e12 m/s (the message counts keys from 1). Quaternions are normalized.
   explicit StylusScript(std::vector<Key> keys);
 
   /// Between two keys the position of the file frame goes linearly and the rotation at a constant rate on the shorter

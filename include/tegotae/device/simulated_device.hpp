@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
+#include "tegotae/device/hand_guide.hpp"
 #include "tegotae/device/hand_intent.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// The hand that holds the pen: springs and dampers from the script's pose to the pen's, and the effective mass of the
 /// hand, which moves with the pen. The defaults are a relaxed pen grip, near critical damping.
@@ -58,6 +60,9 @@ class SimulatedDevice final : public Device {
   void set_center(const Vec3& center) noexcept override;
   void set_lead(const Displacement& lead) noexcept override;  ///< an application is there
 
+  /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
+  /// keeps a reference.
+  void follow(const HandGuide& guide) noexcept;
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
   void advance(double dt) noexcept;
   /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.

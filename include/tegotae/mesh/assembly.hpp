@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Red, green, blue (sRGB) and opacity, each 0 to 1.
 using Color = std::array<double, 4>;

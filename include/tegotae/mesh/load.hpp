@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Length of one file unit in m: "m", "cm", "mm", "um" or "in". Throws Error for any other name.
 double unit_length(const std::string& unit);

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Mass properties of a homogeneous part.
 struct MassProperties {

@@ -2,9 +2,10 @@
 
 #include <cstddef>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What a surface is like, counted after welding (see load.hpp).
 struct MeshReport {

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// A triangle surface in its file frame, SI units. Faces turn counter-clockwise seen from outside where the file says
 /// so; nothing else is promised: it may be open, non-manifold or self-intersecting.

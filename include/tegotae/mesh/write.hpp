@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Writes `mesh` as binary PLY (floats, shared vertices) in units of `unit_in_m`. Throws Error when it cannot be
 /// written.

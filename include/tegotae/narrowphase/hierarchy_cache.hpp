@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Folder in which hierarchies of large meshes are kept, so that a later start need not build them; empty (the default):
 /// nowhere. Call before threads that build loops start. A file in it is used only when it is whole and was made for the

@@ -5,9 +5,10 @@
 #include <memory>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/record/recording.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 enum class RecordMode {
   threaded,     ///< push() only copies into a ring, a thread writes: for the wall clock

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// One row of a recording: one certified piece of a tick of the contact loop.
 struct RecordFrame {

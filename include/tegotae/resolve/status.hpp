@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 /// How the resolver's programme of a tick ended.
 enum class ResolveStatus : std::uint8_t {

@@ -4,11 +4,12 @@
 #include <optional>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// An application's hold on a device in another process (tegotae-device, or a driver of one's own). It outlives the
 /// device: while there is none, read() says so, the application keeps the part where it is, and the next device of that

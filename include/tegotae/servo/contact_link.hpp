@@ -2,13 +2,14 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/servo/mapping.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What the servo last told of the pen.
 struct PenSample {

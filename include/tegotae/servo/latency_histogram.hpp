@@ -3,7 +3,9 @@
 #include <array>
 #include <cstdint>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Counts durations from 0 to hours in bins of at most 1/32 of their value, without allocation.
 class LatencyHistogram {

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/device/shm.h"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What of the pen's motion the held part does not follow.
 enum class Clutch : std::uint32_t {

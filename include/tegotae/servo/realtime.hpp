@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace tegotae {
+#include "tegotae/core/export.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What to do when the system does not grant real-time scheduling.
 enum class RealtimeConfig {

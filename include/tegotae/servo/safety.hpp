@@ -2,10 +2,11 @@
 
 #include <limits>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/device/limits.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Settings of the chain that every wrench passes before it leaves. The defaults suit a PHANTOM Premium 1.5/6DOF.
 struct SafetySettings {

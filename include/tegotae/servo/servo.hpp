@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
 #include "tegotae/servo/latency_histogram.hpp"
@@ -11,7 +12,7 @@
 #include "tegotae/servo/realtime.hpp"
 #include "tegotae/servo/safety.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 struct ServoSettings {
   double rate_hz = 1000.0;  ///< up to 4000
@@ -61,6 +62,8 @@ class Servo {
   const RealtimeReport& realtime() const noexcept;
   /// While the thread runs: as of at most a tenth of a second ago.
   ServoStatistics statistics() const noexcept;
+  /// How late the thread's newest tick woke up, ns.
+  std::int64_t newest_late_ns() const noexcept;
 
  private:
   struct Impl;

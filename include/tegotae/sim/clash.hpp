@@ -5,9 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 enum class ClashKind : std::uint8_t {
   overlap,  ///< deeper than the tolerance, or crossing surfaces of which none is closed

@@ -4,19 +4,22 @@
 #include <memory>
 #include <vector>
 
+#include "tegotae/contact/contact.hpp"
+#include "tegotae/core/export.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What one tick of the contact loop did.
 struct TickReport {
   std::vector<Pose> pieces;  ///< the free poses that X went through, in order; the last one is X (never empty)
   ProxyState proxy;          ///< X, its velocity, and whether it touches
   ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
-  int contacts = 0;          ///< feature pairs with a gap of at most l_min
+  int contacts = 0;          ///< feature pairs with a gap of at most contact_gap
+  double contact_gap = 0;    ///< what counts as contact in this tick, m
   int limits = 0;            ///< feature pairs that limited the motion, contacts included
   double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
   double depth = 0;          ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
@@ -45,6 +48,9 @@ class HapticLoop {
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   const TickReport& report() const;
+  /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
+  /// when the tick was cut). Valid until the next call of step().
+  const std::vector<Contact>& limits() const;
   Mat3 gyration() const;                   ///< its inertia over its mass about the center, m², file axes
   const Vec3& center() const;              ///< center of mass of the held part, m, file frame
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open

@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// One rigid part. Parts may share a mesh.
 struct Part {

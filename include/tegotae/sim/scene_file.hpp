@@ -3,12 +3,14 @@
 #include <functional>
 #include <string>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/device/script.hpp"
 #include "tegotae/device/simulated_device.hpp"
+#include "tegotae/mesh/load.hpp"
 #include "tegotae/servo/safety.hpp"
 #include "tegotae/sim/scene.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What a scene file says: the scene, the pen, and what moves it.
 struct SceneFile {
@@ -20,12 +22,16 @@ struct SceneFile {
   double scale = 1;         ///< meters that the held part moves for a meter of the pen
 };
 
+/// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.
+using MeshLoader = std::function<TriangleMesh(const std::string& path, double unit_in_m)>;
+
 /// How a scene file is read.
 struct SceneOptions {
   std::string hold;          ///< name of the part to hold, instead of the file's; empty: the file's
   bool held_needed = true;   ///< false: a file that holds no part is read too
   /// Called before each mesh is read: how many are, of how many.
   std::function<void(std::size_t done, std::size_t total)> progress;
+  MeshLoader load = load_mesh;  ///< reads the meshes
 };
 
 /// Reads a scene file (TOML, see docs/scene-file.md) and the meshes it names; parts with the same file and unit share

@@ -4,10 +4,14 @@
 #include <cstdint>
 #include <string>
 
+#include "tegotae/core/export.hpp"
+#include "tegotae/device/hand_guide.hpp"
+#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
 struct RunProgress {
@@ -19,6 +23,26 @@ struct RunProgress {
   std::atomic<bool> device{true};  ///< the device is there
 };
 
+/// A tick of the contact loop, for whoever looks on.
+struct TickView {
+  std::uint64_t tick;
+  double t;  ///< s since the start
+  const PenSample& pen;
+  const HapticLoop& loop;  ///< its report() and limits() are of this tick
+  double tick_us;          ///< time the tick took; 0 in virtual time
+  double servo_late_us;    ///< how late the servo's newest tick began; NaN in virtual time
+};
+
+/// Looks on while a session runs. Called in the contact loop's thread.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  /// Before the tick at `t` (s since the start), in virtual time only: may wait, to hold the run or to slow it down.
+  virtual void before_tick(double t) = 0;
+  /// After the tick. In real time it must neither wait nor allocate.
+  virtual void after_tick(const TickView& tick) noexcept = 0;
+};
+
 struct RunSettings {
   /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
   /// in a thread of this process. Only in real time.
@@ -28,6 +52,8 @@ struct RunSettings {
   std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;  ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
+  RunObserver* observer = nullptr;
+  const HandGuide* guide = nullptr;         ///< leads the simulated hand away from the script
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };
 

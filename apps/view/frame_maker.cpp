@@ -1,0 +1,48 @@
+#include "view/frame_maker.hpp"
+
+namespace tegotae::view {
+
+FrameMaker::FrameMaker(const Scene& scene) {
+  for (std::uint32_t i = 0; i < scene.parts.size(); ++i)
+    if (!scene.parts[i].held) fixed_.push_back(i);
+}
+
+void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
+  const TickReport& report = loop.report();
+  const auto& limits = loop.limits();
+  store(report.proxy.X, frame.x);
+  frame.contacts = static_cast<std::uint32_t>(report.contacts);
+  frame.limits = static_cast<std::uint32_t>(limits.size());
+  frame.gap = report.gap;
+  frame.flags = (report.proxy.touching ? Frame::touching : 0u) | (report.cut ? Frame::cut : 0u) |
+                (report.overflow ? Frame::overflow : 0u);
+  frame.pair_count = 0;
+  const Vec3 center = report.proxy.X * loop.center();
+  for (const bool touching : {true, false})
+    for (const Contact& c : limits) {
+      if ((c.age != kCutAge && c.gap <= report.contact_gap) != touching) continue;
+      if (frame.pair_count == kMostPairs) return;
+      FramePair& p = frame.pairs[frame.pair_count++];
+      for (int i = 0; i < 3; ++i) {
+        p.point[i] = center[i] + c.r[i];
+        p.normal[i] = c.n[i];
+      }
+      p.gap = c.gap;
+      p.part = fixed_[c.part];
+      p.touching = touching ? 1 : 0;
+    }
+}
+
+void FrameMaker::fill(const TickView& tick, Frame& frame) const {
+  add_loop(tick.loop, frame);
+  frame.tick = tick.tick;
+  frame.t = tick.t;
+  store(tick.pen.state.pose, frame.y);
+  store(tick.pen.wrench, frame.wrench);
+  frame.tick_us = tick.tick_us;
+  frame.servo_late_us = tick.servo_late_us;
+  if (tick.pen.status == DeviceStatus::enabled) frame.flags |= Frame::force_on;
+  frame.reason = static_cast<std::uint32_t>(tick.pen.reason);
+}
+
+}  // namespace tegotae::view

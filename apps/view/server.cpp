@@ -1,0 +1,259 @@
+#include "view/server.hpp"
+
+#include <civetweb.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
+#include "view/request_guard.hpp"
+#include "view/wire.hpp"
+#include "web/page.hpp"
+
+namespace tegotae::view {
+namespace {
+
+// Threads that serve; each watcher keeps one, the rest is for requests.
+const std::string kThreads = std::to_string(kMostWatchers + 12);
+// CivetWeb gives up on a client that it waits for so long (ms) without a byte going either way.
+constexpr const char* kTimeout = "10000";
+constexpr std::size_t kMostHeader = 8192;
+// A command is a few numbers in two levels; a second has so many of them (a drag sends one a frame).
+constexpr std::size_t kMostCommand = 2048;
+constexpr int kMostDepth = 3;
+constexpr double kCommandsPerSecond = 200;
+constexpr auto kFramePeriod = std::chrono::milliseconds(33);
+constexpr std::int64_t kStatusNs = 500'000'000;
+// The server's threads give way to everything else (nice).
+constexpr int kNice = 10;
+
+const char* or_empty(const char* text) {
+  return text ? text : "";
+}
+
+void respond(mg_connection* connection, int status, const char* reason, const char* type, std::string_view body,
+             const std::string& extra = {}) {
+  std::string head =
+      "HTTP/1.1 " + std::to_string(status) + " " + reason + "\r\nContent-Type: " + type +
+      "\r\nContent-Length: " + std::to_string(body.size()) +
+      "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n" +
+      // What could not be read to its end ends the connection.
+      (status == 200 ? "" : "Connection: close\r\n") + extra + "\r\n";
+  mg_write(connection, head.data(), head.size());
+  mg_write(connection, body.data(), body.size());
+}
+
+/// So many at once, and so many a second.
+class Rate {
+ public:
+  bool take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::int64_t now = monotonic_ns();
+    left_ = std::min(kCommandsPerSecond, left_ + 1e-9 * static_cast<double>(now - last_) * kCommandsPerSecond);
+    last_ = now;
+    if (left_ < 1) return false;
+    left_ -= 1;
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  double left_ = kCommandsPerSecond;
+  std::int64_t last_ = monotonic_ns();
+};
+
+nlohmann::json parse_command(const std::string& body) {
+  const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    if (depth > kMostDepth) throw Error("a command is too deep");
+    return true;
+  };
+  return nlohmann::json::parse(body, shallow);
+}
+
+}  // namespace
+
+struct Server::Impl {
+  ViewSource& source;
+  std::unique_ptr<RequestGuard> guard;
+  std::string url, log;
+  std::atomic<int> watchers{0};
+  std::atomic<bool> started{false}, ending{false};
+  Rate rate;
+  mg_context* context = nullptr;
+
+  explicit Impl(ViewSource& source_in) : source(source_in) {}
+
+  int serve(mg_connection* connection) {
+    const mg_request_info& request = *mg_get_request_info(connection);
+    const std::string_view uri = or_empty(request.local_uri), method = or_empty(request.request_method);
+    const bool page = uri == "/";
+    char query[64] = "";
+    if (page && request.query_string)
+      mg_get_var(request.query_string, std::char_traits<char>::length(request.query_string), "token", query,
+                 sizeof query);
+    const std::string why =
+        guard->refusal({or_empty(mg_get_header(connection, "Host")), or_empty(mg_get_header(connection, "Origin")),
+                        or_empty(mg_get_header(connection, "Sec-Fetch-Site")),
+                        page ? query : or_empty(mg_get_header(connection, "X-Tegotae-Token"))});
+    if (!why.empty()) {
+      respond(connection, 403, "Forbidden", "text/plain; charset=utf-8", why + "\n");
+    } else if (method == "GET" && page) {
+      serve_page(connection);
+    } else if (method == "GET" && uri == "/scene") {
+      respond(connection, 200, "OK", "application/octet-stream", *source.scene());
+    } else if (method == "GET" && uri == "/stream" && source.frames()) {
+      serve_stream(connection);
+    } else if (method == "POST" && uri == "/command") {
+      serve_command(connection, request.content_length);
+    } else {
+      respond(connection, 404, "Not Found", "text/plain; charset=utf-8", "there is nothing here\n");
+    }
+    return 200;
+  }
+
+  void serve_page(mg_connection* connection) {
+    // Scripts and styles are those of this answer, and the page speaks with this server only.
+    const std::string nonce = random_hex(16);
+    respond(connection, 200, "OK", "text/html; charset=utf-8", apps::view_page(nonce),
+            "Content-Security-Policy: default-src 'none'; connect-src 'self'; img-src data: blob:; script-src 'nonce-" +
+                nonce + "'; style-src 'nonce-" + nonce +
+                "'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\nX-Frame-Options: DENY\r\n");
+  }
+
+  void serve_command(mg_connection* connection, long long length) {
+    constexpr const char* text = "text/plain; charset=utf-8";
+    if (length < 0 || length > static_cast<long long>(kMostCommand))
+      return respond(connection, 413, "Content Too Large", text, "a command has a length of at most 2 KB\n");
+    if (!rate.take()) return respond(connection, 429, "Too Many Requests", text, "slower\n");
+    std::string body(static_cast<std::size_t>(length), '\0');
+    std::size_t got = 0;
+    while (got < body.size()) {
+      const int n = mg_read(connection, body.data() + got, body.size() - got);
+      if (n <= 0) return;
+      got += static_cast<std::size_t>(n);
+    }
+    try {
+      source.command(parse_command(body));
+      respond(connection, 200, "OK", text, "");
+    } catch (const Error& e) {
+      respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
+    } catch (const nlohmann::json::exception&) {
+      respond(connection, 400, "Bad Request", text, "this is no command\n");
+    }
+  }
+
+  void serve_stream(mg_connection* connection) {
+    if (++watchers > kMostWatchers)
+      respond(connection, 503, "Service Unavailable", "text/plain; charset=utf-8", "too many pages are watching\n");
+    else
+      stream(connection);
+    --watchers;
+  }
+
+  /// Frames and status until the client is gone: the newest frame at most every 33 ms, with the worst times since the
+  /// one before.
+  void stream(mg_connection* connection) {
+    const std::string head =
+        "HTTP/1.1 200 OK\r\nContent-Type: application/octet-stream\r\nCache-Control: no-store\r\n"
+        "X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n";
+    if (mg_write(connection, head.data(), head.size()) <= 0) return;
+    const FrameRing& ring = *source.frames();
+    FrameRing::Cursor cursor = ring.newest();
+    std::uint64_t missed = 0;
+    std::string last_status;
+    std::int64_t status_ns = 0;
+    for (; !ending; std::this_thread::sleep_for(kFramePeriod)) {
+      std::string out;
+      const std::string status = source.status();
+      const std::int64_t now = monotonic_ns();
+      // Also when there is nothing new: only a write finds out that the client is gone.
+      if (status != last_status || now - status_ns > kStatusNs) {
+        out += status_message(status);
+        last_status = status;
+        status_ns = now;
+      }
+      out += newest_frame(ring, cursor, missed);
+      if (!out.empty() && mg_write(connection, out.data(), out.size()) != static_cast<int>(out.size())) return;
+    }
+  }
+
+  static std::string newest_frame(const FrameRing& ring, FrameRing::Cursor& cursor, std::uint64_t& missed) {
+    Frame frame, next;
+    bool any = false;
+    double tick_us = 0, late_us = std::nan("");
+    while (ring.read(cursor, next, missed)) {
+      tick_us = std::max(tick_us, next.tick_us);
+      late_us = std::fmax(late_us, next.servo_late_us);
+      frame = next;
+      any = true;
+    }
+    if (!any) return {};
+    frame.tick_us = tick_us;
+    frame.servo_late_us = late_us;
+    return frame_message(frame);
+  }
+};
+
+Server::Server(const Address& address, ViewSource& source) : impl_(std::make_unique<Impl>(source)) {
+  const std::string port = address.text();
+  const std::string header = std::to_string(kMostHeader);
+  const char* options[] = {"listening_ports",
+                           port.c_str(),
+                           "num_threads",
+                           kThreads.c_str(),
+                           "request_timeout_ms",
+                           kTimeout,
+                           "keep_alive_timeout_ms",
+                           "5000",
+                           "enable_keep_alive",
+                           "yes",
+                           "max_request_size",
+                           header.c_str(),
+                           "tcp_nodelay",
+                           "1",
+                           nullptr};
+  mg_callbacks callbacks{};
+  callbacks.log_message = [](const mg_connection* connection, const char* message) {
+    auto* impl = static_cast<Impl*>(mg_get_user_data(mg_get_context(connection)));
+    if (impl && !impl->started) impl->log = message;  // later on a client's trouble is its own
+    return 1;
+  };
+  callbacks.init_thread = [](const mg_context*, int) -> void* {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+    return nullptr;
+  };
+  impl_->context = mg_start(&callbacks, impl_.get(), options);
+  if (!impl_->context) throw Error("cannot listen on " + port + (impl_->log.empty() ? "" : ": " + impl_->log));
+  impl_->started = true;
+  mg_server_port ports[2] = {};
+  mg_get_server_ports(impl_->context, 2, ports);
+  Address listening = address;
+  listening.port = ports[0].port;
+  impl_->guard = std::make_unique<RequestGuard>(listening);
+  Address shown = listening;
+  if (address.wildcard()) shown.host = address.host == "[::]" ? "[::1]" : "127.0.0.1";
+  impl_->url = "http://" + shown.text() + "/?token=" + impl_->guard->token();
+  mg_set_request_handler(
+      impl_->context, "**",
+      [](mg_connection* connection, void* impl) { return static_cast<Impl*>(impl)->serve(connection); }, impl_.get());
+}
+
+Server::~Server() {
+  impl_->ending = true;
+  mg_stop(impl_->context);
+}
+
+const std::string& Server::url() const {
+  return impl_->url;
+}
+
+}  // namespace tegotae::view

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "view/address.hpp"
+#include "view/source.hpp"
+
+namespace tegotae::view {
+
+/// Serves the view page and what it shows, from threads of its own (at low priority). Everything asks for the token in
+/// url(), for this server as host, and for this page as origin where the browser tells; requests and clients are
+/// bounded, and a client that does not take what it gets is dropped.
+class Server {
+ public:
+  /// Listens at once. Throws Error with the cause when it cannot. Keeps a reference to `source`.
+  Server(const Address& address, ViewSource& source);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// The one address to open: http://127.0.0.1:PORT/?token=...
+  const std::string& url() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Most pages that may watch at the same time.
+inline constexpr int kMostWatchers = 8;
+
+}  // namespace tegotae::view

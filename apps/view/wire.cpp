@@ -1,0 +1,67 @@
+#include "view/wire.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tegotae::view {
+namespace {
+
+// Whole numbers above 2^24 are no floats any more, and neither are milliseconds of a long run: two floats each.
+constexpr std::uint64_t kTickSplit = 1u << 20;
+
+void append(std::vector<float>& out, double value) {
+  out.push_back(static_cast<float>(value));
+}
+
+std::string message(Message kind, const void* data, std::size_t bytes) {
+  const std::uint32_t head[2] = {static_cast<std::uint32_t>(kind), static_cast<std::uint32_t>(bytes)};
+  std::string out(reinterpret_cast<const char*>(head), sizeof head);
+  return out.append(static_cast<const char*>(data), bytes);
+}
+
+}  // namespace
+
+void append_frame(const Frame& f, std::vector<float>& out) {
+  const std::size_t begin = out.size();
+  append(out, static_cast<double>(f.tick / kTickSplit));
+  append(out, static_cast<double>(f.tick % kTickSplit));
+  append(out, std::floor(f.t));
+  append(out, f.t - std::floor(f.t));
+  for (const double v : f.x) append(out, v);
+  for (const double v : f.y) append(out, v);
+  for (const double v : f.wrench) append(out, v);
+  append(out, f.gap);
+  append(out, f.tick_us);
+  append(out, f.servo_late_us);
+  append(out, f.contacts);
+  append(out, f.limits);
+  append(out, f.flags);
+  append(out, f.reason);
+  append(out, static_cast<double>(f.pair_count));
+  static_assert(kFrameFloats == 4 + 7 + 7 + 6 + 8);
+  out.resize(begin + kFrameFloats);
+}
+
+void append_pairs(const Frame& frame, std::vector<float>& out) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(frame.pair_count, kMostPairs); ++i) {
+    const FramePair& p = frame.pairs[i];
+    for (const double v : p.point) append(out, v);
+    for (const double v : p.normal) append(out, v);
+    append(out, p.gap);
+    append(out, 2.0 * p.part + p.touching);
+  }
+}
+
+std::string frame_message(const Frame& frame) {
+  std::vector<float> values;
+  values.reserve(kFrameFloats + kPairFloats * kMostPairs);
+  append_frame(frame, values);
+  append_pairs(frame, values);
+  return message(Message::frame, values.data(), values.size() * sizeof(float));
+}
+
+std::string status_message(std::string_view json) {
+  return message(Message::status, json.data(), json.size());
+}
+
+}  // namespace tegotae::view

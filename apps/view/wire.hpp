@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "view/frame.hpp"
+
+namespace tegotae::view {
+
+// A frame on its way to a page is a row of 32-bit floats: kFrameFloats of them, then kPairFloats for each pair. The
+// page reads them in apps/web/src/view/frame.js.
+inline constexpr std::size_t kFrameFloats = 32;
+inline constexpr std::size_t kPairFloats = 8;
+
+/// Appends the frame without its pairs.
+void append_frame(const Frame& frame, std::vector<float>& out);
+/// Appends the frame's pairs.
+void append_pairs(const Frame& frame, std::vector<float>& out);
+
+// What goes through the stream: 32 bits of kind, 32 bits of length in bytes, and that many bytes.
+enum class Message : std::uint32_t { frame = 1, status = 2 };
+
+std::string frame_message(const Frame& frame);
+std::string status_message(std::string_view json);
+
+}  // namespace tegotae::view

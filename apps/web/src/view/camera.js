@@ -1,0 +1,96 @@
+// Orbit, pan and zoom as in CAD programs, and the views along the axes.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+// From where one looks. z is up; straight from above it turns a hair aside, or up would be undefined.
+export const views = [
+  ["Front", [0, -1, 0]],
+  ["Back", [0, 1, 0]],
+  ["Left", [-1, 0, 0]],
+  ["Right", [1, 0, 0]],
+  ["Top", [0, -1e-4, 1]],
+  ["Bottom", [0, -1e-4, -1]],
+  ["Isometric", [1, -1.25, 0.85]],
+];
+const keyStep = (5 * Math.PI) / 180;
+const margin = 1.12;
+
+export class Viewpoint {
+  constructor(stage) {
+    this.stage = stage;
+    this.controls = new OrbitControls(stage.camera, stage.canvas);
+    Object.assign(this.controls, {
+      enableDamping: false,
+      zoomToCursor: true,
+      mouseButtons: { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.ROTATE, RIGHT: THREE.MOUSE.PAN },
+    });
+    this.controls.addEventListener("change", () => this.changed());
+    // The browser's own middle button (scrolling) and context menu are in the way.
+    stage.canvas.addEventListener("mousedown", (event) => event.button === 1 && event.preventDefault());
+  }
+
+  changed() {
+    const { camera, radius } = this.stage;
+    const distance = camera.position.distanceTo(this.controls.target);
+    camera.near = Math.max(distance - 4 * radius, distance / 200);
+    camera.far = distance + 6 * radius;
+    camera.updateProjectionMatrix();
+    this.stage.draw();
+  }
+
+  limits() {
+    this.controls.minDistance = this.stage.radius / 100;
+    this.controls.maxDistance = this.stage.radius * 20;
+  }
+
+  // All of `box` from the direction of view number `i`, or from where one is.
+  look(i = null, box = this.stage.measure()) {
+    if (box.isEmpty()) return;
+    this.limits();
+    const { camera } = this.stage;
+    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    const direction = i === null ? camera.position.clone().sub(this.controls.target) : new THREE.Vector3(...views[i][1]);
+    const half = Math.min(camera.fov, camera.fov * camera.aspect) / 2;
+    const distance = (margin * sphere.radius) / Math.sin((half * Math.PI) / 180);
+    this.controls.target.copy(sphere.center);
+    camera.position.copy(sphere.center).add(direction.setLength(distance));
+    this.controls.update();
+    this.changed();
+  }
+
+  lookAtHeld() {
+    this.look(null, new THREE.Box3().setFromObject(this.stage.held.group).expandByScalar(this.stage.held.radius * 0.5));
+  }
+
+  orbit(right, up) {
+    const offset = this.stage.camera.position.clone().sub(this.controls.target);
+    const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
+    s.theta += right * keyStep;
+    s.phi = Math.min(Math.PI - 1e-3, Math.max(1e-3, s.phi - up * keyStep));
+    const v = new THREE.Vector3().setFromSpherical(s);
+    this.stage.camera.position.copy(this.controls.target).add(new THREE.Vector3(v.x, -v.z, v.y));
+    this.controls.update();
+    this.changed();
+  }
+  pan(right, up) {
+    const { camera } = this.stage;
+    const step = 0.05 * camera.position.distanceTo(this.controls.target);
+    const by = this.axis(0).multiplyScalar(right * step).add(this.axis(1).multiplyScalar(up * step));
+    camera.position.add(by);
+    this.controls.target.add(by);
+    this.controls.update();
+    this.changed();
+  }
+  zoom(factor) {
+    const { camera } = this.stage;
+    camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    this.controls.update();
+    this.changed();
+  }
+
+  // Axis of the camera in the world: 0 right, 1 up, 2 towards the eye.
+  axis(i) {
+    this.stage.camera.updateMatrixWorld();
+    return new THREE.Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, i);
+  }
+}

@@ -1,0 +1,39 @@
+// A frame as apps/view/wire.cpp writes it: a row of floats, then its pairs.
+export const frameFloats = 32;
+export const pairFloats = 8;
+
+const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8 };
+
+export function readFrame(row, pairs) {
+  const numbers = (at, count) => Array.from(row.subarray(at, at + count));
+  const flags = row[29];
+  const frame = {
+    tick: row[0] * 2 ** 20 + row[1],
+    t: row[2] + row[3],
+    x: numbers(4, 7),
+    y: numbers(11, 7),
+    force: numbers(18, 3),
+    torque: numbers(21, 3),
+    gap: row[24],
+    tickUs: row[25],
+    lateUs: row[26],
+    contacts: row[27],
+    limits: row[28],
+    reason: row[30],
+    pairs: [],
+  };
+  for (const [name, bit] of Object.entries(flagNames)) frame[name] = (flags & bit) !== 0;
+  for (let i = 0; i < row[31]; ++i) {
+    const at = i * pairFloats;
+    frame.pairs.push({
+      point: Array.from(pairs.subarray(at, at + 3)),
+      normal: Array.from(pairs.subarray(at + 3, at + 6)),
+      gap: pairs[at + 6],
+      part: Math.floor(pairs[at + 7] / 2),
+      touching: pairs[at + 7] % 2 === 1,
+    });
+  }
+  return frame;
+}
+
+export const norm = (v) => Math.hypot(...v);

@@ -1,0 +1,145 @@
+// What acts on the held part: contact points with normals, nearest-feature pairs, force and torque. Drawn over the
+// parts, for most of it happens between them.
+import * as THREE from "three";
+import { cssColor } from "../common/theme.js";
+import { norm } from "./frame.js";
+
+const mostPairs = 128;
+// An arrow shorter than this share of the held part's radius is left out.
+const leastArrow = 0.05;
+
+const over = { depthTest: false, depthWrite: false, transparent: true };
+
+// A number like 1, 2 or 5 times a power of ten, not above `value`.
+function round125(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return ([5, 2, 1].find((k) => k * power <= value * 1.0001) ?? 1) * power;
+}
+
+class Arrow {
+  constructor(double) {
+    this.material = new THREE.MeshBasicMaterial(over);
+    const up = (geometry) => geometry.rotateX(Math.PI / 2); // along +z
+    this.shaft = new THREE.Mesh(up(new THREE.CylinderGeometry(0.5, 0.5, 1, 12).translate(0, 0.5, 0)), this.material);
+    const cone = up(new THREE.ConeGeometry(1.3, 4, 16).translate(0, -2, 0));
+    this.heads = Array.from({ length: double ? 2 : 1 }, () => new THREE.Mesh(cone, this.material));
+    this.group = new THREE.Group();
+    this.group.add(this.shaft, ...this.heads);
+    this.group.traverse((o) => (o.renderOrder = 12));
+  }
+  show(from, vector, thickness) {
+    this.length = norm(vector);
+    this.group.visible = this.length > 0;
+    if (!this.group.visible) return;
+    const head = Math.min(thickness, this.length / (5 * this.heads.length));
+    thickness = Math.min(thickness, 1.5 * head); // a short arrow is a slim one
+    this.group.position.copy(from);
+    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), new THREE.Vector3(...vector).divideScalar(this.length));
+    this.shaft.scale.set(thickness, thickness, Math.max(this.length - 4 * head * this.heads.length, 1e-9));
+    this.heads.forEach((mesh, i) => {
+      mesh.position.z = this.length - 4 * head * i;
+      mesh.scale.set(thickness * 1.2, thickness * 1.2, head);
+    });
+  }
+}
+
+// A white disk; the material gives it its color.
+function disk() {
+  const side = 32;
+  const data = new Uint8Array(4 * side * side);
+  for (let i = 0; i < side * side; ++i) {
+    const r = Math.hypot((i % side) + 0.5 - side / 2, Math.floor(i / side) + 0.5 - side / 2);
+    data.set([255, 255, 255, 255 * Math.min(1, Math.max(0, side / 2 - r))], 4 * i);
+  }
+  const texture = new THREE.DataTexture(data, side, side);
+  texture.magFilter = texture.minFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+function dots(size) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * mostPairs), 3));
+  const object = new THREE.Points(geometry, new THREE.PointsMaterial({ size, map: disk(), sizeAttenuation: false, ...over }));
+  object.frustumCulled = false;
+  return object;
+}
+
+function segments() {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * mostPairs), 3));
+  const object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(over));
+  object.frustumCulled = false;
+  return object;
+}
+
+function fill(object, numbers) {
+  const attribute = object.geometry.getAttribute("position");
+  attribute.array.set(numbers);
+  attribute.needsUpdate = true;
+  object.geometry.setDrawRange(0, numbers.length / 3);
+}
+
+const along = (p, n, s) => [p[0] + s * n[0], p[1] + s * n[1], p[2] + s * n[2]];
+
+export class Overlay {
+  constructor(stage) {
+    this.stage = stage;
+    this.force = new Arrow(false);
+    this.torque = new Arrow(true);
+    this.contacts = dots(9);
+    this.normals = segments();
+    this.near = dots(5);
+    this.links = segments();
+    this.group = new THREE.Group();
+    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], arrows: [this.force.group, this.torque.group] };
+    this.enabled = { contacts: true, pairs: true, arrows: true };
+    for (const object of [this.links, this.near, this.normals, this.contacts]) object.renderOrder = 10;
+    this.group.add(...Object.values(this.layers).flat());
+    stage.scene.add(this.group);
+  }
+
+  setScene(about) {
+    const radius = this.stage.held.radius;
+    this.center = new THREE.Vector3(...about.center);
+    this.unit = radius;
+    // What a hand often feels is about as long as the part.
+    this.metersPerNewton = round125((2 * radius) / 1);
+    this.metersPerNewtonMeter = round125((2 * radius) / 0.01);
+  }
+
+  applyTheme() {
+    this.force.material.color.set(cssColor("--force"));
+    this.torque.material.color.set(cssColor("--torque"));
+    this.contacts.material.color.set(cssColor("--contact"));
+    this.normals.material.color.set(cssColor("--contact"));
+    this.near.material.color.set(cssColor("--pair"));
+    this.links.material.color.set(cssColor("--pair"));
+  }
+
+  enable(layer, on) {
+    this.enabled[layer] = on;
+    for (const object of this.layers[layer]) object.visible = on;
+    this.stage.draw();
+  }
+
+  show(frame) {
+    const held = this.stage.held.group;
+    held.updateMatrixWorld();
+    const center = this.center.clone().applyMatrix4(held.matrixWorld);
+    const arrow = (shape, vector, scale) => {
+      const scaled = vector.map((v) => v * scale);
+      shape.show(center, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
+      shape.group.visible &&= this.enabled.arrows;
+    };
+    arrow(this.force, frame.force, this.metersPerNewton);
+    arrow(this.torque, frame.torque, this.metersPerNewtonMeter);
+    const touching = frame.pairs.filter((pair) => pair.touching);
+    const near = frame.pairs.filter((pair) => !pair.touching);
+    fill(this.contacts, touching.flatMap((p) => p.point));
+    fill(this.normals, touching.flatMap((p) => [...p.point, ...along(p.point, p.normal, 0.35 * this.unit)]));
+    fill(this.near, near.flatMap((p) => p.point));
+    fill(this.links, near.flatMap((p) => [...p.point, ...along(p.point, p.normal, -p.gap)]));
+    this.shown = { contacts: touching.length, pairs: near.length };
+  }
+}

@@ -1,0 +1,68 @@
+// A recording: all frames are there, and time goes as one likes.
+import { frameFloats, pairFloats, readFrame } from "./frame.js";
+
+export class Replay {
+  constructor(bundle, { onFrame, onStatus }) {
+    const { frames, pairs, pair_begin: begin } = bundle.about;
+    this.rows = bundle.floats(frames);
+    this.pairs = bundle.floats(pairs);
+    this.pairBegin = bundle.integers(begin);
+    this.count = this.rows.length / frameFloats;
+    Object.assign(this, { onFrame, onStatus, at: 0, speed: 1, playing: false });
+  }
+
+  row(i) {
+    return this.rows.subarray(i * frameFloats, (i + 1) * frameFloats);
+  }
+  time(i) {
+    return this.rows[i * frameFloats + 2] + this.rows[i * frameFloats + 3];
+  }
+  frame(i) {
+    return readFrame(this.row(i), this.pairs.subarray(this.pairBegin[i] * pairFloats));
+  }
+  get duration() {
+    return this.time(this.count - 1);
+  }
+
+  show(i) {
+    this.at = Math.min(this.count - 1, Math.max(0, i));
+    this.onFrame(this.frame(this.at));
+  }
+
+  // The last frame not after `t`.
+  indexAt(t) {
+    let [low, high] = [0, this.count - 1];
+    while (low < high) {
+      const middle = Math.ceil((low + high) / 2);
+      if (this.time(middle) <= t) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+  seek(t) {
+    this.show(this.indexAt(t));
+    this.began = null;
+  }
+
+  play(on) {
+    if (on === this.playing) return;
+    this.playing = on;
+    this.began = null;
+    if (on && this.at === this.count - 1) this.at = 0;
+    if (on) requestAnimationFrame((now) => this.advance(now));
+    this.onStatus({ paused: !on });
+  }
+  advance(now) {
+    if (!this.playing) return;
+    this.began ??= { now, t: this.time(this.at) };
+    const t = this.began.t + (this.speed * (now - this.began.now)) / 1000;
+    const next = this.indexAt(t);
+    if (next !== this.at) this.show(next);
+    if (this.at === this.count - 1) return this.play(false);
+    requestAnimationFrame((later) => this.advance(later));
+  }
+  setSpeed(speed) {
+    this.speed = speed;
+    this.began = null;
+  }
+}

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# The checks beside the tests, by name: tests/checks.sh NAME... (or `all`). Each builds in build/NAME.
+#   format        clang-format, nothing is changed
+#   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
+#   tsan          servo, shared memory, device and recorder with ThreadSanitizer
+#   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
+#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
+#   determinism   the recording of a run in virtual time, of builds with -O2 and -O3
+#   fuzz          every fuzz target for TEGOTAE_FUZZ_SECONDS (20) seconds
+# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+jobs=$(nproc)
+generator=()
+if command -v ninja >/dev/null; then generator=(-G Ninja); fi
+fail() { echo "checks: $*" >&2; exit 1; }
+configure() { cmake --log-level=WARNING "$@" >/dev/null; }
+new_tree() { if [ -e "$1/CMakeCache.txt" ]; then echo; else echo "${generator[@]}"; fi; }
+first_of() {
+  local name
+  for name in "$@"; do
+    if command -v "$name" >/dev/null; then echo "$name"; return; fi
+  done
+  fail "none of these is installed: $*"
+}
+# own_files SUFFIX... : tracked and new sources of this project.
+own_files() {
+  local patterns=() suffix
+  for suffix in "$@"; do patterns+=("*.$suffix"); done
+  git ls-files --cached --others --exclude-standard -- "${patterns[@]}" | grep -E '^(include|src|apps|tests)/'
+}
+
+check_format() {
+  own_files cpp hpp h c | xargs "$(first_of clang-format-14 clang-format)" --dry-run --Werror
+}
+
+check_asan() {
+  # shellcheck disable=SC2046
+  configure --preset debug $(new_tree build/debug)
+  cmake --build --preset debug --parallel "$jobs"
+  ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 \
+    ctest --preset debug --parallel "$jobs" --label-exclude '^long$' "$@"
+}
+
+check_tsan() {
+  # shellcheck disable=SC2046
+  configure -S . -B build/tsan $(new_tree build/tsan) -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DCMAKE_CXX_FLAGS="-fsanitize=thread -O1 -g1" -DCMAKE_C_FLAGS="-fsanitize=thread -O1 -g1"
+  cmake --build build/tsan --parallel "$jobs" --target test_servo test_device test_record
+  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R '^(servo|device|record)$' --output-on-failure
+}
+
+configure_clang() {
+  local clang
+  clang=$(first_of clang-14 clang)
+  # shellcheck disable=SC2046
+  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/clang $(new_tree build/clang) -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+}
+
+check_clang() {
+  configure_clang
+  cmake --build build/clang --parallel "$jobs"
+}
+
+check_tidy() {
+  configure_clang
+  own_files cpp | grep -E '^(src|apps)/' | xargs -P "$jobs" -n 4 "$(first_of clang-tidy-14 clang-tidy)" --quiet -p build/clang
+}
+
+check_determinism() {
+  local level sums=()
+  for level in 2 3; do
+    # shellcheck disable=SC2046
+    configure -S . -B build/o$level $(new_tree build/o$level) -DCMAKE_BUILD_TYPE=Release -DTEGOTAE_BUILD_TESTS=OFF \
+      -DCMAKE_CXX_FLAGS_RELEASE="-O$level -DNDEBUG"
+    cmake --build build/o$level --parallel "$jobs" --target tegotae_cli
+    for run in 1 2; do
+      build/o$level/bin/tegotae run models/peg_in_hole_0.94.toml --fast --record build/o$level/run.csv >/dev/null
+      sums+=("$(sha256sum <build/o$level/run.csv)")
+      echo "-O$level, run $run: ${sums[-1]}"
+    done
+  done
+  [ "$(printf '%s\n' "${sums[@]}" | sort -u | wc -l)" = 1 ] || fail "the recordings differ"
+}
+
+check_fuzz() { bash tests/fuzz/run.sh "${TEGOTAE_FUZZ_SECONDS:-20}"; }
+
+[ $# -gt 0 ] || fail "name a check: format asan tsan clang tidy determinism fuzz, or all"
+[ "$*" != all ] || set -- format tsan determinism clang tidy asan fuzz
+for name in "$@"; do
+  declare -F "check_$name" >/dev/null || fail "unknown check $name"
+  SECONDS=0
+  echo "checks: $name"
+  "check_$name"
+  echo "checks: $name is good ($SECONDS s)"
+done

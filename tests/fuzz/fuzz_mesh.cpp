@@ -1,0 +1,42 @@
+// Mesh files of one format: load_mesh and everything that a part goes through before the first tick.
+#include "fuzz/fuzz.hpp"
+#include "fuzz/mesh_format.hpp"
+#include "fuzz/mesh_seeds.hpp"
+#include "mesh/surface.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/mass.hpp"
+#include "tegotae/mesh/report.hpp"
+
+namespace tegotae {
+
+std::vector<Seed> seeds() {
+  return mesh_seeds(kFormat);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string path = write_input(std::string("input.") + kFormat, data, size);
+  try {
+    const auto mesh = std::make_shared<const TriangleMesh>(load_mesh(path, 1e-3));
+    require(!mesh->triangles.empty(), "a mesh that loads has triangles");
+    for (const auto& t : mesh->triangles) {
+      for (const std::uint32_t v : t) {
+        require(v < mesh->vertices.size(), "indices are in range");
+        require(mesh->vertices[v].allFinite(), "coordinates are finite");
+      }
+    }
+    const MeshReport r = report(*mesh);
+    require(r.triangles == mesh->triangles.size(), "the report counts the triangles");
+    const MassProperties mass = mass_properties(*mesh, r.closed);
+    require(mass.mass > 0 && mass.center.allFinite() && mass.inertia.allFinite(), "mass properties are usable");
+    const Surface surface(mesh);
+    for (const Vec3& n : surface.topology.face_normals) require(n.allFinite(), "normals are finite");
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    require(what.rfind(path + ": ", 0) == 0, "the error begins with the file");
+    require(what.find('\n') == std::string::npos, "the error is one line");
+  }
+  return 0;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,252 @@
+// The view page in a real browser: what it shows is asked of its own state and of what the program sends, not of pixels.
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { launch, open, run, serve, state, until } from "./program.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "tegotae_browser_"));
+const models = process.env.TEGOTAE_MODELS_DIR;
+const cases = [];
+const test = (name, body) => cases.push({ name, body });
+
+// A block of 10 mm held 3 mm over a wide floor (top at z = 0) by a hand that rests, or follows `script`.
+function writeFloor(script = "0,0,0,0.008,1,0,0,0\n") {
+  const box = (x, z0, z1) =>
+    [[-x, -x, z0], [x, -x, z0], [x, x, z0], [-x, x, z0], [-x, -x, z1], [x, -x, z1], [x, x, z1], [-x, x, z1]].map((v) => `v ${v.join(" ")}\n`).join("") +
+    ["1 4 3", "1 3 2", "5 6 7", "5 7 8", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"].map((f) => `f ${f}\n`).join("");
+  writeFileSync(join(folder, "floor.obj"), box(20, -5, 0));
+  writeFileSync(join(folder, "block.obj"), box(5, -5, 5));
+  writeFileSync(join(folder, "rest.csv"), "t,px,py,pz,qw,qx,qy,qz\n" + script);
+  writeFileSync(join(folder, "floor.toml"),
+    'unit = "mm"\n[[part]]\nname = "floor"\nmesh = "floor.obj"\n' +
+    '[[part]]\nname = "block <b>1</b>"\nmesh = "block.obj"\nheld = true\nposition = [0, 0, 0.008]\n[device]\nscript = "rest.csv"\n');
+  return join(folder, "floor.toml");
+}
+
+// Names that a run records under.
+const recording = join(folder, "peg.csv");
+const scene = `${models}/peg_in_hole_0.94.toml`;
+
+// Presses until `felt`. A busy machine may let the force go off meanwhile; it comes on again only from a small one, so one
+// lets go then and presses again.
+async function pressUntil(page, press, letGo, felt) {
+  for (let attempt = 1; ; ++attempt) {
+    await until(page, (s) => s.frame.forceOn);
+    await press();
+    const now = await until(page, (s) => felt(s) || !s.frame.forceOn);
+    if (felt(now)) return now;
+    assert.match(await page.textContent(".force-state"), /^Force is (on|off: [a-z].+)$/);
+    assert.ok(attempt < 5, `the force goes off whenever one presses: ${await page.textContent(".force-state")}, reason ${now.frame.reason}`);
+    await letGo();
+  }
+}
+
+async function dragDown(page) {
+  const at = await page.evaluate(() => window.__tegotae.project(window.__tegotae.center()));
+  // At first 3 mm to the floor and 5 mm more.
+  const down = await page.evaluate(() => {
+    const c = window.__tegotae.center();
+    return window.__tegotae.project([c[0], c[1], c[2] - 0.008]);
+  });
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  for (let i = 1; i <= 12; ++i) {
+    await page.mouse.move(at[0], at[1] + ((down[1] - at[1]) * i) / 12);
+    await page.waitForTimeout(30);
+  }
+}
+
+async function dragAgainstFloor(page) {
+  await page.keyboard.press("1"); // front: the screen is the plane of x and z
+  await page.waitForTimeout(300);
+  const before = await state(page);
+  assert.ok(before.force < 0.05, `a resting hand feels ${before.force} N`);
+  const pressed = await pressUntil(page, () => dragDown(page), () => page.mouse.up(),
+    (s) => s.frame.force[2] > 0.5 && s.shown.contacts >= 3 && s.arrows.force > 0);
+  assert.ok(pressed.frame.force[2] > 5 * Math.abs(pressed.frame.force[0]), "the floor pushes up");
+  assert.ok(pressed.frame.force[2] < 8.5 + 1e-3, "no more than the pen's limit");
+  assert.ok(pressed.frame.x[2] >= 0.005, "the part stays over the floor");
+  assert.ok(pressed.frame.y[2] < pressed.frame.x[2] - 3e-4, "the pen is below it");
+  for (const pair of pressed.frame.pairs.filter((p) => p.touching)) assert.ok(pair.normal[2] > 0.99, "normals point up");
+  await page.mouse.up();
+  const let_go = await until(page, (s) => s.force < 0.1);
+  assert.ok(let_go.frame.x[2] < 0.006, "it stays where it was let go");
+}
+
+test("a live run: parts, arrows, plots that move", async (browser) => {
+  // Down to 2 mm into the floor and up again, for ten minutes.
+  const keys = Array.from({ length: 300 }, (_, i) => `${2 * i},0,0,${i % 2 ? 0.003 : 0.008},1,0,0,0\n`);
+  const program = await serve("tegotae", "run", writeFloor(keys.join("")), "--view");
+  const page = await open(browser, program.url);
+  const first = await until(page, (s) => s.plots[0].points > 5);
+  assert.deepEqual(first.parts, [{ name: "floor", held: false, visible: true }, { name: "block <b>1</b>", held: true, visible: true }]);
+  const touching = await until(page, (s) => s.arrows.force > 0 && s.shown.contacts > 0);
+  assert.ok(touching.frame.forceOn);
+  assert.ok(touching.frame.force[2] > 0, "the floor pushes up");
+  const higher = touching.plots[0].last[2] + 0.5; // mm
+  const away = await until(page, (s) => s.plots[0].last[2] > higher && s.arrows.force === 0 && s.shown.contacts === 0);
+  assert.ok(away.plots[1].last[2] < touching.plots[1].last[2], "that of the force down");
+  for (const plot of touching.plots) assert.ok(plot.last.every(Number.isFinite), plot.name);
+  assert.ok(touching.plots[4].last[0] > 0 && touching.plots[5].last[0] > 0, "a tick takes time, the servo wakes up late");
+  assert.match(await page.textContent("tr[data-id=force]"), /\d\.\d\d\s*N/);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("the mouse is the pen: dragged onto the floor, the part pushes back", async (browser) => {
+  const program = await serve("tegotae", "run", writeFloor(), "--view");
+  const page = await open(browser, program.url);
+  assert.equal(await page.textContent("#parts li:nth-child(2) .name"), "block <b>1</b>", "names are text");
+  await dragAgainstFloor(page);
+
+  // The same by keys, from the side; Esc lets go.
+  await page.focus("#stage canvas");
+  const down = async () => {
+    await page.keyboard.press("h");
+    for (let i = 0; i < 30; ++i) await page.keyboard.press("ArrowDown");
+  };
+  const letGo = () => page.keyboard.press("Escape");
+  await pressUntil(page, down, letGo, (s) => s.frame.force[2] > 0.3);
+  await letGo();
+  await until(page, (s) => s.force < 0.1);
+
+  // Another part in the hand.
+  await page.click("#parts li:nth-child(1) button");
+  const other = await until(page, (s) => s.parts[0].held && s.frame.t < 5 && s.status.generation === 2);
+  assert.equal(other.parts[1].held, false);
+  await page.click("#restart");
+  await until(page, (s) => s.parts[1].held && s.status.generation === 3);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("virtual time: stands, steps, goes on", async (browser) => {
+  const program = await serve("tegotae", "run", scene, "--view", "--fast");
+  const page = await browser.newPage({ viewport: { width: 1366, height: 680 } });
+  await page.goto(program.url);
+  await page.click("#step");
+  assert.equal((await until(page, (s) => s.frame)).frame.tick, 0);
+  await page.keyboard.press(".");
+  assert.equal((await until(page, (s) => s.frame?.tick > 0)).frame.tick, 1);
+  await page.selectOption("#speed", "null");
+  await page.click("#play");
+  await until(page, (s) => s.frame.t > 3 && !s.status.paused);
+  await page.click("#play");
+  await until(page, (s) => s.status.paused);
+  await page.waitForTimeout(500);
+  const stood = await state(page);
+  await page.waitForTimeout(500);
+  const still = await state(page);
+  assert.equal(still.frame.tick, stood.frame.tick);
+  assert.equal(still.drawn, stood.drawn, "nothing is drawn while nothing changes");
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+async function lookAtReplay(page) {
+  const first = await state(page);
+  assert.equal(first.mode, "replay");
+  assert.ok(first.count > 7000);
+  assert.equal(first.plots[0].points > 1000, true);
+  // Two thirds in, the tilted peg jams: contacts, and a force.
+  const deepest = await page.evaluate(() => {
+    const bar = document.getElementById("scrub");
+    for (let i = 0; i <= Number(bar.max); i += 20) {
+      bar.value = i;
+      bar.dispatchEvent(new Event("input"));
+      const s = window.__tegotae.state;
+      if (s.shown.contacts >= 2 && s.force > 0.2 && s.frame.t > 5) return s;
+    }
+    return null;
+  });
+  assert.ok(deepest, "a frame with contacts and a force");
+  assert.ok(deepest.arrows.force > 0);
+  const t = deepest.frame.t;
+  await page.focus("#stage canvas");
+  await page.keyboard.press(".");
+  assert.ok((await state(page)).frame.t > t);
+  await page.keyboard.press(",");
+  await page.keyboard.press(",");
+  assert.ok((await state(page)).frame.t < t);
+  await page.keyboard.press(" ");
+  await until(page, (s) => s.frame.t > t + 0.2);
+  await page.keyboard.press(" ");
+  assert.deepEqual(page.complaints, []);
+}
+
+test("a recording, served", async (browser) => {
+  await run("tegotae", "run", scene, "--fast", "--record", recording);
+  const program = await serve("tegotae", "replay", recording, scene);
+  const page = await open(browser, program.url);
+  await lookAtReplay(page);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("a recording in a file, without a server and without a network", async (browser) => {
+  const file = join(folder, "peg.html");
+  await run("tegotae", "replay", recording, scene, "--html", file);
+  const context = await browser.newContext({ offline: true, viewport: { width: 1366, height: 680 } });
+  const page = await open({ newPage: () => context.newPage() }, `file://${file}`);
+  await lookAtReplay(page);
+  await context.close();
+});
+
+test("views, section, parts, theme, help, by keyboard and on a laptop's screen", async (browser) => {
+  const page = await open(browser, `file://${join(folder, "peg.html")}`);
+  const seen = [];
+  for (let i = 1; i <= 7; ++i) {
+    await page.keyboard.press(String(i));
+    seen.push((await state(page)).camera.map((v) => v.toFixed(4)).join());
+  }
+  assert.equal(new Set(seen).size, 7);
+  await page.keyboard.press("ArrowLeft");
+  assert.notEqual((await state(page)).camera.map((v) => v.toFixed(4)).join(), seen[6]);
+  const light = (await state(page)).background;
+  await page.keyboard.press("t");
+  assert.notEqual((await state(page)).background, light);
+  await page.keyboard.press("s");
+  assert.equal(await page.isEnabled("#cut"), true);
+  await page.click("#parts li:nth-child(1) input");
+  assert.equal((await state(page)).parts[0].visible, false);
+  await page.keyboard.press("?");
+  assert.equal(await page.isVisible("#help"), true);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.isVisible("#help"), false);
+  // Everything that can be operated has a name, and is reached by Tab.
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, #stage canvas")].filter((e) => e.offsetParent !== null &&
+      !(e.textContent.trim() || e.getAttribute("aria-label") || e.labels?.[0]?.textContent.trim())).map((e) => e.outerHTML));
+  assert.deepEqual(nameless, []);
+  const fits = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight);
+  assert.ok(fits, "no scroll bars on 1366 × 680");
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
+test("without the token there is no page", async (browser) => {
+  const program = await serve("peg_in_hole", "--view");
+  const page = await browser.newPage();
+  assert.equal((await page.goto(program.url.replace(/token=.*/, "token=0"))).status(), 403);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+const browser = await launch();
+let failed = 0;
+for (const { name, body } of cases.filter((c) => c.name.includes(process.argv[2] ?? ""))) {
+  const begin = Date.now();
+  try {
+    await body(browser);
+    console.log(`ok: ${name} (${Math.round((Date.now() - begin) / 1000)} s)`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED: ${name}\n${error.stack}`);
+  }
+}
+await browser.close();
+rmSync(folder, { recursive: true });
+process.exit(failed > 0 ? 1 : 0);

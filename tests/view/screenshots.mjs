@@ -1,0 +1,64 @@
+// Makes the pictures of docs/view.md:
+//   TEGOTAE_BIN_DIR=build/release/bin node tests/view/screenshots.mjs
+// A live run in virtual time, stopped where the tilted peg jams (light), and a recording at the rim (dark).
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { launch, open, run, serve, until } from "./program.mjs";
+
+const root = new URL("../..", import.meta.url).pathname;
+const scene = `${root}models/peg_in_hole_0.94.toml`;
+const folder = mkdtempSync(join(tmpdir(), "tegotae_pictures_"));
+const browser = await launch();
+
+// A cut through the peg, seen from in front and a little from above.
+async function aim(page) {
+  await page.keyboard.press("1");
+  await page.keyboard.press("s");
+  await page.keyboard.press("s");
+  await page.evaluate(() => {
+    document.getElementById("flip").click();
+    document.activeElement.blur();
+  });
+  for (const key of ["ArrowUp", "ArrowUp", "ArrowUp", "ArrowRight", "ArrowRight", "ArrowRight", "f"]) await page.keyboard.press(key);
+}
+
+async function picture(page, name) {
+  await page.waitForTimeout(1500);
+  await page.screenshot({ path: `${root}docs/${name}` });
+  await page.close();
+}
+
+async function light() {
+  const program = await serve("tegotae", "run", scene, "--view", "--fast");
+  const page = await browser.newPage({ viewport: { width: 1366, height: 700 }, colorScheme: "light" });
+  await page.goto(program.url);
+  await page.waitForSelector("#parts li");
+  await page.selectOption("#speed", "0.5");
+  await page.click("#play");
+  await until(page, (s) => s.frame?.t > 4.8);
+  await page.click("#play");
+  await until(page, (s) => s.status.paused);
+  await aim(page);
+  await picture(page, "view-light.png");
+  await program.stop();
+}
+
+async function dark() {
+  const recording = join(folder, "peg.csv"), file = join(folder, "peg.html");
+  await run("tegotae", "run", scene, "--fast", "--record", recording);
+  await run("tegotae", "replay", recording, scene, "--html", file);
+  const page = await open(browser, `file://${file}`, { dark: true, height: 700 });
+  await page.evaluate(() => {
+    const bar = document.getElementById("scrub");
+    bar.value = 5800;
+    bar.dispatchEvent(new Event("input"));
+  });
+  await aim(page);
+  await picture(page, "view-dark.png");
+}
+
+await light();
+await dark();
+await browser.close();
+rmSync(folder, { recursive: true });

@@ -1,0 +1,120 @@
+// Recordings become what the page shows, and contacts are found again.
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "tegotae/core/error.hpp"
+#include "view/replay.hpp"
+#include "view/wire.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+using namespace tegotae::view;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string kHeader =
+    "tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,fx,fy,fz,tx,ty,tz,contacts,"
+    "gap,tick_us\n";
+
+// A row with the part at height z and the pen at height y.
+std::string row(int tick, double z, double y) {
+  const auto pose = [](double height) { return "0,0," + std::to_string(height) + ",1,0,0,0,"; };
+  return std::to_string(tick) + ",0," + std::to_string(1e-3 * tick) + "," + pose(y) + pose(z) +
+         "0,0,0,0,0,0,0,inf,12.5\n";
+}
+std::string row(int tick, double z) {
+  return row(tick, z, z);
+}
+
+// Two cubes of 10 mm, the held one 8 mm over the other.
+void write_cubes(const TempFolder& folder) {
+  folder.write(
+      "cube.obj",
+      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.018,1,0,0,0\n");
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.018]\n"
+               "[device]\nscript = \"path.csv\"\n");
+}
+
+}  // namespace
+
+TEST_CASE("a replay finds the contacts of the recorded poses") {
+  const TempFolder folder;
+  write_cubes(folder);
+  // Down to 10 µm over the floor: its top is at 5 mm, the block's bottom 5 mm below its center.
+  std::string text = kHeader;
+  for (int i = 0; i <= 80; ++i) text += row(i, 0.018 - 1e-4 * i + (i == 80 ? 1e-5 : 0), 0.018 - 1.1e-4 * i);
+  folder.write("r.csv", text);
+  const std::string bytes = replay_bundle(folder / "r.csv", load_scene(folder / "scene.toml"));
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data(), 4);
+  const auto about = nlohmann::json::parse(bytes.substr(4, length));
+  const auto floats = [&](const nlohmann::json& array) {
+    std::vector<float> values(array.at("count").get<std::size_t>());
+    std::memcpy(values.data(), bytes.data() + 4 + length + 4 * array.at("at").get<std::size_t>(), 4 * values.size());
+    return values;
+  };
+  const std::vector<float> frames = floats(about.at("frames")), pairs = floats(about.at("pairs"));
+  REQUIRE(frames.size() == 81 * kFrameFloats);
+  const float* last = frames.data() + 80 * kFrameFloats;
+  CHECK(last[1] == 80);                           // tick
+  CHECK(std::abs(last[4 + 2] - 0.01001) < 1e-8);  // x, height
+  const auto count = static_cast<std::size_t>(last[31]);
+  REQUIRE(count >= 4);  // the block's corners
+  const float* at = pairs.data() + pairs.size() - count * kPairFloats;
+  for (std::size_t i = 0; i < count; ++i, at += kPairFloats) {
+    CHECK(std::abs(at[2] - 0.005) < 6e-5);  // on the block's bottom
+    CHECK(std::abs(at[5] - 1) < 1e-4);      // from the floor to the block
+    CHECK(at[6] < 6e-5);                    // gap: the loop is led up to 50 µm farther
+    CHECK(at[6] > 0);
+    CHECK(std::floor(at[7] / 2) == 0);  // the floor is part 0
+  }
+}
+
+TEST_CASE("a recording knows its scene") {
+  const TempFolder folder;
+  write_cubes(folder);
+  folder.write("r.csv", kHeader + row(0, 0.018));
+  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("does not say which scene"));
+  folder.write("r.csv.info.json", R"({"scene": "scene.toml"})");
+  CHECK(recorded_scene(folder / "r.csv") == folder / "scene.toml");
+  folder.write("r.csv.info.json", R"({"scene": "gone.toml"})");
+  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("gone.toml is gone"));
+}
+
+TEST_CASE("a recording of another scene is refused") {
+  const TempFolder folder;
+  write_cubes(folder);
+  folder.write("inside.csv", kHeader + row(0, 0.005));
+  CHECK_THROWS_WITH(replay_bundle(folder / "inside.csv", load_scene(folder / "scene.toml")),
+                    Contains("does not fit this scene"));
+  std::string text = kHeader;
+  for (int i = 0; i <= 200; ++i) text += row(i, std::max(0.0, 0.018 - 1e-3 * i));
+  folder.write("through.csv", text);
+  CHECK_THROWS_WITH(replay_bundle(folder / "through.csv", load_scene(folder / "scene.toml")),
+                    Contains("does not fit this scene"));
+}
+
+TEST_CASE("the program writes a page that needs no server") {
+  const TempFolder folder;
+  write_cubes(folder);
+  folder.write("r.csv", kHeader + row(0, 0.018) + row(1, 0.017));
+  const Output o = run_program(
+      "tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html " + (folder / "r.html"));
+  INFO(o.err);
+  CHECK(o.code == 0);
+  const std::string page = read_text(folder / "r.html");
+  CHECK_THAT(page, Contains("id=\"data\">"));
+  CHECK(page.find("http://") == page.find("http://www.w3.org"));  // loads nothing from elsewhere
+  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --html /nowhere/x")
+            .code == 2);
+  CHECK(run_program("tegotae", "replay " + (folder / "r.csv") + " " + (folder / "scene.toml") + " --view-address x")
+            .code == 2);
+}

@@ -1,0 +1,273 @@
+// Clients of every kind against a run in real time: who may not gets nothing, and whatever they do, the run goes on and
+// ends as it should. Nothing is timed; ticks are counted.
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "catch.hpp"
+#include "view/http_client.hpp"
+
+using namespace tegotae::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Request get(const Served& s, const std::string& path) {
+  return {"GET", path, s.token, s.host(), "", "", ""};
+}
+Request command(const Served& s, const std::string& body) {
+  return {"POST", "/command", s.token, s.host(), "http://" + s.host(), body, ""};
+}
+
+// A page that watches, and notes the numbers of the ticks that it sees.
+class Watcher {
+ public:
+  // Waits for a place: pages that have gone are noticed with the next frame.
+  explicit Watcher(const Served& s) {
+    for (int i = 0; i < 100; ++i) {
+      connection_ = std::make_unique<Connection>(s.port);
+      connection_->send(text_of(get(s, "/stream")));
+      buffer_ = connection_->receive();
+      const std::size_t body = buffer_.find("\r\n\r\n");
+      if (buffer_.rfind("HTTP/1.1 200", 0) == 0 && body != buffer_.npos) {
+        buffer_.erase(0, body + 4);
+        return;
+      }
+      ::usleep(100'000);
+    }
+    throw std::runtime_error("no place to watch: " + buffer_);
+  }
+  // The tick of the next frame; -1 at the end.
+  long next() {
+    for (;;) {
+      while (buffer_.size() >= 8) {
+        std::uint32_t head[2];
+        std::memcpy(head, buffer_.data(), 8);
+        if (head[0] != 1 && head[0] != 2) throw std::runtime_error("no message");
+        if (buffer_.size() < 8 + head[1]) break;
+        float row[2];
+        std::memcpy(row, buffer_.data() + 8, 8);
+        buffer_.erase(0, 8 + head[1]);
+        if (head[0] == 1) return static_cast<long>(row[0]) * (1 << 20) + static_cast<long>(row[1]);
+      }
+      const std::string more = connection_->receive();
+      if (more.empty()) return -1;
+      buffer_ += more;
+    }
+  }
+
+ private:
+  std::unique_ptr<Connection> connection_;
+  std::string buffer_;
+};
+
+// The run is alive: frames come, and their ticks go up.
+void check_going_on(const Served& s) {
+  Watcher watcher(s);
+  const long first = watcher.next();
+  CHECK(first >= 0);
+  long last = first;
+  for (int i = 0; i < 10; ++i) {
+    const long tick = watcher.next();
+    CHECK(tick > last);
+    last = tick;
+  }
+}
+
+void check_end(Served& s) {
+  s.interrupt();
+  CHECK(s.wait() == 0);
+  const auto summary = nlohmann::json::parse(s.out());
+  CHECK(summary.at("penetrating") == 0);
+  CHECK(summary.at("ticks").get<double>() > 0);
+}
+
+std::string garbage(std::mt19937& random, std::size_t most) {
+  std::string bytes(random() % most + 1, '\0');
+  for (char& b : bytes) b = static_cast<char>(random());
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("only the page of this address with its token is served") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  std::string answer;
+  CHECK(ask(s.port, {"GET", "/?token=" + s.token, "", s.host(), "", "", ""}, &answer) == 200);
+  CHECK_THAT(answer, Contains("Content-Security-Policy: default-src 'none'") && Contains("frame-ancestors 'none'"));
+  CHECK(ask(s.port, get(s, "/scene")) == 200);
+  CHECK(ask(s.port, get(s, "/stream")) == 200);
+  CHECK(ask(s.port, get(s, "/etc/passwd")) == 404);
+  CHECK(ask(s.port, get(s, "/../../etc/passwd")) != 200);
+
+  for (const char* path :
+       {"/", "/?token=", "/?token=00000000000000000000000000000000", "/scene", "/stream", "/command"}) {
+    INFO(path);
+    CHECK(ask(s.port, {"GET", path, "", s.host(), "", "", ""}) == 403);
+    CHECK(ask(s.port, {"GET", path, std::string(32, '0'), s.host(), "", "", ""}) == 403);
+  }
+  for (const char* path : {"/scene", "/stream"}) {
+    INFO(path);
+    CHECK(ask(s.port, {"GET", path, s.token, s.host(), "http://evil.example", "", ""}) == 403);
+    CHECK(ask(s.port, {"GET", path, s.token, "evil.example:" + std::to_string(s.port), "", "", ""}) == 403);
+    CHECK(ask(s.port, {"GET", path, s.token, s.host(), "", "", "Sec-Fetch-Site: cross-site\r\n"}) == 403);
+    CHECK(ask(s.port, {"GET", path + std::string("?token=") + s.token, "", s.host(), "", "", ""}) == 403);
+  }
+  Request foreign = command(s, R"({"do":"restart"})");
+  foreign.origin = "http://127.0.0.1:1";
+  CHECK(ask(s.port, foreign) == 403);
+  check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("commands are bounded and checked") {
+  Served s({"peg_in_hole", "--view", "--fast", "--json"});
+  CHECK(ask(s.port, command(s, R"({"do":"step","ticks":5})")) == 200);
+  CHECK(ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})")) == 200);
+  for (const char* bad : {"", "{", "[]", "null", "7", R"({"do":7})", R"({"do":"fly"})", R"({"do":"lead"})",
+                          R"({"do":"lead","pose":[1,2]})", R"({"do":"lead","pose":[1,2,3,0,0,0,0]})",
+                          R"({"do":"lead","pose":[1e300,2,3,1,0,0,0]})", R"({"do":"lead","pose":["a",2,3,1,0,0,0]})",
+                          R"({"do":"hold","part":99})", R"({"do":"hold","part":-1})", R"({"do":"step"})",
+                          R"({"do":"speed","factor":"x"})", R"([[[[[[1]]]]]])", "{\"do\":\"\xff\xfe\"}"}) {
+    INFO(bad);
+    CHECK(ask(s.port, command(s, bad)) == 400);
+  }
+  CHECK(ask(s.port, command(s, std::string(1000, '[') + std::string(1000, ']'))) == 400);
+  CHECK(ask(s.port, command(s, std::string(5000, ' '))) == 413);
+  Request endless = command(s, "");
+  endless.extra = "Transfer-Encoding: chunked\r\n";
+  CHECK(ask(s.port, endless) != 200);
+  Request lying = command(s, "");
+  lying.method = "PUT";
+  lying.extra = "Content-Length: 99999999999\r\n";
+  CHECK(ask(s.port, lying) != 200);
+  CHECK(ask(s.port, command(s, R"({"do":"play"})")) == 200);
+  check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("virtual time stands until it is told to go, and steps") {
+  Served s({"peg_in_hole", "--view", "--fast", "--json"});
+  CHECK(ask(s.port, command(s, R"({"do":"step","ticks":7})")) == 200);
+  Watcher watcher(s);
+  CHECK(watcher.next() <= 6);
+  CHECK(ask(s.port, command(s, R"({"do":"step","ticks":3})")) == 200);
+  long tick = 0;
+  while (tick < 9) tick = watcher.next();
+  CHECK(tick == 9);  // ten ticks, from 0
+  s.interrupt();
+  CHECK(s.wait() == 0);
+  CHECK(nlohmann::json::parse(s.out()).at("ticks") == 10);
+}
+
+TEST_CASE("clients that never read") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  std::vector<std::unique_ptr<Connection>> deaf;
+  for (int i = 0; i < 4; ++i) {
+    deaf.push_back(std::make_unique<Connection>(s.port, 2048));
+    CHECK(deaf.back()->send(text_of(get(s, "/stream"))));
+    // And one that asks for more than fits into any buffer.
+    deaf.push_back(std::make_unique<Connection>(s.port, 2048));
+    std::string many;
+    for (int k = 0; k < 300; ++k) many += text_of(get(s, "/scene"));
+    deaf.back()->send(many);
+  }
+  check_going_on(s);
+  CHECK(ask(s.port, get(s, "/scene")) == 200);
+  check_end(s);  // also with the deaf ones still there
+}
+
+TEST_CASE("more pages than may watch are told so") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  std::vector<std::unique_ptr<Watcher>> watchers;
+  for (int i = 0; i < 8; ++i) {
+    watchers.push_back(std::make_unique<Watcher>(s));
+    CHECK(watchers.back()->next() >= 0);
+  }
+  CHECK(ask(s.port, get(s, "/stream")) == 503);
+  CHECK(watchers.front()->next() >= 0);
+  watchers.clear();
+  // Those who went are noticed when they do not take the next frame.
+  int status = 0;
+  for (int i = 0; i < 50 && status != 200; ++i) {
+    ::usleep(100'000);
+    status = ask(s.port, get(s, "/stream"));
+  }
+  CHECK(status == 200);
+  check_end(s);
+}
+
+TEST_CASE("garbage") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  Watcher watcher(s);
+  std::mt19937 random(20240607);
+  const long before = watcher.next();
+  for (int i = 0; i < 150; ++i) {
+    const Connection connection(s.port, 0, 50);
+    if (!connection.open()) continue;
+    std::string bytes;
+    switch (i % 6) {
+      case 0:
+        bytes = garbage(random, 3000);
+        break;
+      case 1:
+        bytes = "GET /" + garbage(random, 200) + " HTTP/1.1\r\n\r\n";
+        break;
+      case 2:
+        bytes = "GET / HTTP/1.1\r\nHost: " + std::string(20000, 'a') + "\r\n\r\n";
+        break;
+      case 3:
+        bytes = text_of(command(s, garbage(random, 500)));
+        break;
+      case 4:  // half a body, then gone
+        bytes = text_of(command(s, std::string(1000, ' ')));
+        bytes.resize(bytes.size() - 500);
+        break;
+      default: {
+        Request upgrade = get(s, "/stream");
+        upgrade.extra =
+            "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+        bytes = text_of(upgrade) + "\x82\xff\x00\x00\x00\x00\x7f\x00\x00\x00" + garbage(random, 500);
+      }
+    }
+    connection.send(bytes);
+    if (i % 2 == 0) connection.receive(100);
+  }
+  CHECK(watcher.next() > before);
+  check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("fifty at once") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  Watcher watcher(s);
+  const long before = watcher.next();
+  std::vector<std::thread> crowd;
+  for (int i = 0; i < 50; ++i)
+    crowd.emplace_back([&s, i] {
+      std::mt19937 random(static_cast<unsigned>(i));
+      for (int k = 0; k < 4; ++k) {
+        switch ((i + k) % 4) {
+          case 0:
+            ask(s.port, get(s, "/scene"));
+            break;
+          case 1:
+            ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})"));
+            break;
+          case 2:
+            ask(s.port, get(s, "/stream"));
+            break;
+          default: {
+            const Connection c(s.port);
+            c.send(garbage(random, 1000));
+          }
+        }
+      }
+    });
+  for (std::thread& t : crowd) t.join();
+  CHECK(watcher.next() > before);
+  check_going_on(s);
+  check_end(s);
+}

@@ -1,0 +1,136 @@
+// Addresses, who may ask, meshes for the eye, and the hand that a page leads.
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/device/simulated_device.hpp"
+#include "view/address.hpp"
+#include "view/bundle.hpp"
+#include "view/display_mesh.hpp"
+#include "view/request_guard.hpp"
+
+using namespace tegotae;
+using namespace tegotae::view;
+
+TEST_CASE("addresses") {
+  CHECK(parse_address("127.0.0.1").text() == "127.0.0.1:0");
+  CHECK(parse_address("127.0.0.1:8080").text() == "127.0.0.1:8080");
+  CHECK(parse_address("[::1]:80").text() == "[::1]:80");
+  CHECK(parse_address("0.0.0.0").wildcard());
+  CHECK_FALSE(parse_address("10.0.0.1:1").wildcard());
+  for (const char* bad : {"", "localhost", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:70000", "127.0.0.1:-1", "::1",
+                          "1.2.3", "[::1", "127.0.0.1:80s", "8080"}) {
+    INFO(bad);
+    CHECK_THROWS_AS(parse_address(bad), Error);
+  }
+}
+
+TEST_CASE("who may ask") {
+  const RequestGuard guard(parse_address("127.0.0.1:4000"));
+  const std::string token = guard.token();
+  CHECK(token.size() == 32);
+  CHECK(RequestGuard(parse_address("127.0.0.1:4000")).token() != token);
+  const auto passes = [&](const RequestOrigin& r) { return guard.refusal(r).empty(); };
+  CHECK(passes({"127.0.0.1:4000", "", "", token}));
+  CHECK(passes({"localhost:4000", "http://localhost:4000", "same-origin", token}));
+  CHECK(passes({"127.0.0.1:4000", "", "none", token}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "", "", ""}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "", "", token.substr(1)}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "", "", "0" + token.substr(1) + "0"}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "http://evil.example", "", token}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "http://127.0.0.1:4001", "", token}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "null", "", token}));
+  CHECK_FALSE(passes({"127.0.0.1:4000", "", "cross-site", token}));
+  CHECK_FALSE(passes({"evil.example:4000", "", "", token}));
+  CHECK_FALSE(passes({"127.0.0.1", "", "", token}));
+  CHECK_FALSE(passes({"", "", "", token}));
+
+  const RequestGuard everywhere(parse_address("0.0.0.0:4000"));
+  CHECK(everywhere.refusal({"192.168.7.9:4000", "", "", everywhere.token()}).empty());
+  CHECK_FALSE(everywhere.refusal({"rebound.example:4000", "", "", everywhere.token()}).empty());
+}
+
+TEST_CASE("a mesh for the eye keeps its shape within its number of triangles") {
+  // A sphere of 160 × 80 patches, radius 10 mm, around (1, 2, 3) m: single precision steps there are 0.2 µm.
+  TriangleMesh ball;
+  constexpr int kAround = 160, kUp = 80;
+  const double pi = std::acos(-1.0);
+  const Vec3 center(1, 2, 3);
+  for (int i = 0; i <= kUp; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      const double a = pi * i / kUp, b = 2 * pi * k / kAround;
+      ball.vertices.push_back(center + 0.01 * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+    }
+  for (std::uint32_t i = 0; i < kUp; ++i)
+    for (std::uint32_t k = 0; k < kAround; ++k) {
+      const std::uint32_t a = i * kAround + k, b = i * kAround + (k + 1) % kAround;
+      ball.triangles.push_back({a, a + kAround, b});
+      ball.triangles.push_back({b, a + kAround, b + kAround});
+    }
+  const DisplayMesh whole = display_mesh(ball, ball.triangles.size());
+  CHECK(whole.indices.size() == 3 * ball.triangles.size());
+  for (const std::size_t most : {20000u, 5000u, 500u}) {
+    const DisplayMesh shown = display_mesh(ball, most);
+    INFO(most);
+    CHECK(shown.indices.size() <= 3 * most);
+    CHECK(shown.indices.size() > most);  // a third of what it may have, at least
+    double farthest = 0, nearest = 1;
+    for (std::size_t i = 0; i < shown.positions.size(); i += 3) {
+      const Vec3 v(shown.positions[i], shown.positions[i + 1], shown.positions[i + 2]);
+      farthest = std::max(farthest, (v - center).norm());
+      nearest = std::min(nearest, (v - center).norm());
+    }
+    CHECK(farthest < 0.01 + 1e-6);
+    CHECK(nearest > 0.007);
+    for (const std::uint32_t i : shown.indices) REQUIRE(3 * i < shown.positions.size());
+  }
+}
+
+TEST_CASE("a bundle is a description and what it points to") {
+  Bundle bundle;
+  bundle.add(std::vector<float>{1, 2});
+  bundle.about["numbers"] = bundle.add(std::vector<float>{3, 4, 5});
+  bundle.about["name"] = "\xff part";  // no UTF-8
+  const std::string bytes = bundle.bytes();
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data(), 4);
+  CHECK(length % 4 == 0);
+  REQUIRE(bytes.size() == 4 + length + 5 * 4);
+  const nlohmann::json about = nlohmann::json::parse(bytes.substr(4, length));
+  CHECK(about.at("numbers") == nlohmann::json({{"at", 2}, {"count", 3}}));
+  float value = 0;
+  std::memcpy(&value, bytes.data() + 4 + length + 4 * 2, 4);
+  CHECK(value == 3);
+}
+
+TEST_CASE("a led hand goes to its goal like a hand") {
+  const Pose start{Quat::Identity(), Vec3(0.1, 0, 0)};
+  SimulatedDeviceSettings settings;
+  settings.position_resolution = settings.rotation_resolution = settings.friction = 0;
+  const Vec3 center(0, 0, 0.02);
+  SimulatedDevice pen(settings, StylusScript({{0, start}}), center);
+  HandGuide guide;
+  pen.follow(guide);
+  pen.start();
+  for (int i = 0; i < 100; ++i) pen.advance(1e-3);
+  CHECK((pen.true_pose().p - start.p).norm() < 1e-9);  // nobody leads
+
+  const Pose goal{rotation(Vec3(0, 0, 1.2)), Vec3(0.1, 0.2, -0.1)};
+  guide.lead(goal);
+  double fastest = 0;
+  Vec3 last = pen.true_pose() * center;
+  for (int i = 0; i < 3000; ++i) {
+    pen.advance(1e-3);
+    const Vec3 now = pen.true_pose() * center;
+    fastest = std::max(fastest, (now - last).norm() / 1e-3);
+    last = now;
+  }
+  CHECK(fastest < 0.5);  // 0.4 m/s of the hand, and what the spring adds
+  CHECK(fastest > 0.3);
+  CHECK((pen.true_pose().p - goal.p).norm() < 1e-6);
+  CHECK(rotation_vector(pen.true_pose().q * goal.q.conjugate()).norm() < 1e-6);
+}
