@@ -129,7 +129,6 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     if (!late()) track();
   }
   gather(report);
-  was_cut_ = report.cut;
   // Out of time, the limits may be those of an earlier pose.
   report.planes.count = 0;
   if (tracked_) {
@@ -144,6 +143,8 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
+  report.cut |= late();
+  was_cut_ = report.cut;
 }
 
 bool ContactLoop::late() const {
@@ -318,7 +319,6 @@ void ContactLoop::gather(TickReport& report) const {
   }
   report.limits = static_cast<int>(contacts_->limits().size());
   report.overflow = contacts_->overflow() > 0 || check_->overflow();
-  report.cut |= late();
 }
 
 }  // namespace tegotae
