@@ -11,10 +11,10 @@ trap 'rm -rf "$work"' EXIT
 (cd "$build" && cpack -G DEB -B "$work" >"$work/log" 2>&1) || { cat "$work/log"; fail cpack; }
 mapfile -t packages < <(find "$work" -maxdepth 1 -name '*.deb' | sort)
 [ "${#packages[@]}" = 2 ] || fail "made: ${packages[*]}"
-mkdir "$work/root"
+mkdir "$work/unpacked"
 for p in "${packages[@]}"; do
   echo "$(basename "$p"): $(dpkg-deb -f "$p" Depends)"
-  dpkg -x "$p" "$work/root"
+  dpkg -x "$p" "$work/unpacked"
   # Every dependency is a package that is installed here, or the package would not install.
   while read -r name; do
     dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null | grep -q '^installed$' || fail "depends on $name"
@@ -23,11 +23,11 @@ done
 dpkg-deb -f "$work"/tegotae_*.deb Depends | grep -q libassimp || fail "the programs do not ask for assimp's library"
 dpkg-deb -f "$work"/libtegotae-dev_*.deb Depends | grep -q zlib1g-dev || fail "libtegotae-dev lacks zlib1g-dev"
 
-bin=$work/root/usr/bin
+bin=$work/unpacked/usr/bin
 "$bin/tegotae" --version | grep -qE '^tegotae [0-9]+[.][0-9]+[.][0-9]+$' || fail "tegotae --version"
 "$bin/tegotae" check --isolated "$root/models/peg_0.94.obj" | grep -q closed || fail "tegotae check --isolated"
 quiet=$work/log
-cmake -S "$root/apps/examples" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/root/usr" >"$quiet" 2>&1 &&
+cmake -S "$root/apps/examples" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/unpacked/usr" >"$quiet" 2>&1 &&
   cmake --build "$work/build" --target meshes_from_memory >>"$quiet" 2>&1 || { cat "$quiet"; fail "the example"; }
-grep -q "^tegotae_DIR:PATH=$work/root/" "$work/build/CMakeCache.txt" || fail "another tegotae was found"
+grep -q "^tegotae_DIR:PATH=$work/unpacked/" "$work/build/CMakeCache.txt" || fail "another tegotae was found"
 "$work/build/meshes_from_memory" | grep "400 ms"
