@@ -81,6 +81,12 @@ void ContactSet::clear() {
   limits_.clear();
 }
 
+void ContactSet::transfer(std::uint32_t from, std::uint32_t to) noexcept {
+  for (Pair& pair : pairs_)
+    if (pair.part == from) pair.part = to;
+  followed_ = 0;
+}
+
 bool ContactSet::track(const Pose& X, double reach, std::int64_t deadline_ns) {
   const bool goes_on = followed_ > 0 && X.p == X_.p && X.q.coeffs() == X_.q.coeffs() && reach == reach_;
   if (!goes_on) begin_track(X, reach);
@@ -219,6 +225,8 @@ void ContactSet::add(const Contact& contact, std::vector<Contact>& limits) {
     return;
   }
   limits.push_back(contact);
+  const std::uint32_t named = fixed_[contact.part].stands_for;
+  if (named != kNone) limits.back().part = named;
 }
 
 }  // namespace tegotae

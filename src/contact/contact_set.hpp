@@ -13,6 +13,7 @@ namespace tegotae {
 struct FixedSurface {
   std::shared_ptr<const Surface> surface;
   Pose X_WB;
+  std::uint32_t stands_for = kNone;  ///< number of the part that contacts name; kNone: its own
 };
 
 /// The nearest-feature pairs of the held part with the fixed parts, followed from tick to tick, and the limits they put
@@ -28,6 +29,8 @@ class ContactSet {
   bool track(const Pose& X, double reach, std::int64_t deadline_ns);
   /// Forgets all pairs and limits.
   void clear();
+  /// Goes on with the pairs of fixed surface `from` on `to`, which has the same features a little elsewhere.
+  void transfer(std::uint32_t from, std::uint32_t to) noexcept;
   /// Starts pairs from triangle pairs: nearest features at `X_near` (close to the contact), followed to their minimum
   /// at the pose of the last track(). Returns how many pairs within reach were not known yet. Ends early after
   /// `deadline_ns` of monotonic_ns().

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <optional>
 
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
@@ -186,6 +188,20 @@ void store(const fs::path& path, const Key& key, const PatchTree& tree) {
     make_room();
 }
 
+std::shared_ptr<const PatchTree> stored_or_built(const std::shared_ptr<const TriangleMesh>& mesh) {
+  if (folder().empty() || mesh->triangles.size() < kLeastCached) return std::make_shared<const PatchTree>(mesh);
+  const Key key = key_of(*mesh);
+  const fs::path path = file_of(key);
+  if (auto tree = load(path, key, mesh)) {
+    std::error_code status;  // used now: others go before it when room is made
+    fs::last_write_time(path, fs::file_time_type::clock::now(), status);
+    return tree;
+  }
+  auto tree = std::make_shared<const PatchTree>(mesh);
+  store(path, key, *tree);
+  return tree;
+}
+
 }  // namespace
 
 void set_hierarchy_cache(const std::string& path) {
@@ -200,16 +216,19 @@ std::string default_cache_folder() {
 }
 
 std::shared_ptr<const PatchTree> cached_patch_tree(const std::shared_ptr<const TriangleMesh>& mesh) {
-  if (folder().empty() || mesh->triangles.size() < kLeastCached) return std::make_shared<const PatchTree>(mesh);
-  const Key key = key_of(*mesh);
-  const fs::path path = file_of(key);
-  if (auto tree = load(path, key, mesh)) {
-    std::error_code status;  // used now: others go before it when room is made
-    fs::last_write_time(path, fs::file_time_type::clock::now(), status);
-    return tree;
+  // A tree keeps its mesh alive, so as long as there is one no other mesh has the same address.
+  static std::mutex mutex;
+  static std::map<const TriangleMesh*, std::weak_ptr<const PatchTree>> in_use;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (auto i = in_use.begin(); i != in_use.end();) i = i->second.expired() ? in_use.erase(i) : std::next(i);
+    const auto known = in_use.find(mesh.get());
+    if (known != in_use.end())
+      if (auto tree = known->second.lock()) return tree;
   }
-  auto tree = std::make_shared<const PatchTree>(mesh);
-  store(path, key, *tree);
+  auto tree = stored_or_built(mesh);
+  const std::lock_guard<std::mutex> lock(mutex);
+  in_use[mesh.get()] = tree;
   return tree;
 }
 

@@ -16,7 +16,8 @@ constexpr struct {
 } kFields[] = {{"scene", &RecordingInfo::scene},
                {"held", &RecordingInfo::held},
                {"resolver", &RecordingInfo::resolver},
-               {"program", &RecordingInfo::program}};
+               {"program", &RecordingInfo::program},
+               {"suspended", &RecordingInfo::suspended}};
 }  // namespace
 
 std::string recording_info_path(const std::string& path) {

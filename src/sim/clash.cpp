@@ -11,6 +11,7 @@
 #include "feature/simplex_distance.hpp"
 #include "mesh/components.hpp"
 #include "narrowphase/fcl_pairs.hpp"
+#include "narrowphase/patch_cache.hpp"
 #include "tegotae/mesh/report.hpp"
 
 namespace tegotae {
@@ -57,6 +58,7 @@ class PairLook {
     if (pairs.empty() && !inside) return look_apart(a, b, X_BA, clash);
     clash.gap = 0;
     clash.depth = 0;
+    clash.triangle_pairs = pairs.size();
     clash.place_W = pairs.empty() ? Vec3::Zero() : corner_W(a, pairs.front().first);
     if (!closed(a) && !closed(b)) {
       clash.depth = std::numeric_limits<double>::quiet_NaN();
@@ -79,7 +81,7 @@ class PairLook {
     if (!s.data->distance) {
       const auto& mesh = s.part->mesh;
       s.data->distance =
-          std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), std::make_shared<PatchTree>(mesh));
+          std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
       s.data->closed = report(*mesh).closed;
     }
     return *s.data->distance;
@@ -218,7 +220,11 @@ std::vector<Clash> find_clashes(const Scene& scene, const ClashOptions& options)
       for (const Vec3& p : part.mesh->vertices) box.extend(p);
     boxes.push_back(box.transformed(Eigen::Translation3d(part.pose.p) * part.pose.q));
   }
-  const auto pairs = near_pairs(boxes, std::max(options.tolerance, options.within));
+  auto pairs = near_pairs(boxes, std::max(options.tolerance, options.within));
+  if (options.held_only) {
+    const auto of_others = [&](const auto& p) { return !scene.parts[p.first].held && !scene.parts[p.second].held; };
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), of_others), pairs.end());
+  }
   FclPairs fcl;
   PairLook pair_look(fcl, options);
   std::vector<Clash> clashes;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/surroundings.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -67,22 +66,17 @@ const std::vector<std::string>& narrowphase_names() {
 ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
     : settings_(settings),
       center_(mass.center),
+      at_(scene, settings, mass),
       metric_(mass),
       resolver_(make_resolver(settings.resolver, kMostLimits)),
       rows_(kMostLimits),
       bounds_(kMostLimits),
       planes_(kMostLimits) {
-  Surroundings s(scene, settings, mass);
-  radius_ = s.radius;
-  clearance_ = s.clearance;
-  reach_ = s.reach;
-  spheres_ = std::move(s.spheres);
-  check_ = std::move(s.check);
-  contacts_ = std::move(s.contacts);
-  trust_ = piece_cap_ = check_->longest_motion();
+  trust_ = piece_cap_ = at_.check->longest_motion();
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
   least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
-  X_ = last_Y_ = SceneParts(scene).held->pose;
+  X_ = at_.X;
+  last_Y_ = SceneParts(scene).held->pose;
   blocking_.reserve(kMostBlocking);
 }
 
@@ -101,17 +95,18 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   still_ticks_ = pen < kRest ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
-  spheres_.query(X_ * center_, radius_, std::min(wanted, travel) + reach_, near_);
+  if (at_.look_at_start(X_, blocking_)) tracked_ = false;
+  at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   bool held_back = false;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
     report.pieces.push_back(X_);
-    contacts_->clear();
+    at_.contacts->clear();
     tracked_ = false;
   } else {
-    check_->begin(near_, deadline_ns_);
+    at_.check->begin(near_, deadline_ns_);
     if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
@@ -120,7 +115,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
-      held_back = length == 0 && !contacts_->limits().empty();
+      held_back = length == 0 && !at_.contacts->limits().empty();
       // A piece shorter than it could be is the resolver's own end.
       if (length < kFullShare * cap) break;
       made += length;
@@ -133,7 +128,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   report.planes.count = 0;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(contacts_->limits(), metric_, X_, Y, center_, keep_, report.planes);
+    planes_.pick(at_.contacts->limits(), metric_, X_, Y, center_, keep_, report.planes);
   }
   const double left = size(displacement(X_, Y, center_));
   // A part that limits hold back a little above their gap is felt like one that rests on them.
@@ -152,7 +147,7 @@ bool ContactLoop::late() const {
 }
 
 bool ContactLoop::track() {
-  if (!tracked_) tracked_ = contacts_->track(X_, reach_, deadline_ns_);
+  if (!tracked_) tracked_ = at_.contacts->track(X_, at_.reach, deadline_ns_);
   return tracked_;
 }
 
@@ -160,7 +155,7 @@ void ContactLoop::adapt_keep(const Pose& Y) {
   // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
   // when a motion exists that leaves twice as much everywhere; out of a hole there always is one, so a part that stands
   // wedged between opposite sides has none either. The gap never grows under a part at rest: it would push it about.
-  const auto& limits = contacts_->limits();
+  const auto& limits = at_.contacts->limits();
   if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
   const bool standing = moved_ < kStanding;
   if (standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged()) {
@@ -180,7 +175,7 @@ void ContactLoop::adapt_keep(const Pose& Y) {
 }
 
 bool ContactLoop::wedged() const {
-  const auto& limits = contacts_->limits();
+  const auto& limits = at_.contacts->limits();
   const std::size_t n = std::min(limits.size(), kMostWedging);
   const auto presses = [this](const Contact& c) { return c.age != kCutAge && c.gap <= keep_ / kKeepShare; };
   for (std::size_t i = 0; i < n; ++i)
@@ -213,8 +208,8 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
       trust_ = 0.5 * std::min(trust_, size(trial.d));
       return 0;
     }
-    if (contacts_->seed(blocking_, check_->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
-        contacts_->cut(blocking_, trial.d, clearance_, deadline_ns_) == 0)
+    if (at_.contacts->seed(blocking_, at_.check->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
+        at_.contacts->cut(blocking_, trial.d, kGapFloor, deadline_ns_) == 0)
       break;
   }
   if (!found) {
@@ -224,15 +219,12 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   if (!worth_it(wanted, trial, goal)) return 0;
   X_ = trial.X;
   tracked_ = false;
-  // Parts that started nearer than the floor keep it once they have come apart.
-  if (clearance_ < kGapFloor && check_->check(X_, Displacement{}, kGapFloor, blocking_) == MotionAnswer::free)
-    clearance_ = kGapFloor;
   return size(trial.d);
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
   Vec6 motion = wanted;
-  if (!contacts_->limits().empty()) {
+  if (!at_.contacts->limits().empty()) {
     if (!solve(wanted, report, motion)) return false;
     const double far = size(metric_.unwhiten(wanted));
     // Of a shorter way a programme that does not project may take a part where of the whole it takes nothing.
@@ -247,7 +239,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     // would leave nearly nothing of their recovery.
     const Vec6 scaled = (cap / length) * motion;
     motion = scaled;
-    if (!contacts_->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    if (!at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
     trial.d = metric_.unwhiten(motion);
   }
   trial.X = displaced(X_, center_, trial.d);
@@ -255,7 +247,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 }
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
-  const auto& limits = contacts_->limits();
+  const auto& limits = at_.contacts->limits();
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
@@ -264,7 +256,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
       const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] = limits[i].age == kCutAge ? std::min(kCutMargin * clearance_, gap) - gap
+      bounds_[i] = limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap
                                             : std::min(keep_, gap + lost) - gap;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
@@ -282,7 +274,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
 
 bool ContactLoop::is_free(const Trial& trial, TickReport& report) {
   blocking_.clear();
-  const MotionAnswer answer = check_->check(X_, trial.d, clearance_, blocking_);
+  const MotionAnswer answer = at_.check->check(X_, trial.d, kGapFloor, blocking_);
   report.cut |= answer == MotionAnswer::unknown;
   return answer == MotionAnswer::free;
 }
@@ -312,13 +304,15 @@ void ContactLoop::gather(TickReport& report) const {
   report.contacts = 0;
   report.contact_gap = keep_ / kKeepShare;
   report.gap = std::numeric_limits<double>::infinity();
-  for (const Contact& c : contacts_->limits()) {
+  for (const Contact& c : at_.contacts->limits()) {
     if (c.age == kCutAge) continue;
     report.contacts += c.gap <= report.contact_gap ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
-  report.limits = static_cast<int>(contacts_->limits().size());
-  report.overflow = contacts_->overflow() > 0 || check_->overflow();
+  report.limits = static_cast<int>(at_.contacts->limits().size());
+  report.suspended = at_.start.suspended();
+  report.relieved = at_.start.relieved();
+  report.overflow = at_.contacts->overflow() > 0 || at_.check->overflow();
 }
 
 }  // namespace tegotae

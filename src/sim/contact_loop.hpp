@@ -3,18 +3,16 @@
 #include <memory>
 #include <vector>
 
-#include "broadphase/bounding_spheres.hpp"
-#include "contact/contact_set.hpp"
-#include "narrowphase/motion_check.hpp"
 #include "resolve/metric.hpp"
 #include "resolve/resolver.hpp"
 #include "sim/contact_planes.hpp"
 #include "sim/proxy_loop.hpp"
+#include "sim/surroundings.hpp"
 
 namespace tegotae {
 
 /// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver, free
-/// check), over a scene whose parts were checked to be free at the start.
+/// check), over a scene in which parts may touch at the start.
 class ContactLoop final : public ProxyLoop {
  public:
   ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
@@ -22,7 +20,8 @@ class ContactLoop final : public ProxyLoop {
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
   /// The limits at the end of the last tick.
-  const std::vector<Contact>& limits() const override { return contacts_->limits(); }
+  const std::vector<Contact>& limits() const override { return at_.contacts->limits(); }
+  const StartReport& start() const override { return at_.start.report(); }
 
  private:
   /// A displacement together with the pose it leads to.
@@ -51,16 +50,12 @@ class ContactLoop final : public ProxyLoop {
   bool track();
   void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
-  double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
+  double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
 
   ContactSettings settings_;
   Vec3 center_;
-  double radius_;     ///< of the held part about its center of mass
+  Surroundings at_;
   double piece_cap_;  ///< longest piece near other parts, m
-  double reach_;      ///< pairs farther apart are not followed, m
-  BoundingSpheres spheres_;
-  std::unique_ptr<MotionCheck> check_;
-  std::unique_ptr<ContactSet> contacts_;
   Metric metric_;
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
@@ -76,7 +71,6 @@ class ContactLoop final : public ProxyLoop {
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
-  double clearance_;      ///< gap that a motion must leave, m
   bool tracked_ = false;  ///< the contacts are those of X_
   bool was_cut_ = false;  ///< the last tick
   std::int64_t deadline_ns_ = 0;

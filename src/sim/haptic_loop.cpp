@@ -40,6 +40,9 @@ ContactSettings completed(ContactSettings s, double radius) {
   check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
   check_not_negative("penalty.damping", s.penalty.damping);
   if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
+  check_not_negative("touch_tolerance", s.touch_tolerance);
+  if (s.initial_overlap != "refuse" && s.initial_overlap != "ignore")
+    throw Error("unknown initial_overlap \"" + s.initial_overlap + "\"; known are refuse, ignore");
   const auto& names = narrowphase_names();
   if (std::find(names.begin(), names.end(), s.narrowphase) == names.end())
     throw Error("unknown narrowphase \"" + s.narrowphase + "\"; known are patch, fcl");
@@ -76,6 +79,10 @@ struct HapticLoop::State {
     report.pieces.assign(1, loop->pose());
     report.proxy.X = loop->pose();
     report.gap = std::numeric_limits<double>::infinity();
+    for (const StartPair& pair : loop->start().pairs) {
+      report.suspended += pair.state == PairState::suspended ? 1 : 0;
+      report.relieved += pair.state == PairState::relieved ? 1 : 0;
+    }
   }
 };
 
@@ -90,6 +97,9 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
 
 const TickReport& HapticLoop::report() const {
   return state_->report;
+}
+const StartReport& HapticLoop::start() const {
+  return state_->loop->start();
 }
 const std::vector<Contact>& HapticLoop::limits() const {
   return state_->loop->limits();

@@ -43,7 +43,8 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
       at_(scene, settings, mass),
       envelope_(std::min(kEnvelope, 0.5 * settings.l_min)),
       piece_cap_(at_.check->longest_motion()) {
-  X_ = last_Y_ = SceneParts(scene).held->pose;
+  X_ = at_.X;
+  last_Y_ = SceneParts(scene).held->pose;
   blocking_.reserve(kMostBlocking);
 }
 
@@ -58,6 +59,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
                      : kNoDeadline;
+  if (at_.look_at_start(X_, blocking_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
   const int n = std::max(1, static_cast<int>(std::ceil(time / settings_.impulse.substep - 1e-9)));
   const double h = time / n;
@@ -98,7 +100,7 @@ void ImpulseLoop::accelerate(const Pose& Y, const Twist& pen, double h) {
 
 void ImpulseLoop::substep(double h, TickReport& report) {
   const double far = h * (V_.v.norm() + at_.radius * V_.w.norm());
-  at_.spheres.query(X_ * mass_.center, at_.radius, far + at_.reach, near_);
+  at_.query(X_, mass_.center, far + at_.reach, near_);
   report.candidate_parts = std::max(report.candidate_parts, static_cast<int>(near_.size()));
   if (near_.empty()) {
     X_ = displaced(X_, mass_.center, {h * V_.v, h * V_.w});
@@ -135,7 +137,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
 }
 
 double ImpulseLoop::floor(const Contact& c) const {
-  return c.age == kCutAge ? kCutMargin * at_.clearance : envelope_;
+  return c.age == kCutAge ? kCutMargin * kGapFloor : envelope_;
 }
 
 double ImpulseLoop::opening_speed(const Contact& c) const {
@@ -183,7 +185,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(double& time, TickReport& report) {
   for (int i = 0; i <= kMostHalvings && !late(); ++i, time *= 0.5) {
     const Displacement d{time * V_.v, time * V_.w};
     blocking_.clear();
-    const MotionAnswer answer = at_.check->check(X_, d, at_.clearance, blocking_);
+    const MotionAnswer answer = at_.check->check(X_, d, kGapFloor, blocking_);
     if (answer == MotionAnswer::free) {
       X_ = displaced(X_, mass_.center, d);
       report.pieces.push_back(X_);
@@ -193,7 +195,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(double& time, TickReport& report) {
     report.cut |= answer == MotionAnswer::unknown;
     if (i == 0 && answer == MotionAnswer::blocked &&
         (at_.contacts->seed(blocking_, at_.check->near_contact(X_, d, blocking_), deadline_ns_) > 0 ||
-         at_.contacts->cut(blocking_, d, at_.clearance, deadline_ns_) > 0))
+         at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0))
       return Advance::found;
   }
   return Advance::stuck;
@@ -209,6 +211,8 @@ void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const
     report.gap = std::min(report.gap, c.gap);
   }
   report.limits = static_cast<int>(at_.contacts->limits().size());
+  report.suspended = at_.start.suspended();
+  report.relieved = at_.start.relieved();
   report.overflow = at_.contacts->overflow() > 0 || at_.check->overflow();
   report.cut |= late();
   const double left = size(displacement(X_, Y, mass_.center));

@@ -22,6 +22,7 @@ class ImpulseLoop final : public ProxyLoop {
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
   const std::vector<Contact>& limits() const override { return at_.contacts->limits(); }
+  const StartReport& start() const override { return at_.start.report(); }
 
  private:
   struct Collision {

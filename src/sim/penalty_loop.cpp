@@ -6,7 +6,8 @@
 #include <limits>
 #include <map>
 
-#include "sim/start_check.hpp"
+#include "narrowphase/patch_cache.hpp"
+#include "narrowphase/patch_motion_check.hpp"
 #include "sim/surroundings.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -20,6 +21,7 @@ constexpr double kStepShare = 0.02;
 // Steps shorter than this (m) are rest.
 constexpr double kRest = 1e-8;
 constexpr std::size_t kMostSprings = 16384;
+constexpr std::size_t kMostBlocking = 8;
 
 }  // namespace
 
@@ -29,19 +31,22 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
   std::map<const TriangleMesh*, std::shared_ptr<const SignedDistance>> fields;
   const auto field = [&fields](const std::shared_ptr<const TriangleMesh>& mesh) {
     auto& f = fields[mesh.get()];
-    if (!f) f = std::make_shared<SignedDistance>(std::make_shared<Surface>(mesh), std::make_shared<PatchTree>(mesh));
+    if (!f) f = std::make_shared<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
     return f;
   };
-  std::vector<const TriangleMesh*> meshes;
+  start_ = StartPairs(scene, settings);
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
   for (const Part* p : parts.fixed) {
     spheres_.add(bounding_sphere(*p->mesh), p->pose);
     poses_.push_back(p->pose);
-    meshes.push_back(p->mesh.get());
+    meshes.push_back(p->mesh);
     shells_.emplace_back(field(parts.held->mesh), field(p->mesh));
   }
-  FclNarrowPhase narrow(*parts.held->mesh, meshes);
-  check_start(*parts.held, parts.fixed, narrow);
   radius_ = radius_about(*parts.held->mesh, center_);
+  if (start_.waiting() > 0) {
+    check_ = std::make_unique<PatchMotionCheck>(parts.held->mesh, center_, radius_, meshes, poses_);
+    blocking_.reserve(kMostBlocking);
+  }
   X_ = parts.held->pose;
   near_.reserve(parts.fixed.size());
   points_.reserve(kMostSprings);
@@ -55,6 +60,11 @@ void PenaltyLoop::move(const Displacement& d) {
   for (VertexShell& shell : shells_) shell.move(size(d));
 }
 
+void PenaltyLoop::query(double distance) {
+  spheres_.query(X_ * center_, radius_, distance, near_);
+  start_.apply(near_);
+}
+
 void PenaltyLoop::collect(double reach, TickReport& report) {
   springs_.clear();
   limits_.clear();
@@ -63,7 +73,7 @@ void PenaltyLoop::collect(double reach, TickReport& report) {
   report.contact_gap = 0;
   report.depth = 0;
   report.gap = std::numeric_limits<double>::infinity();
-  spheres_.query(X_ * center_, radius_, reach, near_);
+  query(reach);
   report.candidate_parts = static_cast<int>(near_.size());
   const Vec3 c = X_ * center_;
   for (const std::uint32_t part : near_) {
@@ -118,7 +128,9 @@ void PenaltyLoop::step(const Pose& Y, double dt, TickReport& report) {
                                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
                                     : kNoDeadline;
   const double wanted = size(displacement(X_, Y, center_)), most = kStepShare * radius_;
-  spheres_.query(X_ * center_, radius_, wanted, near_);
+  if (check_) start_.look(X_, *check_, deadline, blocking_);
+  report.suspended = start_.suspended();
+  query(wanted);
   if (near_.empty()) {
     move(displacement(X_, Y, center_));
     X_ = Y;

@@ -6,6 +6,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "feature/vertex_shell.hpp"
 #include "sim/proxy_loop.hpp"
+#include "sim/start_pairs.hpp"
 
 namespace tegotae {
 
@@ -23,6 +24,7 @@ class PenaltyLoop final : public ProxyLoop {
   void step(const Pose& Y, double dt, TickReport& report) override;
   const Pose& pose() const override { return X_; }
   const std::vector<Contact>& limits() const override { return limits_; }
+  const StartReport& start() const override { return start_.report(); }
 
  private:
   /// A spring at a vertex: gap + row · (dp, dr), in the world.
@@ -36,6 +38,8 @@ class PenaltyLoop final : public ProxyLoop {
   /// The displacement at which linear springs balance the pull to `error`; `made` is what this tick has made so far.
   Vec6 balance(const Vec6& error, const Vec6& made, double dt) const;
   void move(const Displacement& d);
+  /// Fixed parts within `distance` (m) that are not suspended, into near_.
+  void query(double distance);
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
 
   ContactSettings settings_;
@@ -45,6 +49,9 @@ class PenaltyLoop final : public ProxyLoop {
   BoundingSpheres spheres_;
   std::vector<Pose> poses_;  ///< of the fixed parts
   std::vector<VertexShell> shells_;
+  StartPairs start_;
+  std::unique_ptr<MotionCheck> check_;  ///< tells when suspended pairs are free; null when none is
+  std::vector<FacePair> blocking_;
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;

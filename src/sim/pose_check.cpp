@@ -1,11 +1,13 @@
 #include "sim/pose_check.hpp"
 
+#include <algorithm>
+
 #include "broadphase/bounding_spheres.hpp"
 #include "narrowphase/fcl_narrow_phase.hpp"
 
 namespace tegotae {
 
-void PoseCheck::add(const Pose& X) noexcept {
+void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   if (seen_ > 0 && X.p == last_.p && X.q.coeffs() == last_.q.coeffs()) return;
   last_ = X;
   if (seen_++ % stride_ != 0) return;
@@ -15,20 +17,25 @@ void PoseCheck::add(const Pose& X) noexcept {
     stride_ *= 2;
     if ((seen_ - 1) % stride_ != 0) return;
   }
-  poses_.push_back(X);
+  poses_.push_back({X, freed});
 }
 
-std::int64_t PoseCheck::count_intersecting(const Scene& scene) const {
+std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start) const {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
   std::vector<const TriangleMesh*> meshes;
   BoundingSpheres spheres;
-  for (const Part& part : scene.parts) {
+  std::vector<std::uint32_t> freed;  // of each fixed part, in which place it came free
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const Part& part = scene.parts[i];
     if (part.held) {
       held = &part;
       continue;
     }
     fixed.push_back(&part);
+    const auto pair =
+        std::find_if(start.pairs.begin(), start.pairs.end(), [i](const StartPair& p) { return p.part == i; });
+    freed.push_back(pair == start.pairs.end() ? 0 : pair->freed);
     meshes.push_back(part.mesh.get());
     spheres.add(bounding_sphere(*part.mesh), part.pose);
   }
@@ -36,10 +43,10 @@ std::int64_t PoseCheck::count_intersecting(const Scene& scene) const {
   const Sphere ball = bounding_sphere(*held->mesh);
   std::vector<std::uint32_t> near;
   std::int64_t count = 0;
-  for (const Pose& X : poses_) {
+  for (const auto& [X, came_free] : poses_) {
     spheres.query(X * ball.center, ball.radius, 0.0, near);
     for (const std::uint32_t i : near) {
-      if (!narrow.intersects(i, fixed[i]->pose.inverse() * X)) continue;
+      if (freed[i] > came_free || !narrow.intersects(i, fixed[i]->pose.inverse() * X)) continue;
       ++count;
       break;
     }

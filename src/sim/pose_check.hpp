@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/start.hpp"
 
 namespace tegotae {
 
@@ -17,13 +18,17 @@ class PoseCheck {
 
   PoseCheck() { poses_.reserve(kMost); }
 
-  /// Never allocates. A pose equal to the last one counts once.
-  void add(const Pose& X) noexcept;
-  /// How many of the kept poses intersect a fixed part of `scene`.
-  std::int64_t count_intersecting(const Scene& scene) const;
+  /// Never allocates. A pose equal to the last one counts once. `freed`: how many pairs of StartReport had come free.
+  void add(const Pose& X, std::uint32_t freed = 0) noexcept;
+  /// How many of the kept poses intersect a fixed part of `scene`, pairs left out that had not come free by then.
+  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {}) const;
 
  private:
-  std::vector<Pose> poses_;
+  struct Kept {
+    Pose X;
+    std::uint32_t freed;
+  };
+  std::vector<Kept> poses_;
   std::size_t stride_ = 1;
   std::size_t seen_ = 0;
   Pose last_;

@@ -18,6 +18,8 @@ class ProxyLoop {
   virtual const Pose& pose() const = 0;
   /// See HapticLoop::limits.
   virtual const std::vector<Contact>& limits() const = 0;
+  /// See HapticLoop::start.
+  virtual const StartReport& start() const = 0;
 };
 
 /// The loop of `settings.resolver` (completed settings) over a scene with one held part. Throws Error for an unknown

@@ -124,6 +124,8 @@ void read_contact(const TomlTable& t, ContactSettings& s) {
   s.tick_budget = t.positive("tick_budget", s.tick_budget);
   s.resolver = one_of(t, "resolver", s.resolver, resolver_names());
   s.narrowphase = one_of(t, "narrowphase", s.narrowphase, narrowphase_names());
+  s.touch_tolerance = t.at_least_zero("touch_tolerance", s.touch_tolerance);
+  s.initial_overlap = one_of(t, "initial_overlap", s.initial_overlap, {"refuse", "ignore"});
   const TomlTable impulse = t.table("impulse", {"restitution", "micro_speed", "substep"});
   s.impulse.restitution = impulse.at_least_zero("restitution", s.impulse.restitution);
   if (s.impulse.restitution > 1) impulse.fail("restitution", "must be at most 1");
@@ -188,7 +190,8 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
   read_contact(
-      top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "density", "impulse", "penalty"}),
+      top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance", "initial_overlap",
+                            "density", "impulse", "penalty"}),
       scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);

@@ -64,6 +64,8 @@ class Session {
     if (!settings.record.empty())
       recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
+    waiting_ = loop_.report().suspended + loop_.report().relieved;
+    if (settings.on_start) settings.on_start(loop_.start());
   }
 
   RunSummary run() {
@@ -83,7 +85,8 @@ class Session {
     const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
     summary_.depth_m = goal_.depth(X);
     summary_.completed = script_over && goal_.reached(X);
-    summary_.penetrating = check_.count_intersecting(file_.scene);
+    summary_.start = loop_.start();
+    summary_.penetrating = check_.count_intersecting(file_.scene, summary_.start);
     return summary_;
   }
 
@@ -133,7 +136,8 @@ class Session {
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
-    for (const Pose& X : report.pieces) check_.add(X);
+    const auto freed = static_cast<std::uint32_t>(waiting_ - report.suspended - report.relieved);
+    for (const Pose& X : report.pieces) check_.add(X, freed);
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (recorder_) record(number, t, pen, report, tick_us);
     if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us()});
@@ -149,7 +153,11 @@ class Session {
   }
 
   RecordingInfo info() const {
-    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program};
+    std::string suspended;
+    for (const StartPair& pair : loop_.start().pairs)
+      if (pair.state == PairState::suspended)
+        suspended += (suspended.empty() ? "" : ", ") + file_.scene.parts[pair.part].name;
+    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program, suspended};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {
@@ -184,6 +192,7 @@ class Session {
   RunGoal goal_;
   std::optional<Recorder> recorder_;
   double duration_;
+  int waiting_ = 0;  // pairs that were not free when the run began
   std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   PoseCheck check_;
   LatencyHistogram tick_times_;

@@ -1,28 +1,48 @@
 #include "sim/surroundings.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "narrowphase/fcl_motion_check.hpp"
+#include "narrowphase/patch_cache.hpp"
 #include "narrowphase/patch_motion_check.hpp"
-#include "sim/start_check.hpp"
+#include "sim/ease_start.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
 
 // Pairs are followed while they are nearer than twice this share of the part's radius.
 constexpr double kReachShare = 0.02;
-// Of a start gap below the floor, what motions must leave.
-constexpr double kStartShare = 0.5;
+// The held part is moved at most so many touch tolerances, and gap floors, off what it touches at the start: a corner
+// with three faces takes 1.8.
+constexpr double kMostShift = 3;
+// Of the tick's budget, what a look at a pair that was not free at the start may take.
+constexpr double kLookShare = 0.25;
 
-double start_clearance(const SceneParts& parts, FclNarrowPhase& narrow) {
-  double clearance = kGapFloor;
-  FacePair nearest{};
-  for (std::uint32_t i = 0; i < parts.fixed.size(); ++i) {
-    const Pose X_BA = parts.fixed[i]->pose.inverse() * parts.held->pose;
-    clearance = std::min(clearance, narrow.distance_below(kGapFloor, i, X_BA, nearest));
+/// Meshes and poses of the fixed parts, and of what stands in for some of them.
+struct FixedParts {
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+  std::vector<Pose> poses;
+  std::vector<FixedSurface> surfaces;
+  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> known;
+
+  void add(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& pose, std::uint32_t stands_for) {
+    auto& surface = known[mesh.get()];
+    if (!surface) surface = std::make_shared<Surface>(mesh);
+    surfaces.push_back({surface, pose, stands_for});
+    poses.push_back(pose);
+    meshes.push_back(mesh);
   }
-  return clearance < kGapFloor ? kStartShare * clearance : clearance;
+};
+
+std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixed, const ContactSettings& settings,
+                                        const Vec3& center, double radius) {
+  if (settings.narrowphase != "fcl")
+    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses);
+  std::vector<const TriangleMesh*> meshes;
+  for (const auto& mesh : fixed.meshes) meshes.push_back(mesh.get());
+  return std::make_unique<FclMotionCheck>(*held.mesh, center, radius, meshes, fixed.poses, settings.l_0);
 }
 
 }  // namespace
@@ -31,34 +51,46 @@ SceneParts::SceneParts(const Scene& scene) {
   for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
 }
 
-Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass) {
+Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
+    : look_time_(kLookShare * settings.tick_budget) {
   const SceneParts parts(scene);
-  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
-  std::vector<FixedSurface> fixed_surfaces;
-  std::vector<const TriangleMesh*> plain_meshes;
-  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
-  std::vector<Pose> poses;
+  // Held here so that whoever needs a hierarchy while the scene is built finds it made.
+  std::vector<std::shared_ptr<const PatchTree>> trees;
+  if (settings.narrowphase != "fcl")
+    for (const Part& p : scene.parts) trees.push_back(cached_patch_tree(p.mesh));
+  start = StartPairs(scene, settings);
+  FixedParts fixed;
   for (const Part* p : parts.fixed) {
-    auto& surface = surfaces[p->mesh.get()];
-    if (!surface) surface = std::make_shared<Surface>(p->mesh);
-    fixed_surfaces.push_back({surface, p->pose});
-    poses.push_back(p->pose);
+    fixed.add(p->mesh, p->pose, kNone);
     spheres.add(bounding_sphere(*p->mesh), p->pose);
-    meshes.push_back(p->mesh);
-    plain_meshes.push_back(p->mesh.get());
   }
-  FclNarrowPhase narrow(*parts.held->mesh, plain_meshes);
-  check_start(*parts.held, parts.fixed, narrow);
+  const auto copies = start.relieve(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
+  for (const StartPairs::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, c.part);
   radius = radius_about(*parts.held->mesh, mass.center);
-  clearance = start_clearance(parts, narrow);
   reach = settings.l_min + 2 * kReachShare * radius;
-  if (settings.narrowphase == "fcl")
-    check =
-        std::make_unique<FclMotionCheck>(*parts.held->mesh, mass.center, radius, plain_meshes, poses, settings.l_0);
-  else
-    check = std::make_unique<PatchMotionCheck>(parts.held->mesh, mass.center, radius, meshes, poses);
-  contacts = std::make_unique<ContactSet>(std::make_shared<Surface>(parts.held->mesh), std::move(fixed_surfaces),
+  check = make_check(*parts.held, fixed, settings, mass.center, radius);
+  contacts = std::make_unique<ContactSet>(std::make_shared<Surface>(parts.held->mesh), std::move(fixed.surfaces),
                                           mass.center, kMostLimits);
+  X = ease_start(*this, mass, parts.held->pose, kMostShift * (settings.touch_tolerance + 2 * kGapFloor));
+  double shift = 0;
+  for (const Vec3& v : parts.held->mesh->vertices) shift = std::max(shift, (X * v - parts.held->pose * v).norm());
+  start.set_shift(shift);
+}
+
+void Surroundings::query(const Pose& pose, const Vec3& center, double distance,
+                         std::vector<std::uint32_t>& near) const {
+  spheres.query(pose * center, radius, distance, near);
+  start.apply(near);
+}
+
+bool Surroundings::look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept {
+  const std::int64_t deadline = std::isfinite(look_time_)
+                                    ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_)
+                                    : kNoDeadline;
+  const StartPairs::Waiting* freed = start.look(pose, *check, deadline, blocking);
+  if (freed == nullptr) return false;
+  if (freed->stand_in != StartPairs::kNobody) contacts->transfer(freed->stand_in, freed->part);
+  return true;
 }
 
 }  // namespace tegotae

@@ -6,15 +6,11 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "contact/contact_set.hpp"
 #include "narrowphase/motion_check.hpp"
+#include "sim/start_pairs.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
-
-/// No piece of a motion brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm
-/// (Coal's GJK) count nearer ones as touching, and a recording should be free for them too. A smaller gap at the start
-/// may only grow.
-inline constexpr double kGapFloor = 1.1e-6;
 
 /// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
 inline constexpr int kMostLimits = 4096;
@@ -28,15 +24,25 @@ struct SceneParts {
 
 /// What every loop that never penetrates holds of its scene.
 struct Surroundings {
-  double radius;     ///< of the held part about its center of mass, m
-  double clearance;  ///< gap that a motion must leave, m
-  double reach;      ///< pairs of features farther apart are not followed, m
+  double radius;  ///< of the held part about its center of mass, m
+  double reach;   ///< pairs of features farther apart are not followed, m
   BoundingSpheres spheres;
   std::unique_ptr<MotionCheck> check;
   std::unique_ptr<ContactSet> contacts;
+  StartPairs start;
+  Pose X;  ///< where the held part starts: where the scene puts it, or moved off what it touches there
 
-  /// Throws Error when the start is not free.
+  /// Throws Error when the held part overlaps a fixed one and the settings do not say to ignore it.
   Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
+
+  /// Parts whose sphere comes within `distance` (m) of the held part at `pose`, as the checks number them.
+  void query(const Pose& pose, const Vec3& center, double distance, std::vector<std::uint32_t>& near) const;
+  /// Looks whether one more pair that was not free at the start is so at `pose` (see StartPairs::look), in a share of the
+  /// tick's budget. When it is, contacts are to be tracked anew. `blocking` is scratch.
+  bool look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept;
+
+ private:
+  double look_time_;  ///< s
 };
 
 }  // namespace tegotae

@@ -28,6 +28,7 @@ struct RecordingInfo {
   std::string held;      ///< name of the held part
   std::string resolver;  ///< name
   std::string program;   ///< who wrote it, and its version
+  std::string suspended{};  ///< names of the parts that the held part overlapped at the start, and was not kept out of
 };
 
 /// A recording in memory.

@@ -27,11 +27,13 @@ struct Clash {
   /// exact where that is a vertex.
   double depth = 0;
   Vec3 place_W = Vec3::Zero();  ///< the deepest point, or the middle of the shortest gap, m
+  std::size_t triangle_pairs = 0;  ///< that intersect; triangles that touch count
 };
 
 struct ClashOptions {
   double tolerance = 10e-6;  ///< m: what counts as touching
   double within = 0;         ///< m: pairs apart by up to this are listed too
+  bool held_only = false;    ///< only the pairs of the held part
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< pairs of parts whose boxes are near
 };
 

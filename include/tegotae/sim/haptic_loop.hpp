@@ -10,6 +10,7 @@
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/start.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
 
@@ -29,15 +30,19 @@ struct TickReport {
   ResolveStatus status = ResolveStatus::not_needed;
   double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
   bool cut = false;       ///< time or work ran out before the wanted motion was decided
+  int suspended = 0;      ///< pairs that overlapped at the start and have not come free: nothing keeps them apart
+  int relieved = 0;       ///< pairs that touched at the start and have not come free (StartPair::relief)
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
 };
 
-/// The contact loop: follows the pen with the held part so that no two parts ever intersect.
+/// The contact loop: follows the pen with the held part so that it never intersects a fixed part, but for pairs that
+/// start() names.
 class HapticLoop {
  public:
   /// Builds everything a tick needs. Throws Error when the scene cannot be held: not exactly one held part, an unusable
-  /// setting, an unknown resolver, or parts that intersect at the start (the message names the pair and the number of
-  /// intersecting triangle pairs).
+  /// setting, an unknown resolver, or parts that overlap at the start (the message names the pair, depth and place; see
+  /// ContactSettings::initial_overlap). Where parts only touch, the held part may start a few micrometers beside its
+  /// pose in the scene: see start().
   explicit HapticLoop(const Scene& scene);
   ~HapticLoop();
   HapticLoop(const HapticLoop&) = delete;
@@ -48,6 +53,8 @@ class HapticLoop {
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   const TickReport& report() const;
+  /// What the held part touched or overlapped at the start, and what has become of it by the last tick.
+  const StartReport& start() const;
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "tegotae/core/export.hpp"
@@ -54,6 +55,7 @@ struct RunSettings {
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
   const HandGuide* guide = nullptr;         ///< leads the simulated hand away from the script
+  std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
   const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
 };
 
@@ -69,8 +71,9 @@ struct RunSummary {
   double depth_m = 0;
   int contacts_max = 0;
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
-  /// an evenly spread part is asked.
+  /// an evenly spread part is asked. Pairs that `start` names do not count until they have come free.
   std::int64_t penetrating = 0;
+  StartReport start;       ///< what the held part touched or overlapped at the start, as it was at the end
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;        ///< time a tick of the contact loop takes
   ServoStatistics servo;         ///< in virtual time only the number of ticks

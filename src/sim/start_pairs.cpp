@@ -1,0 +1,178 @@
+#include "sim/start_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "narrowphase/patch_cache.hpp"
+#include "narrowphase/patch_front.hpp"
+#include "sim/inset.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+// Beyond kGapFloor (m), so that the first motion does not fail by rounding.
+constexpr double kRoom = 1e-8;
+// Of a gap below kGapFloor, what motions must leave.
+constexpr double kKeepShare = 0.5;
+// The deepest point that was found may not be the deepest: the copy is made smaller by this much more until it is free,
+// up to so many tolerances.
+constexpr double kMore = 1.25, kMostTolerances = 2;
+
+std::string length(double m) {
+  char text[32];
+  std::snprintf(text, sizeof text, m < 1e-3 ? "%.3g um" : "%.4g mm", m * (m < 1e-3 ? 1e6 : 1e3));
+  return text;
+}
+
+/// What a pair has of kGapFloor that must not be lost: its gap in part, its depth in full.
+double kept(const Clash& c) {
+  return c.gap > 0 ? kKeepShare * c.gap : -c.depth;
+}
+
+bool free_at_start(const PatchTree& a, const Vec3& center, const PatchTree& b, const Pose& X_BA) {
+  PatchFront front;
+  front.attach(a, center, b);
+  front.set_clearance(kGapFloor);
+  WorkLimit limit;
+  limit.searches = 1 << 20;
+  return front.certify(X_BA, Displacement{}, limit).status == CertifyStatus::certified;
+}
+
+}  // namespace
+
+StartPairs::StartPairs(const Scene& scene, const ContactSettings& settings)
+    : ignore_(settings.initial_overlap == "ignore"), tolerance_(settings.touch_tolerance) {
+  std::uint32_t fixed = 0;
+  for (const Part& p : scene.parts) number_.push_back(p.held ? kNobody : fixed++);
+  ClashOptions options;
+  options.tolerance = settings.touch_tolerance;
+  options.held_only = true;
+  for (const Clash& c : find_clashes(scene, options)) {
+    StartPair pair;
+    pair.part = scene.parts[c.a].held ? c.b : c.a;
+    pair.clash = c;
+    if (c.kind == ClashKind::overlap) suspend_or_refuse(scene, pair, "");
+    report_.pairs.push_back(pair);
+    if (pair.state == PairState::suspended) waiting_.back().pair = report_.pairs.size() - 1;
+  }
+  count_ = waiting_.size();
+}
+
+void StartPairs::suspend_or_refuse(const Scene& scene, StartPair& pair, const std::string& why) {
+  const Part& other = scene.parts[pair.part];
+  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  const Clash& c = pair.clash;
+  if (!ignore_) {
+    char place[96];
+    std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) m", c.place_W.x(), c.place_W.y(), c.place_W.z());
+    throw Error("parts \"" + held->name + "\" and \"" + other.name + "\" intersect at the start, " +
+                (c.triangle_pairs == 0 ? "one inside the other, " : "") +
+                (std::isnan(c.depth) ? "open surfaces" : length(c.depth) + " deep") + " at " + place + " (" +
+                std::to_string(c.triangle_pairs) + " intersecting triangle pairs" + why +
+                "); move the held part to a free position, set contact.touch_tolerance (now " + length(tolerance_) +
+                ") higher, or set contact.initial_overlap = \"ignore\" to suspend the pair until it has come free");
+  }
+  pair.state = PairState::suspended;
+  pair.freed = StartPair::kNotYet;
+  Waiting w;
+  w.part = number_[pair.part];
+  w.inside = std::make_unique<InsideLook>(held->mesh, other.mesh);
+  w.X_WB = other.pose;
+  waiting_.push_back(std::move(w));
+  ++suspended_;
+}
+
+std::vector<StartPairs::Copy> StartPairs::relieve(const Scene& scene, const Vec3& center, std::uint32_t first) {
+  std::vector<Copy> copies;
+  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  for (std::size_t i = 0; i < report_.pairs.size(); ++i) {
+    StartPair& pair = report_.pairs[i];
+    const Clash& c = pair.clash;
+    if (pair.state == PairState::suspended || c.gap >= kGapFloor + kRoom) continue;
+    const Part& other = scene.parts[pair.part];
+    const Surface surface(other.mesh);
+    const Pose X_BA = other.pose.inverse() * held->pose;
+    const auto held_tree = cached_patch_tree(held->mesh);
+    Copy copy{number_[pair.part], nullptr, nullptr};
+    bool found = false;
+    for (double by = kGapFloor + kRoom - kept(c); !found && by < kGapFloor + kRoom + kMostTolerances * tolerance_;
+         by *= kMore) {
+      copy.mesh = std::make_shared<TriangleMesh>(inset(surface, by));
+      copy.tree = cached_patch_tree(copy.mesh);
+      found = tegotae::free_at_start(*held_tree, center, *copy.tree, X_BA);
+      pair.relief = by;
+    }
+    if (!found) {
+      pair.relief = 0;
+      suspend_or_refuse(scene, pair, ", and taking the fixed part smaller does not free them");
+      waiting_.back().pair = i;
+      continue;
+    }
+    pair.state = PairState::relieved;
+    pair.freed = StartPair::kNotYet;
+    Waiting w;
+    w.pair = i;
+    w.part = copy.part;
+    w.stand_in = first + static_cast<std::uint32_t>(copies.size());
+    w.X_WB = other.pose;
+    waiting_.push_back(std::move(w));
+    copies.push_back(std::move(copy));
+  }
+  count_ = waiting_.size();
+  return copies;
+}
+
+void StartPairs::apply(std::vector<std::uint32_t>& near) const noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto at = std::find(near.begin(), near.end(), waiting_[i].part);
+    if (at == near.end()) continue;
+    if (waiting_[i].stand_in == kNobody)
+      near.erase(at);
+    else
+      *at = waiting_[i].stand_in;
+  }
+}
+
+bool StartPairs::is_free(const Waiting& w, const Pose& X, MotionCheck& check, std::int64_t deadline_ns,
+                         std::vector<FacePair>& blocking, bool& unknown) noexcept {
+  one_[0] = w.part;
+  check.begin(one_, deadline_ns);
+  blocking.clear();
+  const MotionAnswer answer = check.check(X, Displacement{}, kGapFloor, blocking);
+  unknown = answer == MotionAnswer::unknown;
+  return answer == MotionAnswer::free && !(w.inside && w.inside->inside(w.X_WB.inverse() * X));
+}
+
+const StartPairs::Waiting* StartPairs::look(const Pose& X, MotionCheck& check, std::int64_t deadline_ns,
+                                            std::vector<FacePair>& blocking) noexcept {
+  if (X.p != last_.p || X.q.coeffs() != last_.q.coeffs()) {
+    last_ = X;
+    looked_ = 0;
+  }
+  if (looked_ >= count_) return nullptr;
+  next_ = next_ + 1 < count_ ? next_ + 1 : 0;
+  bool unknown = false;
+  const bool free = is_free(waiting_[next_], X, check, deadline_ns, blocking, unknown);
+  // What time ran out for is asked again, also while the part stands still.
+  if (!unknown) ++looked_;
+  if (!free) return nullptr;
+  report_.pairs[waiting_[next_].pair].freed = ++freed_;
+  retire(next_);
+  return &waiting_[count_];
+}
+
+void StartPairs::retire(std::size_t i) noexcept {
+  report_.pairs[waiting_[i].pair].state = PairState::active;
+  suspended_ -= waiting_[i].stand_in == kNobody ? 1 : 0;
+  --count_;
+  std::swap(waiting_[i], waiting_[count_]);
+}
+
+void StartPairs::free_at_start(std::size_t i) {
+  report_.pairs[waiting_[i].pair].freed = 0;
+  retire(i);
+}
+
+}  // namespace tegotae
