@@ -12,7 +12,7 @@ namespace {
 // Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
 constexpr int kMostBlocking = 256;
 // Pieces in one tick; a pen faster than that leaves X behind for a while.
-constexpr int kMostPieces = 16;
+constexpr int kMostMotions = 16;
 // How much faster than the pen X may follow.
 constexpr double kCatchUp = 2.0;
 // A piece of at least this share of its longest was cut short by that, not by contacts.
@@ -78,17 +78,25 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   X_ = at_.X;
   last_Y_ = SceneParts(scene).held->pose;
   blocking_.reserve(kMostBlocking);
+  near_.reserve(at_.spheres.size());
 }
 
-void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
+bool ContactLoop::take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) {
+  if (!at_.is_way_free(X_, last.proxy.X, center_, deadline_ns, near_, blocking_)) return false;
+  X_ = last.proxy.X;
+  last_Y_ = Y;
+  tracked_ = false;
+  keep_ = std::clamp(kKeepShare * last.contact_gap, least_keep_, most_keep_);
+  return true;
+}
+
+void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
   report.pieces.clear();
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
   report.cut = false;
-  deadline_ns_ = std::isfinite(settings_.tick_budget)
-                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
-                     : kNoDeadline;
+  deadline_ns_ = deadline_ns;
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
@@ -111,7 +119,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     double made = 0;
-    for (int i = 0; i < kMostPieces && made < travel && !late(); ++i) {
+    for (int i = 0; i < kMostMotions && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);

@@ -1,88 +1,69 @@
 #include "tegotae/sim/haptic_loop.hpp"
 
-#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
-#include "broadphase/bounding_spheres.hpp"
-#include "sim/contact_loop.hpp"
-#include "sim/proxy_loop.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/report.hpp"
+#include "sim/handover.hpp"
+#include "sim/running_scene.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
 
-// What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down
-// to the lower one by itself where a fit has no more room.
-constexpr double kLMinShare = 8e-4, kLeastLMin = 4e-6, kMostLMin = 2e-5;
-// Back-off in units of l_min.
-constexpr double kDefaultL0 = 10;
+// Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
+constexpr double kChangeShare = 0.25;
 
-ContactSettings completed(ContactSettings s, double radius) {
-  const auto check = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value > 0))
-      throw Error(std::string("contact.") + name + " must be a positive number, not " + std::to_string(value));
-  };
-  const auto check_not_negative = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value >= 0))
-      throw Error(std::string("contact.") + name + " must not be negative, not " + std::to_string(value));
-  };
-  if (std::isnan(s.l_min)) s.l_min = std::clamp(kLMinShare * radius, kLeastLMin, kMostLMin);
-  if (std::isnan(s.l_0)) s.l_0 = kDefaultL0 * s.l_min;
-  check("l_min", s.l_min);
-  check("l_0", s.l_0);
-  check("density", s.density);
-  check("impulse.substep", s.impulse.substep);
-  check("penalty.stiffness", s.penalty.stiffness);
-  if (!(s.impulse.restitution >= 0 && s.impulse.restitution <= 1))
-    throw Error("contact.impulse.restitution must be from 0 to 1, not " + std::to_string(s.impulse.restitution));
-  check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
-  check_not_negative("penalty.damping", s.penalty.damping);
-  if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
-  check_not_negative("touch_tolerance", s.touch_tolerance);
-  if (s.initial_overlap != "refuse" && s.initial_overlap != "ignore")
-    throw Error("unknown initial_overlap \"" + s.initial_overlap + "\"; known are refuse, ignore");
-  const auto& names = narrowphase_names();
-  if (std::find(names.begin(), names.end(), s.narrowphase) == names.end())
-    throw Error("unknown narrowphase \"" + s.narrowphase + "\"; known are patch, fcl");
-  return s;
-}
-
-const Part& held_part(const Scene& scene) {
-  const Part* held = nullptr;
-  for (const Part& p : scene.parts) {
-    if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
-    if (!p.held) continue;
-    if (held) throw Error("parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be");
-    held = &p;
-  }
-  if (!held) throw Error("no part is held; exactly one must be");
-  return *held;
+std::int64_t deadline(std::int64_t now_ns, double budget) {
+  return std::isfinite(budget) ? now_ns + static_cast<std::int64_t>(1e9 * budget) : kNoDeadline;
 }
 
 }  // namespace
 
-ContactSettings::ContactSettings()
-    : l_min(std::numeric_limits<double>::quiet_NaN()), l_0(std::numeric_limits<double>::quiet_NaN()) {}
-
 struct HapticLoop::State {
-  ContactSettings settings;
-  MassProperties mass;
-  std::unique_ptr<ProxyLoop> loop;
+  std::unique_ptr<RunningScene> now;
+  Handover<RunningScene> next;
+  Pose Y;
   TickReport report;
+  std::mutex changing;          // of those who change; the loop's thread never waits for it
+  std::uint64_t last_change = 0;  // guarded by `changing`
+  std::atomic<std::uint64_t> change_in_force{0};
 
-  explicit State(const Scene& scene)
-      : settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
-        mass(mass_properties(*held_part(scene).mesh, tegotae::report(*held_part(scene).mesh).closed, settings.density)),
-        loop(make_proxy_loop(scene, settings, mass)) {
-    report.pieces.assign(1, loop->pose());
-    report.proxy.X = loop->pose();
+  explicit State(const Scene& scene) : now(std::make_unique<RunningScene>(scene)), Y(now->loop->pose()) {
+    report.pieces.reserve(kMostPieces);
+    begin();
+  }
+
+  /// The report before the first tick with a held part.
+  void begin() noexcept {
+    std::vector<Pose> pieces = std::move(report.pieces);
+    report = {};
+    report.pieces = std::move(pieces);
+    report.pieces.clear();
+    report.pieces.push_back(now->loop->pose());
+    report.proxy.X = now->loop->pose();
     report.gap = std::numeric_limits<double>::infinity();
-    for (const StartPair& pair : loop->start().pairs) {
+    for (const StartPair& pair : now->loop->start().pairs) {
       report.suspended += pair.state == PairState::suspended ? 1 : 0;
       report.relieved += pair.state == PairState::relieved ? 1 : 0;
     }
+  }
+
+  /// Goes over to a changed scene if there is one and it can be; true when another part is held in it.
+  bool adopt(std::int64_t now_ns) noexcept {
+    RunningScene* changed = next.take();
+    if (changed == nullptr) return false;
+    const bool same = changed->held == now->held;
+    if (same && !changed->loop->take_over(report, Y, deadline(now_ns, kChangeShare * now->settings.tick_budget))) {
+      next.put_back(changed);
+      return false;
+    }
+    next.done_with(now.release());
+    now.reset(changed);
+    if (!same) begin();
+    change_in_force.store(changed->number, std::memory_order_release);
+    return !same;
   }
 };
 
@@ -90,28 +71,45 @@ HapticLoop::HapticLoop(const Scene& scene) : state_(std::make_unique<State>(scen
 HapticLoop::~HapticLoop() = default;
 
 const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
-  if (Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)
-    state_->loop->step({Y.q.normalized(), Y.p}, dt, state_->report);
-  return state_->report;
+  State& s = *state_;
+  if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.report;
+  const std::int64_t now_ns = monotonic_ns();
+  if (s.adopt(now_ns)) return s.report;
+  s.Y = {Y.q.normalized(), Y.p};
+  s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  return s.report;
+}
+
+std::uint64_t HapticLoop::change(const Scene& next) {
+  auto changed = std::make_unique<RunningScene>(next);
+  changed->warm_up();
+  const std::lock_guard<std::mutex> lock(state_->changing);
+  const std::uint64_t number = changed->number = ++state_->last_change;
+  state_->next.offer(std::move(changed));
+  return number;
+}
+
+std::uint64_t HapticLoop::change_in_force() const noexcept {
+  return state_->change_in_force.load(std::memory_order_acquire);
 }
 
 const TickReport& HapticLoop::report() const {
   return state_->report;
 }
 const StartReport& HapticLoop::start() const {
-  return state_->loop->start();
+  return state_->now->loop->start();
 }
 const std::vector<Contact>& HapticLoop::limits() const {
-  return state_->loop->limits();
+  return state_->now->loop->limits();
 }
 const Vec3& HapticLoop::center() const {
-  return state_->mass.center;
+  return state_->now->mass.center;
 }
 Mat3 HapticLoop::gyration() const {
-  return state_->mass.inertia / state_->mass.mass;
+  return state_->now->mass.inertia / state_->now->mass.mass;
 }
 const ContactSettings& HapticLoop::contact() const {
-  return state_->settings;
+  return state_->now->settings;
 }
 
 }  // namespace tegotae

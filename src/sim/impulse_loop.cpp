@@ -17,7 +17,6 @@ constexpr double kLongestTick = 0.02;
 // only: those of opposite sides may not recover at once.
 constexpr int kMostImpulses = 100, kRecovering = 30;
 // Pieces of a tick; each goes to the next collision.
-constexpr std::size_t kMostPieces = 1024;
 // New limits looked for on one piece of the way before it is shortened.
 constexpr int kMostSearches = 6;
 constexpr int kMostHalvings = 4;
@@ -46,19 +45,26 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
   X_ = at_.X;
   last_Y_ = SceneParts(scene).held->pose;
   blocking_.reserve(kMostBlocking);
+  near_.reserve(at_.spheres.size());
 }
 
-void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
+bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) {
+  if (!at_.is_way_free(X_, last.proxy.X, mass_.center, deadline_ns, near_, blocking_)) return false;
+  X_ = last.proxy.X;
+  V_ = last.proxy.velocity;
+  last_Y_ = Y;
+  tracked_ = false;
+  return true;
+}
+
+void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   report.pieces.clear();
-  report.pieces.reserve(kMostPieces);  // in the first tick
   report.resolves = report.iterations = 0;
   report.status = ResolveStatus::not_needed;
   report.cut = false;
   report.candidate_parts = 0;
   collided_ = false;
-  deadline_ns_ = std::isfinite(settings_.tick_budget)
-                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
-                     : kNoDeadline;
+  deadline_ns_ = deadline_ns;
   if (at_.look_at_start(X_, blocking_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
   const int n = std::max(1, static_cast<int>(std::ceil(time / settings_.impulse.substep - 1e-9)));

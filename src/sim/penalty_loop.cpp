@@ -118,17 +118,20 @@ Vec6 PenaltyLoop::balance(const Vec6& error, const Vec6& made, double dt) const 
   return d;
 }
 
-void PenaltyLoop::step(const Pose& Y, double dt, TickReport& report) {
+bool PenaltyLoop::take_over(const TickReport& last, const Pose&, std::int64_t) {
+  move(displacement(X_, last.proxy.X, center_));
+  X_ = last.proxy.X;
+  return true;
+}
+
+void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
   report.pieces.clear();
   report.resolves = report.iterations = report.limits = 0;
   report.status = ResolveStatus::not_needed;
   report.cut = report.overflow = false;
-  const std::int64_t deadline = std::isfinite(settings_.tick_budget)
-                                    ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
-                                    : kNoDeadline;
   const double wanted = size(displacement(X_, Y, center_)), most = kStepShare * radius_;
-  if (check_) start_.look(X_, *check_, deadline, blocking_);
+  if (check_) start_.look(X_, *check_, deadline_ns, blocking_);
   report.suspended = start_.suspended();
   query(wanted);
   if (near_.empty()) {
@@ -150,7 +153,7 @@ void PenaltyLoop::step(const Pose& Y, double dt, TickReport& report) {
     report.limits = std::max(report.limits, static_cast<int>(springs_.size()));
     if (!springs_.empty()) report.status = ResolveStatus::solved;
     move(d);
-    report.cut = past(deadline);
+    report.cut = past(deadline_ns);
     if (length <= most || report.cut) break;
   }
   collect(most, report);

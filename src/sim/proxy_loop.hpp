@@ -9,12 +9,19 @@
 
 namespace tegotae {
 
+/// Pieces that a report has room for; no loop makes more in a tick.
+inline constexpr std::size_t kMostPieces = 1024;
+
 /// What turns the pen's pose into the held part's, tick by tick: one implementation a family of resolvers.
 class ProxyLoop {
  public:
   virtual ~ProxyLoop() = default;
-  /// See HapticLoop::step; `Y` is finite and its quaternion of unit length.
-  virtual void step(const Pose& Y, double dt, TickReport& report) = 0;
+  /// See HapticLoop::step; `Y` is finite and its quaternion of unit length. What is not done at `deadline_ns` of
+  /// monotonic_ns() is left.
+  virtual void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) = 0;
+  /// Goes on from a loop over another scene with the same held part, whose last tick was `last`, for the pen at `Y`. False,
+  /// and nothing happens, when the way there from this loop's own pose is not known to be free by `deadline_ns`.
+  virtual bool take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) = 0;
   virtual const Pose& pose() const = 0;
   /// See HapticLoop::limits.
   virtual const std::vector<Contact>& limits() const = 0;

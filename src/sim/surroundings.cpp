@@ -83,6 +83,16 @@ void Surroundings::query(const Pose& pose, const Vec3& center, double distance,
   start.apply(near);
 }
 
+bool Surroundings::is_way_free(const Pose& from, const Pose& to, const Vec3& center, std::int64_t deadline_ns,
+                               std::vector<std::uint32_t>& near, std::vector<FacePair>& blocking) const noexcept {
+  const Displacement d = displacement(from, to, center);
+  query(from, center, d.dp.norm() + radius * d.dr.norm() + kGapFloor, near);
+  if (near.empty()) return true;
+  check->begin(near, deadline_ns);
+  blocking.clear();
+  return check->check(from, d, kGapFloor, blocking) == MotionAnswer::free;
+}
+
 bool Surroundings::look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept {
   const std::int64_t deadline = std::isfinite(look_time_)
                                     ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_)

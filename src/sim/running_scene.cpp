@@ -1,0 +1,81 @@
+#include "sim/running_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "broadphase/bounding_spheres.hpp"
+#include "sim/contact_loop.hpp"
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/report.hpp"
+
+namespace tegotae {
+namespace {
+
+// What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down
+// to the lower one by itself where a fit has no more room.
+constexpr double kLMinShare = 8e-4, kLeastLMin = 4e-6, kMostLMin = 2e-5;
+// Back-off in units of l_min.
+constexpr double kDefaultL0 = 10;
+
+ContactSettings completed(ContactSettings s, double radius) {
+  const auto check = [](const char* name, double value) {
+    if (!(std::isfinite(value) && value > 0))
+      throw Error(std::string("contact.") + name + " must be a positive number, not " + std::to_string(value));
+  };
+  const auto check_not_negative = [](const char* name, double value) {
+    if (!(std::isfinite(value) && value >= 0))
+      throw Error(std::string("contact.") + name + " must not be negative, not " + std::to_string(value));
+  };
+  if (std::isnan(s.l_min)) s.l_min = std::clamp(kLMinShare * radius, kLeastLMin, kMostLMin);
+  if (std::isnan(s.l_0)) s.l_0 = kDefaultL0 * s.l_min;
+  check("l_min", s.l_min);
+  check("l_0", s.l_0);
+  check("density", s.density);
+  check("impulse.substep", s.impulse.substep);
+  check("penalty.stiffness", s.penalty.stiffness);
+  if (!(s.impulse.restitution >= 0 && s.impulse.restitution <= 1))
+    throw Error("contact.impulse.restitution must be from 0 to 1, not " + std::to_string(s.impulse.restitution));
+  check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
+  check_not_negative("penalty.damping", s.penalty.damping);
+  if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
+  check_not_negative("touch_tolerance", s.touch_tolerance);
+  if (s.initial_overlap != "refuse" && s.initial_overlap != "ignore")
+    throw Error("unknown initial_overlap \"" + s.initial_overlap + "\"; known are refuse, ignore");
+  const auto& names = narrowphase_names();
+  if (std::find(names.begin(), names.end(), s.narrowphase) == names.end())
+    throw Error("unknown narrowphase \"" + s.narrowphase + "\"; known are patch, fcl");
+  return s;
+}
+
+const Part& held_part(const Scene& scene) {
+  const Part* held = nullptr;
+  for (const Part& p : scene.parts) {
+    if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
+    if (!p.held) continue;
+    if (held) throw Error("parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be");
+    held = &p;
+  }
+  if (!held) throw Error("no part is held; exactly one must be");
+  return *held;
+}
+
+}  // namespace
+
+ContactSettings::ContactSettings()
+    : l_min(std::numeric_limits<double>::quiet_NaN()), l_0(std::numeric_limits<double>::quiet_NaN()) {}
+
+RunningScene::RunningScene(const Scene& scene)
+    : held(held_part(scene).name),
+      settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
+      mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
+      loop(make_proxy_loop(scene, settings, mass)) {}
+
+void RunningScene::warm_up() {
+  TickReport tick;
+  loop->step(loop->pose(), 1e-3, kNoDeadline, tick);
+  loop->take_over(tick, loop->pose(), kNoDeadline);
+}
+
+}  // namespace tegotae
