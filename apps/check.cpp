@@ -8,6 +8,7 @@
 #include <map>
 
 #include "run_options.hpp"
+#include "start_text.hpp"
 #include "status_line.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -55,8 +56,10 @@ void check_scene(const std::string& path, const MeshLoader& load) {
   std::fflush(stdout);
   try {
     const HapticLoop loop(file.scene);
-    std::printf("start: free; l_min %.3g um, l_0 %.3g um, resolver %s\n", 1e6 * loop.contact().l_min,
-                1e6 * loop.contact().l_0, loop.contact().resolver.c_str());
+    const StartReport& start = loop.start();
+    std::printf("start: %s; l_min %.3g um, l_0 %.3g um, resolver %s\n%s",
+                start.pairs.empty() ? "free" : "touching or overlapping other parts", 1e6 * loop.contact().l_min,
+                1e6 * loop.contact().l_0, loop.contact().resolver.c_str(), start_text(start, file.scene).c_str());
   } catch (const Error& e) {
     throw Error(path + ": " + e.what());
   }

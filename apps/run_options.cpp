@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "progress_line.hpp"
+#include "start_text.hpp"
 #include "summary.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
@@ -99,6 +100,10 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
   settings.stop = &catch_interrupts();
+  settings.on_start = [&](const StartReport& start) {
+    const std::string text = start_text(start, file.scene);
+    if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
+  };
 
   RunSummary summary;
   {
@@ -112,7 +117,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   if (options.json)
     std::cout << json_line(summary, file) << std::endl;
   else
-    std::cout << summary_text(summary, options, goal, file.scene.contact.resolver, interrupted.load()) << std::flush;
+    std::cout << summary_text(summary, options, file, goal, interrupted.load()) << std::flush;
   // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
   // whenever it ends.
   const bool done = summary.completed || options.view || !options.device.empty() ||

@@ -2,6 +2,7 @@
 
 #include "format.hpp"
 #include "latency_json.hpp"
+#include "start_text.hpp"
 
 namespace tegotae::apps {
 
@@ -37,6 +38,7 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["contacts_max"] = s.contacts_max;
   j["penetrating"] = s.penetrating;
   j["deepest_m"] = s.deepest_m;
+  j["start"] = start_json(s.start, file.scene);
   j["tick_us"] = to_json(s.tick_us);
   j["servo"] = {{"rate_hz", s.servo.rate_hz},
                 {"late_us", to_json(s.servo.late_us)},
@@ -49,8 +51,8 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   return j.dump();
 }
 
-std::string summary_text(const RunSummary& s, const RunOptions& options, const std::string& goal,
-                         const std::string& resolver, bool interrupted) {
+std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file,
+                         const std::string& goal, bool interrupted) {
   const char* verdict = s.completed               ? "done"
                         : !options.device.empty() ? "ended"
                         : interrupted             ? "interrupted"
@@ -61,7 +63,8 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const s
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);
   text += format("  %-12s %lld of %lld ticks\n", "intersecting", static_cast<long long>(s.penetrating),
                  static_cast<long long>(s.ticks));
-  if (resolver == "penalty")
+  text += start_text(s.start, file.scene);
+  if (file.scene.contact.resolver == "penalty")
     text += format("  %-12s interpenetration is allowed; deepest vertex %.1f um\n", "penalty:", 1e6 * s.deepest_m);
   text += format("  %-12s %.2f N, %.0f mN m\n", "at most", s.force_max_n, 1e3 * s.torque_max_nm);
   text += row("tick", s.tick_us);

@@ -50,10 +50,16 @@ struct LiveView::Run {
       : maker(file.scene),
         held(held_number(file.scene)),
         parts(file.scene.parts.size()),
-        bundle(std::move(bundle_in)) {}
+        suspended(std::make_unique<std::atomic<bool>[]>(parts)),
+        bundle(std::move(bundle_in)) {
+    for (const Part& part : file.scene.parts) names.push_back(part.name);
+  }
   FrameMaker maker;
   HandGuide guide;
   std::size_t held, parts;
+  std::vector<std::string> names;                  // of the parts
+  std::unique_ptr<std::atomic<bool>[]> suspended;  // the held part is not kept out of it
+  int suspended_count = 0;                         // of the contact loop's thread
   std::shared_ptr<const std::string> bundle;
 };
 
@@ -123,7 +129,17 @@ void LiveView::before_tick(double t) {
   paced_t_ = t;
 }
 
+void LiveView::started(const StartReport& start) noexcept {
+  looped_->suspended_count = 0;
+  for (const StartPair& pair : start.pairs) {
+    const bool suspended = pair.state == PairState::suspended;
+    looped_->suspended[pair.part] = suspended;
+    looped_->suspended_count += suspended ? 1 : 0;
+  }
+}
+
 void LiveView::after_tick(const TickView& tick) noexcept {
+  if (tick.loop.report().suspended != looped_->suspended_count) started(tick.loop.start());
   looped_->maker.fill(tick, frame_);
   ring_.push(frame_);
 }
@@ -136,7 +152,11 @@ std::shared_ptr<const std::string> LiveView::scene() const {
 std::string LiveView::status() const {
   const double speed = speed_;
   const std::lock_guard<std::mutex> lock(mutex_);
+  json suspended = json::array();
+  for (std::size_t i = 0; i < run_->parts; ++i)
+    if (run_->suspended[i]) suspended.push_back(run_->names[i]);
   return json{{"generation", generation_},
+              {"suspended", suspended},
               {"paused", paused_.load()},
               {"speed", std::isfinite(speed) ? json(speed) : json(nullptr)}}
       .dump();

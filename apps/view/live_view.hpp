@@ -25,6 +25,8 @@ class LiveView final : public RunObserver, public ViewSource {
   void show(const SceneFile& file);
   /// What leads the hand in the session now.
   const HandGuide& guide() const;
+  /// How the held part starts in it; which pairs are suspended goes to the page.
+  void started(const StartReport& start) noexcept;
   /// Whether the page asked for another session; then `held` is the part to hold (its number in the scene) and `keep`
   /// whether the parts shall stay where they are. Asking takes the request away.
   bool take_request(std::size_t& held, bool& keep);

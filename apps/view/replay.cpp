@@ -140,6 +140,7 @@ std::string replay_bundle(const std::string& path, SceneFile file) {
   nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
   if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
+  if (!recording.info.suspended.empty()) notes.push_back("Suspended at the start: " + recording.info.suspended);
   bundle.about["notes"] = notes;
   return bundle.bytes();
 }

@@ -59,7 +59,9 @@ class PairLook {
     clash.gap = 0;
     clash.depth = 0;
     clash.triangle_pairs = pairs.size();
-    clash.place_W = pairs.empty() ? Vec3::Zero() : corner_W(a, pairs.front().first);
+    if (!pairs.empty())
+      clash.place_W = b.part->pose * closest_points(triangle(a, pairs.front().first, X_BA),
+                                                    triangle(b, pairs.front().second, Pose())).b;
     if (!closed(a) && !closed(b)) {
       clash.depth = std::numeric_limits<double>::quiet_NaN();
       clash.kind = ClashKind::overlap;
@@ -91,10 +93,6 @@ class PairLook {
     return s.data->closed;
   }
   static double signed_distance(const Side& s, const Vec3& p) { return prepared(s).at(p, 0).distance; }
-
-  static Vec3 corner_W(const Side& s, std::uint32_t face) {
-    return s.part->pose * s.part->mesh->vertices[s.part->mesh->triangles[face][0]];
-  }
 
   static void take(const Deepest& found, const Side& outer, Clash& clash) {
     if (found.depth <= clash.depth) return;

@@ -2,8 +2,8 @@
 #include "catch.hpp"
 #include "feature/signed_distance.hpp"
 #include "models/shapes.hpp"
-#include "narrowphase/containment.hpp"
 #include "sim/triangle_oracle.hpp"
+#include "winding_number.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -2,8 +2,8 @@
 
 #include "bodies.hpp"
 #include "catch.hpp"
-#include "narrowphase/containment.hpp"
 #include "narrowphase/fcl_narrow_phase.hpp"
+#include "winding_number.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -2,9 +2,9 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "models/shapes.hpp"
-#include "narrowphase/containment.hpp"
 #include "sim/triangle_oracle.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
+#include "winding_number.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -56,3 +56,34 @@ TEST_CASE("a warmed-up tick does not allocate", "[allocation]") {
   CHECK(allocations == 0);
   REQUIRE(touching > kTicks / 3);
 }
+
+TEST_CASE("a tick does not allocate while pairs of the start come free", "[allocation]") {
+  const std::string resolver = GENERATE("lp", "qp", "impulse", "penalty");
+  CAPTURE(resolver);
+  Scene scene;
+  scene.contact.resolver = resolver;
+  scene.contact.tick_budget = INFINITY;
+  scene.contact.initial_overlap = "ignore";
+  // Pressed between two walls, over a floor, and drawn into a post.
+  for (const double side : {-1.0, 1.0})
+    scene.parts.push_back(
+        {side > 0 ? "right" : "left", shared(box({0.02, 0.04, 0.02})), {Quat::Identity(), {side * 0.014999, 0, 0.01}}});
+  scene.parts.push_back({"floor", shared(box({0.1, 0.1, 0.02})), {Quat::Identity(), {0, 0, -0.01}}});
+  scene.parts.push_back({"post", shared(box({0.004, 0.004, 0.004})), {Quat::Identity(), {0, 0.006, 0.005}}});
+  scene.parts.push_back({"block", shared(box({0.01, 0.01, 0.01})), {Quat::Identity(), {0, 0, 0.005}}, true});
+  HapticLoop loop(scene);
+  CHECK(loop.report().suspended == 1);
+  CHECK(loop.report().relieved == (resolver == "penalty" ? 0 : 2));
+  const auto pen_at = [](int tick) { return Pose{Quat::Identity(), {0, 0, 0.005 + 0.015 * (1 - std::cos(0.02 * tick))}}; };
+  for (int tick = 0; tick < 10; ++tick) loop.step(pen_at(0), 1e-3);
+  std::uint64_t allocations = 0;
+  for (int tick = 0; tick < 300; ++tick) {
+    const Pose Y = pen_at(tick);
+    const AllocGuard guard;
+    loop.step(Y, 1e-3);
+    allocations += guard.count();
+  }
+  CHECK(allocations == 0);
+  CHECK(loop.report().suspended == 0);
+  CHECK(loop.report().relieved == 0);
+}

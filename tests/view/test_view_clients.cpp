@@ -48,6 +48,7 @@ class Watcher {
         if (buffer_.size() < 8 + head[1]) break;
         float row[2];
         std::memcpy(row, buffer_.data() + 8, 8);
+        if (head[0] == 2) status_ = buffer_.substr(8, head[1]);
         buffer_.erase(0, 8 + head[1]);
         if (head[0] == 1) return static_cast<long>(row[0]) * (1 << 20) + static_cast<long>(row[1]);
       }
@@ -57,9 +58,12 @@ class Watcher {
     }
   }
 
+  // The newest status that came along with the frames so far; empty before the first.
+  const std::string& status() const { return status_; }
+
  private:
   std::unique_ptr<Connection> connection_;
-  std::string buffer_;
+  std::string buffer_, status_;
 };
 
 // The run is alive: frames come, and their ticks go up.
@@ -269,5 +273,26 @@ TEST_CASE("fifty at once") {
   for (std::thread& t : crowd) t.join();
   CHECK(watcher.next() > before);
   check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("the page is told which parts are suspended, until they have come free") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  // Drawn into each other by some millimeters, then pulled apart.
+  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0.002,0,0,1,0,0,0\n2,0.002,0,0,1,0,0,0\n3,0.002,0,0.02,1,0,0,0\n");
+  std::string scene = read_text(folder / "scene.toml");
+  scene.replace(scene.find("[0, 0, 0.02]"), 12, "[0.002, 0, 0]");
+  folder.write("scene.toml", scene + "[contact]\ninitial_overlap = \"ignore\"\n");
+  Served s({"tegotae", "run", "--view", "--json", folder / "scene.toml"});
+  Watcher watcher(s);
+  const auto suspended = [&] {
+    while (watcher.status().empty() && watcher.next() >= 0) {
+    }
+    return nlohmann::json::parse(watcher.status()).at("suspended");
+  };
+  CHECK(suspended() == nlohmann::json::array({"block"}));
+  for (int i = 0; i < 1000 && !suspended().empty(); ++i) watcher.next();
+  CHECK(suspended().empty());
   check_end(s);
 }

@@ -77,6 +77,7 @@ function showStatus(next) {
   if (next.message !== undefined) showMessage(next.message);
   Object.assign(status, next);
   if (next.paused !== undefined) $("play").textContent = next.paused ? "Play" : "Pause";
+  if (next.suspended !== undefined) $("suspended").textContent = next.suspended.length ? `suspended: ${next.suspended.join(", ")}` : "";
   if (next.speed !== undefined) $("speed").value = String(next.speed);
   if (next.generation !== undefined && about && next.generation !== about.generation) loadAgain(next.generation);
 }

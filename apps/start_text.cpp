@@ -1,0 +1,67 @@
+#include "start_text.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "format.hpp"
+
+namespace tegotae::apps {
+
+namespace {
+
+const char* state_name(PairState state) {
+  switch (state) {
+    case PairState::relieved:
+      return "relieved";
+    case PairState::suspended:
+      return "suspended";
+    default:
+      return "active";
+  }
+}
+
+std::string length(double m) {
+  return m < 1e-3 ? format("%.2f um", 1e6 * m) : format("%.3f mm", 1e3 * m);
+}
+
+/// How the pair stood, and what that means now.
+std::string line(const StartPair& pair, const Scene& scene) {
+  const Clash& c = pair.clash;
+  const bool overlap = c.kind == ClashKind::overlap;
+  std::string text = format("  %-12s ", overlap ? "overlapping" : "touching") + scene.parts[pair.part].name;
+  text += std::isnan(c.depth) ? ", open surfaces cross"
+          : c.gap > 0         ? ", gap " + length(c.gap)
+                              : ", depth " + length(c.depth);
+  if (pair.state == PairState::suspended) return text + "; SUSPENDED: nothing keeps the two apart\n";
+  if (pair.state == PairState::relieved) return text + "; in contact with it taken " + length(pair.relief) + " smaller\n";
+  if (pair.freed > 0) return text + "; came free\n";
+  return text + "\n";
+}
+
+}  // namespace
+
+nlohmann::ordered_json start_json(const StartReport& start, const Scene& scene) {
+  nlohmann::ordered_json pairs = nlohmann::ordered_json::array(), suspended = nlohmann::ordered_json::array();
+  for (const StartPair& pair : start.pairs) {
+    const Clash& c = pair.clash;
+    const std::string& name = scene.parts[pair.part].name;
+    if (pair.state == PairState::suspended) suspended.push_back(name);
+    pairs.push_back({{"part", name},
+                     {"start", c.kind == ClashKind::overlap ? "overlapping" : "touching"},
+                     {"gap_m", c.gap},
+                     {"depth_m", c.depth},
+                     {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}},
+                     {"relief_m", pair.relief},
+                     {"state", state_name(pair.state)}});
+  }
+  return {{"shift_m", start.shift}, {"pairs", pairs}, {"suspended", suspended}};
+}
+
+std::string start_text(const StartReport& start, const Scene& scene) {
+  std::string text;
+  for (const StartPair& pair : start.pairs) text += line(pair, scene);
+  if (start.shift > 0) text += format("  %-12s moved by ", "start") + length(start.shift) + " off what it touches\n";
+  return text;
+}
+
+}  // namespace tegotae::apps

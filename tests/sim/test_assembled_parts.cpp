@@ -1,0 +1,167 @@
+// Real parts that start assembled: taken out of their seats, and put back.
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "catch.hpp"
+#include "fcl_oracle.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kTick = 1e-3;
+
+bool skipped(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    if (fs::exists(fs::path(TEGOTAE_PARTS_DIR) / file)) continue;
+    std::cout << "SKIPPED: no part file " << file << std::endl;
+    return true;
+  }
+  return false;
+}
+
+/// All parts where their file frames put them, the one of `files[0]` held.
+Scene assembled(const std::vector<std::string>& files, double unit) {
+  Scene scene;
+  scene.contact.tick_budget = INFINITY;
+  for (const std::string& file : files) {
+    auto mesh = std::make_shared<TriangleMesh>(load_mesh((fs::path(TEGOTAE_PARTS_DIR) / file).string(), unit));
+    scene.parts.push_back({file, mesh, Pose{}, file == files.front()});
+  }
+  return scene;
+}
+
+struct Waypoint {
+  double t;
+  Vec3 p;
+  Vec3 turn = Vec3::Zero();  ///< rotation vector, rad
+};
+
+struct Outcome {
+  Pose X;
+  int intersecting = 0;  ///< of the poses that FCL was asked about
+  int touching = 0;      ///< ticks
+  double highest = -INFINITY;
+};
+
+/// Leads the held part from waypoint to waypoint; FCL looks at every third pose.
+Outcome lead(const Scene& scene, HapticLoop& loop, const std::vector<Waypoint>& way) {
+  const FclOracle oracle(scene);
+  Outcome out;
+  int n = 0;
+  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+    const int ticks = static_cast<int>(std::lround((way[k + 1].t - way[k].t) / kTick));
+    for (int i = 1; i <= ticks; ++i) {
+      const double s = static_cast<double>(i) / ticks;
+      const Vec3 turn = (1 - s) * way[k].turn + s * way[k + 1].turn;
+      const Vec3 c = loop.center();
+      const Quat q = rotation(turn);
+      // Turned about the part's center.
+      const TickReport& r = loop.step({q, (1 - s) * way[k].p + s * way[k + 1].p + c - q * c}, kTick);
+      out.touching += r.proxy.touching ? 1 : 0;
+      for (const Pose& X : r.pieces) {
+        if (n++ % 3 == 0 && !oracle.intersecting(X).empty()) ++out.intersecting;
+        out.highest = std::max(out.highest, X.p.z());
+      }
+    }
+  }
+  out.X = loop.report().proxy.X;
+  return out;
+}
+
+const std::string kGears = "industreal/industreal_gear_";
+
+}  // namespace
+
+TEST_CASE("each gear comes off its coplanar seat and goes back in mesh with its neighbors", "[real_parts]") {
+  const std::string held = GENERATE("large", "medium", "small");
+  CAPTURE(held);
+  std::vector<std::string> files = {kGears + held + ".obj", kGears + "base.obj"};
+  for (const std::string other : {"large", "medium", "small"})
+    if (other != held) files.push_back(kGears + other + ".obj");
+  if (skipped(files)) return;
+  const Scene scene = assembled(files, 1.0);
+  HapticLoop loop(scene);
+  // The seat on the base, exactly in line, and nothing else: the teeth are 0.18 mm apart.
+  const StartReport& start = loop.start();
+  REQUIRE(start.pairs.size() == 1);
+  CHECK(start.pairs[0].part == 1);
+  CHECK(start.pairs[0].clash.kind == ClashKind::touch);
+  CHECK(start.pairs[0].clash.depth < 1e-9);
+  CHECK(start.pairs[0].state == PairState::active);
+  CHECK(start.shift < 3e-6);
+  CHECK(std::abs(start.pairs[0].clash.place_W.z() - 5e-3) < 1e-6);
+  // Pressed down, off by 26 mm (the shaft ends there), turned a little and back, down again and pressed.
+  const Vec3 up(0, 0, 0.026), down(0, 0, -5e-4), none = Vec3::Zero(), turned(0.03, 0, 0.2);
+  const Outcome out = lead(scene, loop,
+                           {{0, none}, {0.1, down}, {0.6, up}, {0.8, up, turned}, {1.0, up}, {1.6, down}, {1.8, down}});
+  CHECK(out.intersecting == 0);
+  CHECK(out.highest > 0.0259);
+  CHECK(out.touching > 200);
+  CHECK(out.X.p.z() > 0);
+  CHECK(out.X.p.z() < loop.contact().l_min);
+  CHECK(out.X.p.norm() < 5e-4);
+}
+
+TEST_CASE("the rectangular peg comes out of its tray and goes back to the bottom", "[real_parts]") {
+  const std::vector<std::string> files = {"industreal/industreal_rectangular_peg_8mm.obj",
+                                          "industreal/industreal_tray_insert_rectangular_peg_8mm.obj"};
+  if (skipped(files)) return;
+  const std::string resolver = GENERATE("qp", "lp");
+  Scene scene = assembled(files, 1.0);
+  scene.contact.resolver = resolver;
+  HapticLoop loop(scene);
+  REQUIRE(loop.start().pairs.size() == 1);
+  CHECK(loop.start().pairs[0].clash.kind == ClashKind::touch);
+  CHECK(loop.report().relieved == 0);
+  const Vec3 up(0, 0, 0.03), down(0, 0, -5e-4), aside(2e-3, 0, -5e-4), none = Vec3::Zero();
+  const Outcome out =
+      lead(scene, loop, {{0, none}, {0.1, down}, {0.3, aside}, {0.4, down}, {0.9, up}, {1.4, down}, {1.6, down}});
+  CHECK(out.intersecting == 0);
+  CHECK(out.highest > 0.0299);
+  CHECK(out.touching > 300);
+  CHECK(out.X.p.z() > 0);
+  CHECK(out.X.p.z() < loop.contact().l_min);
+}
+
+TEST_CASE("the piston runs in its cylinder", "[real_parts]") {
+  const std::string folder = "rigid-ipc/092-piston/";
+  const std::vector<std::string> files = {folder + "head.stl", folder + "cylinder.stl"};
+  if (skipped(files)) return;
+  const Scene scene = assembled(files, 1e-3);
+  HapticLoop loop(scene);
+  CHECK(loop.start().pairs.empty());  // 3 mm apart
+  // Along the cylinder's axis, y, up and down, pressed to the wall on the way.
+  const Vec3 none = Vec3::Zero(), high(0, 0.15, 0), low(0, -0.15, 0), pressed(0.03, 0, 0.03);
+  const Outcome out = lead(scene, loop,
+                           {{0, none}, {0.5, high}, {0.7, high + pressed}, {1.5, low + pressed}, {2, low - pressed}, {2.5, none}});
+  CHECK(out.intersecting == 0);
+  CHECK(out.touching > 500);
+  CHECK(out.X.p.norm() < 1e-4);
+}
+
+TEST_CASE("a nut drawn into its bolt is suspended until it is off, then kept out", "[real_parts]") {
+  const std::vector<std::string> files = {"factory/factory_nut_m16_loose_subdiv_3x.obj",
+                                          "factory/factory_bolt_m16_loose.obj"};
+  if (skipped(files)) return;
+  Scene scene = assembled(files, 1.0);
+  CHECK_THROWS_WITH(HapticLoop(scene), Catch::Matchers::Contains("intersect at the start"));
+  scene.contact.initial_overlap = "ignore";
+  HapticLoop loop(scene);
+  REQUIRE(loop.report().suspended == 1);
+  const Vec3 none = Vec3::Zero(), up(0, 0, 0.06), back(0, 0, 0.02);
+  // Off, along the axis and through the thread.
+  Outcome out = lead(scene, loop, {{0, none}, {0.6, up}});
+  CHECK(out.highest > 0.0599);
+  REQUIRE(loop.report().suspended == 0);
+  // The thread now stops what went through it before.
+  out = lead(scene, loop, {{0, up}, {0.6, back}, {0.7, back}});
+  CHECK(out.intersecting == 0);
+  CHECK(out.touching > 50);
+  CHECK(out.X.p.z() > 0.021);
+}
