@@ -81,8 +81,9 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   near_.reserve(at_.spheres.size());
 }
 
-bool ContactLoop::take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) {
-  if (!at_.is_way_free(X_, last.proxy.X, center_, deadline_ns, near_, blocking_)) return false;
+bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
+                            std::int64_t deadline_ns) {
+  if (!at_.is_way_free(X_, last.proxy.X, center_, fresh, deadline_ns, near_, blocking_)) return false;
   X_ = last.proxy.X;
   last_Y_ = Y;
   tracked_ = false;

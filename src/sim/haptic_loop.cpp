@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 
 #include "sim/handover.hpp"
@@ -26,11 +27,13 @@ struct HapticLoop::State {
   Handover<RunningScene> next;
   Pose Y;
   TickReport report;
-  std::mutex changing;          // of those who change; the loop's thread never waits for it
-  std::uint64_t last_change = 0;  // guarded by `changing`
   std::atomic<std::uint64_t> change_in_force{0};
+  std::mutex changing;  // of those who change; the loop's thread never waits for it, and does not touch the next two
+  std::uint64_t last_change = 0;
+  std::map<std::uint64_t, std::shared_ptr<const std::vector<RunningScene::Obstacle>>> obstacles;  // by change
 
   explicit State(const Scene& scene) : now(std::make_unique<RunningScene>(scene)), Y(now->loop->pose()) {
+    obstacles[0] = now->obstacles;
     report.pieces.reserve(kMostPieces);
     begin();
   }
@@ -55,7 +58,10 @@ struct HapticLoop::State {
     RunningScene* changed = next.take();
     if (changed == nullptr) return false;
     const bool same = changed->held == now->held;
-    if (same && !changed->loop->take_over(report, Y, deadline(now_ns, kChangeShare * now->settings.tick_budget))) {
+    // What was there before the held part is free of, as long as every pair is active.
+    const bool known = changed->fresh_since == now->number && report.suspended + report.relieved == 0;
+    const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
+    if (same && !changed->loop->take_over(report, Y, known ? &changed->fresh : nullptr, until)) {
       next.put_back(changed);
       return false;
     }
@@ -81,11 +87,16 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
 }
 
 std::uint64_t HapticLoop::change(const Scene& next) {
+  State& s = *state_;
+  const std::lock_guard<std::mutex> lock(s.changing);
   auto changed = std::make_unique<RunningScene>(next);
   changed->warm_up();
-  const std::lock_guard<std::mutex> lock(state_->changing);
-  const std::uint64_t number = changed->number = ++state_->last_change;
-  state_->next.offer(std::move(changed));
+  const std::uint64_t in_force = change_in_force();
+  s.obstacles.erase(s.obstacles.begin(), s.obstacles.find(in_force));
+  changed->compare(*s.obstacles.at(in_force), in_force);
+  const std::uint64_t number = changed->number = ++s.last_change;
+  s.obstacles[number] = changed->obstacles;
+  s.next.offer(std::move(changed));
   return number;
 }
 

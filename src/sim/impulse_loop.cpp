@@ -48,8 +48,9 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
   near_.reserve(at_.spheres.size());
 }
 
-bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) {
-  if (!at_.is_way_free(X_, last.proxy.X, mass_.center, deadline_ns, near_, blocking_)) return false;
+bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
+                            std::int64_t deadline_ns) {
+  if (!at_.is_way_free(X_, last.proxy.X, mass_.center, fresh, deadline_ns, near_, blocking_)) return false;
   X_ = last.proxy.X;
   V_ = last.proxy.velocity;
   last_Y_ = Y;

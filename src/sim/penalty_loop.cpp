@@ -118,7 +118,7 @@ Vec6 PenaltyLoop::balance(const Vec6& error, const Vec6& made, double dt) const 
   return d;
 }
 
-bool PenaltyLoop::take_over(const TickReport& last, const Pose&, std::int64_t) {
+bool PenaltyLoop::take_over(const TickReport& last, const Pose&, const std::vector<bool>*, std::int64_t) {
   move(displacement(X_, last.proxy.X, center_));
   X_ = last.proxy.X;
   return true;

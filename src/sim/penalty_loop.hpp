@@ -22,7 +22,8 @@ class PenaltyLoop final : public ProxyLoop {
   PenaltyLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
 
   void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) override;
-  bool take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) override;
+  bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
+                 std::int64_t deadline_ns) override;
   const Pose& pose() const override { return X_; }
   const std::vector<Contact>& limits() const override { return limits_; }
   const StartReport& start() const override { return start_.report(); }

@@ -19,9 +19,11 @@ class ProxyLoop {
   /// See HapticLoop::step; `Y` is finite and its quaternion of unit length. What is not done at `deadline_ns` of
   /// monotonic_ns() is left.
   virtual void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) = 0;
-  /// Goes on from a loop over another scene with the same held part, whose last tick was `last`, for the pen at `Y`. False,
-  /// and nothing happens, when the way there from this loop's own pose is not known to be free by `deadline_ns`.
-  virtual bool take_over(const TickReport& last, const Pose& Y, std::int64_t deadline_ns) = 0;
+  /// Goes on from a loop over another scene with the same held part, whose last tick was `last`, for the pen at `Y`.
+  /// False, and nothing happens, when the way there from this loop's own pose is not known by `deadline_ns` to be free of
+  /// the parts that are `fresh` (by number of the fixed parts; null: of all).
+  virtual bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
+                         std::int64_t deadline_ns) = 0;
   virtual const Pose& pose() const = 0;
   /// See HapticLoop::limits.
   virtual const std::vector<Contact>& limits() const = 0;

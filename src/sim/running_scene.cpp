@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <tuple>
 
 #include "broadphase/bounding_spheres.hpp"
 #include "sim/contact_loop.hpp"
@@ -70,12 +72,32 @@ RunningScene::RunningScene(const Scene& scene)
     : held(held_part(scene).name),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
-      loop(make_proxy_loop(scene, settings, mass)) {}
+      loop(make_proxy_loop(scene, settings, mass)) {
+  std::vector<Obstacle> list;
+  for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});
+  obstacles = std::make_shared<const std::vector<Obstacle>>(std::move(list));
+}
+
+void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_number) {
+  // The same mesh may stand in many places; those of one place are the same obstacle.
+  const auto before = [](const Obstacle& a, const Obstacle& b) {
+    const auto key = [](const Obstacle& o) {
+      const Vec3& p = o.pose.p;
+      const auto& q = o.pose.q.coeffs();
+      return std::make_tuple(o.mesh.get(), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    };
+    return key(a) < key(b);
+  };
+  const std::set<Obstacle, decltype(before)> known(old.begin(), old.end(), before);
+  fresh.clear();
+  for (const Obstacle& o : *obstacles) fresh.push_back(known.count(o) == 0);
+  fresh_since = old_number;
+}
 
 void RunningScene::warm_up() {
   TickReport tick;
   loop->step(loop->pose(), 1e-3, kNoDeadline, tick);
-  loop->take_over(tick, loop->pose(), kNoDeadline);
+  loop->take_over(tick, loop->pose(), nullptr, kNoDeadline);
 }
 
 }  // namespace tegotae

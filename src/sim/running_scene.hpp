@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/proxy_loop.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -12,7 +13,16 @@ namespace tegotae {
 
 /// A scene with everything that a tick in it needs.
 struct RunningScene {
+  /// What the held part must keep out of.
+  struct Obstacle {
+    std::shared_ptr<const TriangleMesh> mesh;
+    Pose pose;
+  };
+
   std::uint64_t number = 0;  ///< of the change that it came with
+  std::shared_ptr<const std::vector<Obstacle>> obstacles;  ///< the fixed parts, by number
+  std::vector<bool> fresh;  ///< of them: whether the scene of change `fresh_since` does not have it there
+  std::uint64_t fresh_since = 0;
   std::string held;          ///< name of the held part
   ContactSettings settings;  ///< nothing left open
   MassProperties mass;       ///< of the held part
@@ -21,6 +31,8 @@ struct RunningScene {
 
   /// Throws Error as HapticLoop's constructor.
   explicit RunningScene(const Scene& scene);
+  /// Sets `fresh` and `fresh_since`.
+  void compare(const std::vector<Obstacle>& old, std::uint64_t old_number);
   /// Does once what is slow or allocates the first time, where the held part is.
   void warm_up();
 };

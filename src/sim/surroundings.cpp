@@ -1,5 +1,6 @@
 #include "sim/surroundings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -83,10 +84,15 @@ void Surroundings::query(const Pose& pose, const Vec3& center, double distance,
   start.apply(near);
 }
 
-bool Surroundings::is_way_free(const Pose& from, const Pose& to, const Vec3& center, std::int64_t deadline_ns,
-                               std::vector<std::uint32_t>& near, std::vector<FacePair>& blocking) const noexcept {
+bool Surroundings::is_way_free(const Pose& from, const Pose& to, const Vec3& center, const std::vector<bool>* fresh,
+                               std::int64_t deadline_ns, std::vector<std::uint32_t>& near,
+                               std::vector<FacePair>& blocking) const noexcept {
   const Displacement d = displacement(from, to, center);
-  query(from, center, d.dp.norm() + radius * d.dr.norm() + kGapFloor, near);
+  spheres.query(from * center, radius, d.dp.norm() + radius * d.dr.norm() + kGapFloor, near);
+  if (fresh != nullptr)
+    near.erase(std::remove_if(near.begin(), near.end(), [fresh](std::uint32_t part) { return !(*fresh)[part]; }),
+               near.end());
+  start.apply(near);
   if (near.empty()) return true;
   check->begin(near, deadline_ns);
   blocking.clear();

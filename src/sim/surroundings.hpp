@@ -40,10 +40,11 @@ struct Surroundings {
   /// Looks whether one more pair that was not free at the start is so at `pose` (see StartPairs::look), in a share of the
   /// tick's budget. When it is, contacts are to be tracked anew. `blocking` is scratch.
   bool look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept;
-  /// Whether the straight way of the held part from `from` to `to` is known to be free by `deadline_ns`. `near` and
-  /// `blocking` are scratch.
-  bool is_way_free(const Pose& from, const Pose& to, const Vec3& center, std::int64_t deadline_ns,
-                   std::vector<std::uint32_t>& near, std::vector<FacePair>& blocking) const noexcept;
+  /// Whether the straight way of the held part from `from` to `to` is known by `deadline_ns` to be free of the `fresh`
+  /// parts (null: of all). `near` and `blocking` are scratch.
+  bool is_way_free(const Pose& from, const Pose& to, const Vec3& center, const std::vector<bool>* fresh,
+                   std::int64_t deadline_ns, std::vector<std::uint32_t>& near,
+                   std::vector<FacePair>& blocking) const noexcept;
 
  private:
   double look_time_;  ///< s

@@ -58,8 +58,8 @@ class HapticLoop {
   /// replaces an earlier one that is not in force yet. Nothing of the old scene's contacts is kept.
   ///
   /// `next` places the held part where it was lately (TickReport::proxy), and must be free of the others there. If it has
-  /// gone on since, the straight way from there to where it is must be free of them too: until it is, the change waits and
-  /// the old scene stays in force. A part that was not held before starts where `next` has it: the first tick with it
+  /// gone on since, the straight way from there to where it is must be free of what was added or moved: until it is, the
+  /// change waits and the old scene stays in force. A part that was not held before starts where `next` has it: the first tick with it
   /// does not follow the pen, so that the pen can be brought there first (ContactLink::home).
   ///
   /// Returns the change's number, from 1 on. Throws Error as the constructor does; nothing changes then.
