@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "lp/low_rank_matrix.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 
 /// Contact programmes from random numbers, for the benchmark and the tests of the solvers.
 namespace tegotae::programmes {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "resolve/resolver.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "sim/pose_check.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "lp/low_rank_matrix.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 #include "lp/row_workspace.hpp"
 #include "lp/solution.hpp"
 #include "lp/span_basis.hpp"

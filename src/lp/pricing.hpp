@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lp/low_rank_matrix.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 
 namespace tegotae {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lp/low_rank_matrix.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 #include "lp/pricing.hpp"
 
 namespace tegotae {

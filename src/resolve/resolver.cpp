@@ -1,4 +1,4 @@
-#include "resolve/resolver.hpp"
+#include "tegotae/resolve/resolver.hpp"
 
 #include <algorithm>
 

@@ -64,6 +64,12 @@ void ContactLink::home(const Pose& X) noexcept {
   if (++home_counter_ == 0) ++home_counter_;
 }
 
+void ContactLink::hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept {
+  center_ = center;
+  gyration_ = gyration;
+  home(X);
+}
+
 void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence,
                           std::int64_t now_ns, const ContactPlanes& planes) noexcept {
   tegotae_shm_application out{};

@@ -5,9 +5,17 @@
 #include <limits>
 
 #include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
 
 namespace tegotae {
 namespace {
+
+std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
+  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMostLimits);
+  auto own = settings.custom_resolver(kMostLimits);
+  if (!own) throw Error("contact.custom_resolver made no resolver");
+  return own;
+}
 
 // Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
 constexpr int kMostBlocking = 256;
@@ -68,7 +76,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       center_(mass.center),
       at_(scene, settings, mass),
       metric_(mass),
-      resolver_(make_resolver(settings.resolver, kMostLimits)),
+      resolver_(resolver_of(settings)),
       rows_(kMostLimits),
       bounds_(kMostLimits),
       planes_(kMostLimits) {
@@ -265,8 +273,8 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
       const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] = limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap
-                                            : std::min(keep_, gap + lost) - gap;
+      bounds_[i] =
+          limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap : std::min(keep_, gap + lost) - gap;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "resolve/metric.hpp"
-#include "resolve/resolver.hpp"
 #include "sim/contact_planes.hpp"
 #include "sim/proxy_loop.hpp"
 #include "sim/surroundings.hpp"
+#include "tegotae/resolve/resolver.hpp"
 
 namespace tegotae {
 
-/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver, free
-/// check), over a scene in which parts may touch at the start.
+/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver,
+/// free check), over a scene in which parts may touch at the start.
 class ContactLoop final : public ProxyLoop {
  public:
   ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "resolve/metric.hpp"
-#include "resolve/resolver.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {

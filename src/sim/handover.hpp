@@ -5,8 +5,8 @@
 
 namespace tegotae {
 
-/// Hands objects made in any thread to one thread that never waits, allocates or frees. The newest offer counts; what the
-/// taker is done with is freed by whoever offers next. `T` has a member `T* done_before`.
+/// Hands objects made in any thread to one thread that never waits, allocates or frees. The newest offer counts; what
+/// the taker is done with is freed by whoever offers next. `T` has a member `T* done_before`.
 template <class T>
 class Handover {
  public:

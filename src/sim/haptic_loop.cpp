@@ -1,11 +1,13 @@
 #include "tegotae/sim/haptic_loop.hpp"
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
 
+#include "device/mailbox.hpp"
 #include "sim/handover.hpp"
 #include "sim/running_scene.hpp"
 #include "tegotae/core/clock.hpp"
@@ -27,6 +29,7 @@ struct HapticLoop::State {
   Handover<RunningScene> next;
   Pose Y;
   TickReport report;
+  Mailbox<std::array<double, 7>> latest;  // p, q
   std::atomic<std::uint64_t> change_in_force{0};
   std::mutex changing;  // of those who change; the loop's thread never waits for it, and does not touch the next two
   std::uint64_t last_change = 0;
@@ -38,6 +41,11 @@ struct HapticLoop::State {
     begin();
   }
 
+  void tell() noexcept {
+    const Pose& X = report.proxy.X;
+    latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
+  }
+
   /// The report before the first tick with a held part.
   void begin() noexcept {
     std::vector<Pose> pieces = std::move(report.pieces);
@@ -46,6 +54,7 @@ struct HapticLoop::State {
     report.pieces.clear();
     report.pieces.push_back(now->loop->pose());
     report.proxy.X = now->loop->pose();
+    tell();
     report.gap = std::numeric_limits<double>::infinity();
     for (const StartPair& pair : now->loop->start().pairs) {
       report.suspended += pair.state == PairState::suspended ? 1 : 0;
@@ -83,6 +92,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (s.adopt(now_ns)) return s.report;
   s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  s.tell();
   return s.report;
 }
 
@@ -102,6 +112,14 @@ std::uint64_t HapticLoop::change(const Scene& next) {
 
 std::uint64_t HapticLoop::change_in_force() const noexcept {
   return state_->change_in_force.load(std::memory_order_acquire);
+}
+
+Pose HapticLoop::latest() const noexcept {
+  std::array<double, 7> v{};
+  // Ticks are far apart, so a read that met a write succeeds when tried again.
+  while (!state_->latest.read(v)) {
+  }
+  return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
 }
 
 const TickReport& HapticLoop::report() const {

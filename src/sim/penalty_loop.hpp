@@ -58,7 +58,7 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;
   std::vector<Contact> limits_;  ///< the springs' vertices, for whoever looks on; gaps may be negative
-  bool collected_ = false;  ///< the springs are those of X_
+  bool collected_ = false;       ///< the springs are those of X_
   Pose X_;
 };
 

@@ -20,8 +20,8 @@ class ProxyLoop {
   /// monotonic_ns() is left.
   virtual void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) = 0;
   /// Goes on from a loop over another scene with the same held part, whose last tick was `last`, for the pen at `Y`.
-  /// False, and nothing happens, when the way there from this loop's own pose is not known by `deadline_ns` to be free of
-  /// the parts that are `fresh` (by number of the fixed parts; null: of all).
+  /// False, and nothing happens, when the way there from this loop's own pose is not known by `deadline_ns` to be free
+  /// of the parts that are `fresh` (by number of the fixed parts; null: of all).
   virtual bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
                          std::int64_t deadline_ns) = 0;
   virtual const Pose& pose() const = 0;

@@ -19,7 +19,7 @@ struct RunningScene {
     Pose pose;
   };
 
-  std::uint64_t number = 0;  ///< of the change that it came with
+  std::uint64_t number = 0;                                ///< of the change that it came with
   std::shared_ptr<const std::vector<Obstacle>> obstacles;  ///< the fixed parts, by number
   std::vector<bool> fresh;  ///< of them: whether the scene of change `fresh_since` does not have it there
   std::uint64_t fresh_since = 0;

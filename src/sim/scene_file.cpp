@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "resolve/resolver.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"

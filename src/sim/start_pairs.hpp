@@ -41,10 +41,10 @@ class StartPairs {
   /// and the settings do not say to ignore it.
   StartPairs(const Scene& scene, const ContactSettings& settings);
 
-  /// For every pair that touches and is nearer than kGapFloor a copy of the fixed part whose faces lie deeper by as much
-  /// as is missing: then no motion that leaves kGapFloor to the copy brings the parts deeper into each other than they
-  /// are. The copies are numbered from `first` on, in this order. `center` of mass of the held part (file frame). A pair
-  /// that no copy frees counts as overlapping.
+  /// For every pair that touches and is nearer than kGapFloor a copy of the fixed part whose faces lie deeper by as
+  /// much as is missing: then no motion that leaves kGapFloor to the copy brings the parts deeper into each other than
+  /// they are. The copies are numbered from `first` on, in this order. `center` of mass of the held part (file frame).
+  /// A pair that no copy frees counts as overlapping.
   std::vector<Copy> relieve(const Scene& scene, const Vec3& center, std::uint32_t first);
 
   const StartReport& report() const { return report_; }
@@ -55,8 +55,8 @@ class StartPairs {
 
   /// Takes suspended parts out of a list of fixed parts, and puts copies in the place of theirs.
   void apply(std::vector<std::uint32_t>& near) const noexcept;
-  /// Asks of one waiting pair whether it is free at `X` by kGapFloor; of the next one in the next call. When it is, it is
-  /// active from now on and returned, otherwise null. `blocking` is scratch. Never allocates.
+  /// Asks of one waiting pair whether it is free at `X` by kGapFloor; of the next one in the next call. When it is, it
+  /// is active from now on and returned, otherwise null. `blocking` is scratch. Never allocates.
   const Waiting* look(const Pose& X, MotionCheck& check, std::int64_t deadline_ns,
                       std::vector<FacePair>& blocking) noexcept;
   /// Makes waiting pair `i` active; it was freed before the first tick.

@@ -43,6 +43,8 @@ grep -qE "^500 ms: +[0-9]+ contacts" "$work/out" || fail "first_touch printed: $
 run scripted_pen "600 ms: .* [1-9][0-9]* contacts, +[1-9][0-9.]* N up" "$root/models"
 run own_loop "^[1-9][0-9]* servo ticks" "$root/models"
 run custom_device "at rest: (1[.]9|2[.]0)[0-9] N up" "$root/models"
+run custom_resolver "both pegs went ([0-9.]+) and .* mm down; never farther apart than 0[.][01]" "$root/models"
+run viewer "remove: 401 parts, the held one goes to x = 2[45]" "$root/models"
 run meshes_from_memory "400 ms: pen at +4[.]0 mm, cube at +10[.]0[0-9]+ mm, +[1-9] contacts"
 
 # The component backends, which comes with the static library.

@@ -1,7 +1,7 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "resolve/metric.hpp"
-#include "resolve/resolver.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/core/error.hpp"
 
 using namespace tegotae;

@@ -41,10 +41,14 @@ double peak_gigabytes() {
 TriangleMesh shape(int k, int n) {
   const double d = kSize * (1 + 0.002 * (k / 4));
   switch (k % 4) {
-    case 0: return shapes::sphere(d, n, n);
-    case 1: return shapes::cylinder(0.8 * d, 0.7 * d, n, n - 2);
-    case 2: return shapes::box(Vec3::Constant(0.6 * d), {n * 2 / 5, n * 2 / 5, n * 2 / 5});
-    default: return shapes::torus_knot({2, 3, 0.25 * d, 0.1 * d, 0.1 * d, 2 * n, n / 2});
+    case 0:
+      return shapes::sphere(d, n, n);
+    case 1:
+      return shapes::cylinder(0.8 * d, 0.7 * d, n, n - 2);
+    case 2:
+      return shapes::box(Vec3::Constant(0.6 * d), {n * 2 / 5, n * 2 / 5, n * 2 / 5});
+    default:
+      return shapes::torus_knot({2, 3, 0.25 * d, 0.1 * d, 0.1 * d, 2 * n, n / 2});
   }
 }
 
@@ -73,7 +77,7 @@ Pose pen(double t) {
 
 struct Ticks {
   double median_us, p99_us, p999_us;  // CPU time, in contact
-  int late = 0;                        // over budget + 0.1 ms
+  int late = 0;                       // over budget + 0.1 ms
   std::size_t n;
 };
 
@@ -91,7 +95,9 @@ Ticks run(HapticLoop& loop, int ticks, AfterTick after) {
   }
   std::sort(us.begin(), us.end());
   REQUIRE(us.size() > 1000);
-  const auto at = [&us](double share) { return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))]; };
+  const auto at = [&us](double share) {
+    return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
+  };
   return {at(0.5), at(0.99), at(0.999), result.late, us.size()};
 }
 

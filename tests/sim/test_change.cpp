@@ -72,6 +72,8 @@ TEST_CASE("a part that is added stops the held one, and one that is removed lets
     push(loop, Vec3(0, 0, 0.005), 200);
     CHECK(loop.report().proxy.X.p.z() == Approx(0.01).margin(slack));
     CHECK(loop.report().contacts > 0);
+    CHECK(loop.latest().p == loop.report().proxy.X.p);
+    CHECK(loop.latest().q.coeffs() == loop.report().proxy.X.q.coeffs());
 
     // Nothing of the floor is left in the first tick without it.
     scene.parts = {wall_at(0.05), scene.parts[1]};
@@ -163,10 +165,12 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
     Scene s = scene_of({});
     s.contact.tick_budget = 0.8e-3;
     const double x = 0.03 + 0.01 * unit(rng), z = 0.03 + 0.01 * unit(rng);
-    s.parts = {floor_at(-0.03), wall_at(x), block_at(Vec3::Zero()), board("ceiling", {Quat::Identity(), Vec3(0, 0, z + 0.005)}),
+    s.parts = {floor_at(-0.03), wall_at(x), block_at(Vec3::Zero()),
+               board("ceiling", {Quat::Identity(), Vec3(0, 0, z + 0.005)}),
                board("left", {rotation(Vec3(0, M_PI / 2, 0)), Vec3(-0.035, 0, 0)})};
     for (int i = 0; i < k % 5; ++i)
-      s.parts.push_back({"post " + std::to_string(i), post,
+      s.parts.push_back({"post " + std::to_string(i),
+                         post,
                          {rotation(Vec3(unit(rng), unit(rng), 0)), Vec3(0.03 * unit(rng), i % 2 ? 0.03 : -0.03, 0)}});
     scenes.push_back(std::move(s));
   }
@@ -241,8 +245,8 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
     }
     intersecting += oracle->intersecting(tick.X).empty() ? 0 : 1;
   }
-  std::cout << changes << " changes went into force in " << ticks << " ticks, " << refused << " were refused, "
-            << late << " ticks over 0.9 ms of CPU time\n";
+  std::cout << changes << " changes went into force in " << ticks << " ticks, " << refused << " were refused, " << late
+            << " ticks over 0.9 ms of CPU time\n";
   CHECK(changes == kChanges);
   CHECK(intersecting == 0);
   CHECK(allocations == 0);

@@ -52,6 +52,8 @@ class ContactLink {
   void set_clutch(Clutch clutch) noexcept { clutch_ = clutch; }
   /// From now on the pen, where it is, means the held part at `X` (file frame).
   void home(const Pose& X) noexcept;
+  /// Another part is held from now on, of which this is the center and gyration, and the pen means it at `X`.
+  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept;
   /// Whether the servo listens to this application and has obeyed its home commands when it told `pen`.
   bool obeyed(const PenSample& pen) const noexcept;
 

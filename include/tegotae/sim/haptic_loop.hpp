@@ -52,20 +52,23 @@ class HapticLoop {
   /// throws; a pose that is not finite is ignored (X stays). The report is valid until the next call.
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
-  /// Goes on in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be called
-  /// from any thread while step() runs; it builds here what is new (parts that share a mesh with the scene so far share
-  /// its hierarchy), and step() goes over to it between two ticks, without waiting, allocating or freeing. A later change
-  /// replaces an earlier one that is not in force yet. Nothing of the old scene's contacts is kept.
+  /// Goes on in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be
+  /// called from any thread while step() runs; it builds here what is new (parts that share a mesh with the scene so
+  /// far share its hierarchy), and step() goes over to it between two ticks, without waiting, allocating or freeing. A
+  /// later change replaces an earlier one that is not in force yet. Nothing of the old scene's contacts is kept.
   ///
-  /// `next` places the held part where it was lately (TickReport::proxy), and must be free of the others there. If it has
-  /// gone on since, the straight way from there to where it is must be free of what was added or moved: until it is, the
-  /// change waits and the old scene stays in force. A part that was not held before starts where `next` has it: the first tick with it
-  /// does not follow the pen, so that the pen can be brought there first (ContactLink::home).
+  /// `next` places the held part where it was lately (TickReport::proxy), and must be free of the others there. If it
+  /// has gone on since, the straight way from there to where it is must be free of what was added or moved: until it
+  /// is, the change waits and the old scene stays in force. A part that was not held before starts where `next` has it:
+  /// the first tick with it does not follow the pen, so that the pen can be brought there first (ContactLink::home).
   ///
   /// Returns the change's number, from 1 on. Throws Error as the constructor does; nothing changes then.
   std::uint64_t change(const Scene& next);
   /// Number of the change that the last tick ran in, 0 before the first; from any thread.
   std::uint64_t change_in_force() const noexcept;
+
+  /// Where the held part was after the last tick; from any thread, to draw it and for change().
+  Pose latest() const noexcept;
 
   const TickReport& report() const;
   /// What the held part touched or overlapped at the start, and what has become of it by the last tick.

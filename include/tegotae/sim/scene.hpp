@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
+#include "tegotae/resolve/resolver.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
 
@@ -44,6 +46,8 @@ struct ContactSettings {
   /// "qp": least constraint; "lp": the paper's linear programme; for comparison "impulse": collisions one at a time,
   /// and "penalty": springs in proportion to penetration, the only one that lets parts interpenetrate.
   std::string resolver = "qp";
+  /// Makes a resolver of your own for at most `capacity` limits, which takes the place of `resolver`; empty: none.
+  std::function<std::unique_ptr<Resolver>(int capacity)> custom_resolver = {};
   std::string narrowphase =
       "patch";  ///< "patch": certified paths; "fcl": FCL at the end of short pieces, the paper's way
   /// Time (s) that a tick of HapticLoop::step may take; what is not done by then is left for the next tick. Infinite:

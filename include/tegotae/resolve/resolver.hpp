@@ -4,23 +4,30 @@
 #include <string>
 #include <vector>
 
-#include "lp/low_rank_matrix.hpp"
+#include "tegotae/core/export.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 #include "tegotae/resolve/status.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
-/// A resolver's answer, in whitened coordinates.
+/// A resolver's answer.
 struct Resolution {
-  Vec6 motion = Vec6::Zero();  ///< zero unless solved
+  Vec6 motion = Vec6::Zero();  ///< in whitened coordinates; zero unless solved
   ResolveStatus status = ResolveStatus::stalled;
   int iterations = 0;
 };
 
-/// Turns a wanted motion into one that the limits allow.
+/// Turns a wanted motion of the held part into one that the limits allow. Motions are in whitened coordinates, m: the
+/// displacement of the center of mass, then the rotations about the principal axes of inertia, each times the radius of
+/// gyration about it; the length of such a vector is the root of mean square displacement of the part's mass. The
+/// answer is a proposal: the loop commits it only when its whole way is free.
+///
+/// One of your own (ContactSettings::custom_resolver) must not allocate, wait or throw in resolve().
 class Resolver {
  public:
   virtual ~Resolver() = default;
-  /// A motion z with rows z >= bounds (rows.rows() of them), as near to `wanted` as the method brings it.
+  /// A motion z with rows z >= bounds (rows.rows() of them, m), as near to `wanted` as the method brings it. Bounds are
+  /// at most 0, so that standing still is allowed, or a little above where gaps should open.
   virtual Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept = 0;
   /// Whether the answer is the allowed motion nearest to the wanted one. If not, it may be no motion at all although
   /// some would lead nearer.

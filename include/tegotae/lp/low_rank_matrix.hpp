@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 
-namespace tegotae {
+namespace tegotae TEGOTAE_EXPORT {
 
 /// Rows that one pricing step takes together; also the padding of every per-row array.
 inline constexpr int kRowLanes = 8;
