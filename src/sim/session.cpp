@@ -144,8 +144,13 @@ class Session {
     for (const Pose& X : report.pieces) check_.add(X);
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (recorder_) record(number, t, pen, report, tick_us);
-    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us()});
+    if (settings_.observer) observe(number, t, pen, tick_us);
     if (settings_.progress) show(t, pen, report);
+  }
+
+  void observe(std::uint64_t number, double t, const PenSample& pen, double tick_us) {
+    const ServoStatistics servo = settings_.real_time ? pen_->statistics() : ServoStatistics();
+    settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us(), servo});
   }
 
   /// There is no pen to follow: the part stays, and the servo hears that this loop lives.

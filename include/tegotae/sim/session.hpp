@@ -30,7 +30,9 @@ struct TickView {
   const PenSample& pen;
   const HapticLoop& loop;  ///< its report() and limits() are of this tick
   double tick_us;          ///< time the tick took; 0 in virtual time
-  double servo_late_us;    ///< how late the servo's newest tick began; NaN in virtual time
+  double servo_late_us;    ///< how late the servo's newest tick began, or of another process's servo the worst in a
+                           ///< tenth of a second; NaN in virtual time and where nothing tells
+  const ServoStatistics& servo;  ///< what the servo last told of itself, ten times a second; zeros in virtual time
 };
 
 /// Looks on while a session runs. Called in the contact loop's thread.

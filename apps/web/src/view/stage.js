@@ -76,10 +76,11 @@ export class Stage {
   }
 
   addSurface(part, { surface, edges }) {
-    // Lines lie on the surface: it steps back a little, so that they win.
-    const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-    part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...behind });
-    part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...behind });
+    // Lines lie on the surface: it steps back a little, so that they win; its inner side steps forward, so that a cut
+    // hides the lines behind it.
+    const offset = (factor, units) => ({ polygonOffset: true, polygonOffsetFactor: factor, polygonOffsetUnits: units });
+    part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...offset(1, 1) });
+    part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...offset(0, -64) });
     part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
     part.mesh3d = new THREE.Mesh(surface, part.material);
     // Inner sides in one flat color look like the cut that a section plane makes.
@@ -101,7 +102,7 @@ export class Stage {
     for (const part of this.parts ?? []) {
       const color = new THREE.Color(cssColor(part.colorName));
       part.material.color.copy(color);
-      part.inside.color.copy(color).lerp(new THREE.Color(cssColor("--cut")), 0.5);
+      part.inside.color.copy(color).lerp(new THREE.Color(cssColor("--cut")), 0.3);
       part.lines.color.set(cssColor("--edge"));
     }
     this.ghostMaterial?.color.set(cssColor("--ghost"));
