@@ -201,6 +201,21 @@ async function lookAtReplay(page) {
   await page.keyboard.press(",");
   await page.keyboard.press(",");
   assert.ok((await state(page)).frame.t < t);
+  // The timeline by its keys, and a click into a plot.
+  await page.focus("#scrub");
+  await page.keyboard.press("End");
+  const last = (await state(page)).frame.t;
+  await page.keyboard.press("Home");
+  assert.ok((await state(page)).frame.t < 1e-3 && last > 7);
+  const plot = await page.locator(".plot .u-over").first().boundingBox();
+  await page.mouse.click(plot.x + plot.width / 2, plot.y + plot.height / 2);
+  assert.ok(Math.abs((await state(page)).frame.t / last - 0.5) < 0.02);
+  await page.evaluate((at) => {
+    const bar = document.getElementById("scrub");
+    bar.value = at;
+    bar.dispatchEvent(new Event("input"));
+    document.activeElement.blur();
+  }, deepest.frame.tick);
   await page.keyboard.press(" ");
   await until(page, (s) => s.frame.t > t + 0.2);
   await page.keyboard.press(" ");
@@ -253,6 +268,50 @@ test("views, section, parts, theme, help, by keyboard and on a laptop's screen",
   assert.deepEqual(nameless, []);
   const fits = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight);
   assert.ok(fits, "no scroll bars on 1366 × 680");
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
+test("orbit, pan and zoom with the mouse, as in CAD programs", async (browser) => {
+  const page = await open(browser, `file://${join(folder, "peg.html")}`, { height: 768 });
+  const look = async () => {
+    const { camera, target } = await state(page);
+    const arm = camera.map((v, i) => v - target[i]);
+    const distance = Math.hypot(...arm);
+    return { target, distance, direction: arm.map((v) => v / distance) };
+  };
+  const apart = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
+  const center = await page.evaluate(() => window.__tegotae.project(window.__tegotae.center()));
+  const dragged = async (button, from, by) => {
+    await page.mouse.move(...from);
+    await page.mouse.down({ button });
+    await page.mouse.move(from[0] + by[0], from[1] + by[1], { steps: 4 });
+    await page.mouse.up({ button });
+    return look();
+  };
+  const begin = await look();
+  const background = [center[0] - 300, center[1] + 250];
+  const orbited = await dragged("left", background, [120, 40]);
+  assert.ok(apart(orbited.target, begin.target) < 1e-9 && Math.abs(orbited.distance / begin.distance - 1) < 1e-6 && apart(orbited.direction, begin.direction) > 0.1);
+  const again = await dragged("middle", center, [-120, -40]);
+  assert.ok(apart(again.target, begin.target) < 1e-9 && apart(again.direction, orbited.direction) > 0.1);
+  const at = await page.evaluate(() => window.__tegotae.project(window.__tegotae.center()));
+  const panned = await dragged("right", background, [60, -30]);
+  assert.ok(apart(panned.direction, again.direction) < 1e-6 && Math.abs(panned.distance / again.distance - 1) < 1e-6);
+  const moved = await page.evaluate(() => window.__tegotae.project(window.__tegotae.center()));
+  assert.ok(apart(moved, [at[0] + 60, at[1] - 30]) < 8, `what one pans goes with the pointer: ${at} to ${moved}`);
+  // What is under the pointer stays there.
+  await page.mouse.move(...moved);
+  await page.mouse.wheel(0, -240);
+  const zoomed = await look();
+  assert.ok(zoomed.distance < 0.95 * panned.distance);
+  assert.ok(apart(await page.evaluate(() => window.__tegotae.project(window.__tegotae.center())), moved) < 8);
+  // Show everything: all corners are in the picture, and they fill it.
+  await page.keyboard.press("f");
+  const [box, corners] = await page.evaluate(() => [document.querySelector("#stage canvas").getBoundingClientRect().toJSON(), window.__tegotae.corners()]);
+  for (const [x, y] of corners) assert.ok(x > box.left && x < box.right && y > box.top && y < box.bottom);
+  const extent = (k) => Math.max(...corners.map((c) => c[k])) - Math.min(...corners.map((c) => c[k]));
+  assert.ok(extent(0) > 0.7 * box.width || extent(1) > 0.7 * box.height, "it fills the picture");
   assert.deepEqual(page.complaints, []);
   await page.close();
 });

@@ -172,6 +172,14 @@ async function begin() {
   } else live.watch();
 }
 
+// Where a point of the world is on the screen.
+function project(point) {
+  stage.camera.updateMatrixWorld();
+  const rect = stage.canvas.getBoundingClientRect();
+  const p = stage.camera.position.clone().set(...point).project(stage.camera);
+  return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];
+}
+
 // What a test may ask the page.
 window.__tegotae = {
   get state() {
@@ -179,15 +187,14 @@ window.__tegotae = {
       mode: about?.mode, parts: stage.parts?.map(({ name, held, visible }) => ({ name, held, visible })), frame, frames,
       status, shown: overlay.shown, plots: plots?.state(), drawn: stage.drawn,
       arrows: { force: overlay.force.group.visible ? overlay.force.length : 0, torque: overlay.torque.group.visible ? overlay.torque.length : 0 },
-      force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0, camera: stage.camera.position.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
+      force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0, camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
     };
   },
-  // Where a point of the world is on the screen.
-  project(point) {
-    stage.camera.updateMatrixWorld();
-    const rect = stage.canvas.getBoundingClientRect();
-    const p = stage.camera.position.clone().set(...point).project(stage.camera);
-    return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];
+  project,
+  // Of all parts together, on the screen.
+  corners() {
+    const { min, max } = stage.measure();
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => project([i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z]));
   },
   // Where the mouse holds the part.
   grip: () => hand.grip && [hand.grip.x, hand.grip.y],

@@ -76,15 +76,16 @@ export class Stage {
   }
 
   addSurface(part, { surface, edges }) {
-    // Lines lie on the surface: it steps back a little, so that they win; its inner side steps forward, so that a cut
-    // hides the lines behind it.
-    const offset = (factor, units) => ({ polygonOffset: true, polygonOffsetFactor: factor, polygonOffsetUnits: units });
-    part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...offset(1, 1) });
-    part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...offset(0, -64) });
-    part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
+    // Lines lie on the surface: it steps back a little, so that they win.
+    const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...behind });
+    part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...behind });
+    part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55, depthWrite: false });
     part.mesh3d = new THREE.Mesh(surface, part.material);
-    // Inner sides in one flat color look like the cut that a section plane makes.
-    part.group.add(part.mesh3d, new THREE.Mesh(surface, part.inside), new THREE.LineSegments(edges, part.lines));
+    // Inner sides in one flat color look like the cut that a section plane makes, if they come after the lines on them.
+    const inside = new THREE.Mesh(surface, part.inside);
+    inside.renderOrder = 2;
+    part.group.add(part.mesh3d, inside, new THREE.LineSegments(edges, part.lines));
   }
 
   addGhost({ surface, edges }) {
@@ -133,6 +134,7 @@ export class Stage {
     }
     this.renderer.localClippingEnabled = on;
     for (const part of this.parts) {
+      part.inside.transparent = on; // only such are drawn after the lines
       for (const material of [part.material, part.inside, part.lines]) {
         material.clippingPlanes = on ? [this.section] : null;
         material.needsUpdate = true;
