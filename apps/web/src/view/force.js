@@ -16,16 +16,19 @@ export class ForceNotice {
     this.off = null; // since when
   }
 
-  show(frame, { reasons, led }, now = performance.now()) {
+  // hand: what leads the part from here (hand.js).
+  show(frame, reasons, hand, now = performance.now()) {
     if (frame.forceOn || !reasons) this.off = null;
     else this.off ??= now;
-    const text = this.off === null || now - this.off < patienceMs ? "" : this.text(frame, reasons, led);
+    const text = this.off === null || now - this.off < patienceMs ? "" : this.text(frame, reasons, hand);
     if (this.place.textContent !== text) this.place.textContent = text;
   }
 
-  text(frame, reasons, led) {
+  text(frame, reasons, hand) {
     const why = frame.waiting && (frame.reason === none || frame.reason === software) ? "" : `: ${reasons[frame.reason] ?? "unknown"}`;
-    const what = led ? "Let go, or move it back until the part meets its ghost." : "Move the pen back until the part meets its ghost.";
-    return `${frame.waiting ? "The force went off" : "The force is off"}${why}.${frame.waiting ? ` ${what} Then the force comes on again.` : ""}`;
+    if (!frame.waiting) return `The force is off${why}.`;
+    const what = hand.leads ? "Let go of the part, or move it back until it meets its ghost" :
+      hand.enabled ? "Take the part with the mouse and let go of it" : "Move the pen back until the part meets its ghost";
+    return `The force went off${why}. ${what}: then the force comes on again.`;
   }
 }

@@ -48,7 +48,7 @@ function showFrame(next) {
   stage.showPoses(frame.x, frame.y);
   overlay.show(frame);
   numbers.show(frame, about.reasons);
-  force.show(frame, about);
+  force.show(frame, about.reasons, hand);
   $("clock").textContent = `${frame.t.toFixed(replay || about.virtual_time ? 3 : 1)} s`;
   if (replay) {
     plots.showTime(frame.t);
