@@ -20,8 +20,8 @@ class FrameMaker {
  private:
   void look_for_reason(const TickView& tick);
 
-  std::vector<std::uint32_t> fixed_;  // numbers of the fixed parts in the scene
-  ForceOff reason_ = ForceOff::none;  // why the force went off, also while it waits to come on again
+  std::vector<std::uint32_t> fixed_;                  // numbers of the fixed parts in the scene
+  ForceOff reason_ = ForceOff::none;                  // why the force went off, also while it waits to come on again
   decltype(ServoStatistics::force_off) force_off_{};  // as long as it was on
 };
 

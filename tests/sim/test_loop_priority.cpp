@@ -14,11 +14,12 @@ namespace {
 
 /// Asks the system for itself, in a thread that ends at once.
 bool system_grants_fifo() {
-  return std::async(std::launch::async, [] {
-           sched_param lowest{};
-           lowest.sched_priority = 1;
-           return sched_setscheduler(0, SCHED_FIFO, &lowest) == 0;
-         })
+  return std::async(std::launch::async,
+                    [] {
+                      sched_param lowest{};
+                      lowest.sched_priority = 1;
+                      return sched_setscheduler(0, SCHED_FIFO, &lowest) == 0;
+                    })
       .get();
 }
 

@@ -119,13 +119,11 @@ TEST_CASE("a recording of another scene is refused") {
   const TempFolder folder;
   write_cubes(folder);
   folder.write("inside.csv", kHeader + row(0, 0.005));
-  CHECK_THROWS_WITH(replay_bundle(folder / "inside.csv", folder / "scene.toml"),
-                    Contains("does not fit this scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "inside.csv", folder / "scene.toml"), Contains("does not fit this scene"));
   std::string text = kHeader;
   for (int i = 0; i <= 200; ++i) text += row(i, std::max(0.0, 0.018 - 1e-3 * i));
   folder.write("through.csv", text);
-  CHECK_THROWS_WITH(replay_bundle(folder / "through.csv", folder / "scene.toml"),
-                    Contains("does not fit this scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "through.csv", folder / "scene.toml"), Contains("does not fit this scene"));
 }
 
 TEST_CASE("the program writes a page that needs no server") {

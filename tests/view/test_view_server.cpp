@@ -21,7 +21,8 @@ std::vector<std::string> listening(int port) {
     std::string number, local, remote, state, rest;
     while (file >> number >> local >> remote >> state && std::getline(file, rest)) {
       const std::size_t colon = local.find(':');
-      if (state == "0A" && colon != local.npos && local.substr(colon) == wanted) found.push_back(local.substr(0, colon));
+      if (state == "0A" && colon != local.npos && local.substr(colon) == wanted)
+        found.push_back(local.substr(0, colon));
     }
   }
   return found;
@@ -64,7 +65,8 @@ TEST_CASE("a page sees the force, the tick times and the servo's lateness of ano
   Program device({TEGOTAE_BIN_DIR "/tegotae-device", "--type", "simulated", "--name", name, "--script",
                   TEGOTAE_MODELS_DIR "/insert_0.94.csv"});
   device.line();
-  Served s({"tegotae", "run", TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml", "--device", "shm:" + name, "--view", "--json"});
+  Served s(
+      {"tegotae", "run", TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml", "--device", "shm:" + name, "--view", "--json"});
   Watcher watcher(s);
   bool late = false, ticked = false;
   // The servo tells ten times a second; a frame comes thirty times.

@@ -74,8 +74,8 @@ struct RunSummary {
   /// an evenly spread part is asked.
   std::int64_t penetrating = 0;
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
-  LatencySummary tick_us;        ///< time a tick of the contact loop takes
-  ServoStatistics servo;         ///< in virtual time only the number of ticks
+  LatencySummary tick_us;  ///< time a tick of the contact loop takes
+  ServoStatistics servo;   ///< in virtual time only the number of ticks
   std::string missing_realtime;  ///< what the system did not grant to this process's servo, or else to the contact loop
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
   double force_max_n = 0;        ///< largest rendered force
