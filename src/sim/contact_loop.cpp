@@ -95,7 +95,7 @@ void ContactLoop::step(const Pose& Y, double dt, TickReport& report) {
   still_ticks_ = pen < kRest ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
-  if (at_.look_at_start(X_, blocking_)) tracked_ = false;
+  if (at_.look_at_start(X_)) tracked_ = false;
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   bool held_back = false;
@@ -256,8 +256,8 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
       const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] = limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap
-                                            : std::min(keep_, gap + lost) - gap;
+      bounds_[i] =
+          limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap : std::min(keep_, gap + lost) - gap;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;

@@ -11,8 +11,8 @@
 
 namespace tegotae {
 
-/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver, free
-/// check), over a scene in which parts may touch at the start.
+/// The loop of the resolvers that solve a programme, lp and qp (one tick: broad phase, tracking, contacts, resolver,
+/// free check), over a scene in which parts may touch at the start.
 class ContactLoop final : public ProxyLoop {
  public:
   ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);

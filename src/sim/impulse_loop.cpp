@@ -59,7 +59,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, TickReport& report) {
   deadline_ns_ = std::isfinite(settings_.tick_budget)
                      ? monotonic_ns() + static_cast<std::int64_t>(1e9 * settings_.tick_budget)
                      : kNoDeadline;
-  if (at_.look_at_start(X_, blocking_)) tracked_ = false;
+  if (at_.look_at_start(X_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
   const int n = std::max(1, static_cast<int>(std::ceil(time / settings_.impulse.substep - 1e-9)));
   const double h = time / n;

@@ -51,12 +51,11 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<VertexShell> shells_;
   StartPairs start_;
   std::unique_ptr<MotionCheck> check_;  ///< tells when suspended pairs are free; null when none is
-  std::vector<FacePair> blocking_;
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;
   std::vector<Contact> limits_;  ///< the springs' vertices, for whoever looks on; gaps may be negative
-  bool collected_ = false;  ///< the springs are those of X_
+  bool collected_ = false;       ///< the springs are those of X_
   Pose X_;
 };
 

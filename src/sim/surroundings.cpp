@@ -83,11 +83,10 @@ void Surroundings::query(const Pose& pose, const Vec3& center, double distance,
   start.apply(near);
 }
 
-bool Surroundings::look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept {
-  const std::int64_t deadline = std::isfinite(look_time_)
-                                    ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_)
-                                    : kNoDeadline;
-  const StartPairs::Waiting* freed = start.look(pose, *check, deadline, blocking);
+bool Surroundings::look_at_start(const Pose& pose) noexcept {
+  const std::int64_t deadline =
+      std::isfinite(look_time_) ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_) : kNoDeadline;
+  const StartPairs::Waiting* freed = start.look(pose, *check, deadline);
   if (freed == nullptr) return false;
   if (freed->stand_in != StartPairs::kNobody) contacts->transfer(freed->stand_in, freed->part);
   return true;

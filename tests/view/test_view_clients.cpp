@@ -280,7 +280,8 @@ TEST_CASE("the page is told which parts are suspended, until they have come free
   const TempFolder folder;
   write_small_scene(folder);
   // Drawn into each other by some millimeters, then pulled apart.
-  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0.002,0,0,1,0,0,0\n2,0.002,0,0,1,0,0,0\n3,0.002,0,0.02,1,0,0,0\n");
+  folder.write("path.csv",
+               "t,px,py,pz,qw,qx,qy,qz\n0,0.002,0,0,1,0,0,0\n2,0.002,0,0,1,0,0,0\n3,0.002,0,0.02,1,0,0,0\n");
   std::string scene = read_text(folder / "scene.toml");
   scene.replace(scene.find("[0, 0, 0.02]"), 12, "[0.002, 0, 0]");
   folder.write("scene.toml", scene + "[contact]\ninitial_overlap = \"ignore\"\n");

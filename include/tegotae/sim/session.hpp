@@ -54,9 +54,9 @@ struct RunSettings {
   std::string program;  ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
-  const HandGuide* guide = nullptr;         ///< leads the simulated hand away from the script
+  const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
   std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
+  const std::atomic<bool>* stop = nullptr;           ///< set it to end the run early; the recording is kept
 };
 
 /// How a run went.
@@ -75,8 +75,8 @@ struct RunSummary {
   std::int64_t penetrating = 0;
   StartReport start;       ///< what the held part touched or overlapped at the start, as it was at the end
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
-  LatencySummary tick_us;        ///< time a tick of the contact loop takes
-  ServoStatistics servo;         ///< in virtual time only the number of ticks
+  LatencySummary tick_us;  ///< time a tick of the contact loop takes
+  ServoStatistics servo;   ///< in virtual time only the number of ticks
   std::string missing_realtime;  ///< what the system did not grant to the servo's thread; of this process's servo only
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
   double force_max_n = 0;        ///< largest rendered force
