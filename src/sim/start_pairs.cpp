@@ -12,8 +12,9 @@
 namespace tegotae {
 namespace {
 
-// Beyond kGapFloor (m), so that the first motion does not fail by rounding.
-constexpr double kRoom = 1e-8;
+// Beyond kGapFloor (m): the certificate's fast checks are rounded by 0.05 um in a part of 100 mm, and pairs without that
+// to spare are searched one by one, all of a seat in every tick.
+constexpr double kRoom = 2e-7;
 // Of a gap below kGapFloor, what motions must leave.
 constexpr double kKeepShare = 0.5;
 // The deepest point that was found may not be the deepest: the copy is made smaller by this much more until it is free,
