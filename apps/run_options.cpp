@@ -120,8 +120,8 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
     std::cout << summary_text(summary, options, file, goal, interrupted.load()) << std::flush;
   // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
   // whenever it ends.
-  const bool done = summary.completed || options.view || !options.device.empty() ||
-                    (options.seconds > 0 && !interrupted.load());
+  const bool done =
+      summary.completed || options.view || !options.device.empty() || (options.seconds > 0 && !interrupted.load());
   const bool clean = summary.penetrating == 0 || file.scene.contact.resolver == "penalty";
   return done && clean ? kDone : kRunFailed;
 }

@@ -33,7 +33,8 @@ std::string line(const StartPair& pair, const Scene& scene) {
           : c.gap > 0         ? ", gap " + length(c.gap)
                               : ", depth " + length(c.depth);
   if (pair.state == PairState::suspended) return text + "; SUSPENDED: nothing keeps the two apart\n";
-  if (pair.state == PairState::relieved) return text + "; in contact with it taken " + length(pair.relief) + " smaller\n";
+  if (pair.state == PairState::relieved)
+    return text + "; in contact with it taken " + length(pair.relief) + " smaller\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }

@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "tegotae/sim/start.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/start.hpp"
 
 namespace tegotae::apps {
 

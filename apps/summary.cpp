@@ -51,8 +51,8 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   return j.dump();
 }
 
-std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file,
-                         const std::string& goal, bool interrupted) {
+std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file, const std::string& goal,
+                         bool interrupted) {
   const char* verdict = s.completed               ? "done"
                         : !options.device.empty() ? "ended"
                         : interrupted             ? "interrupted"

@@ -11,7 +11,7 @@ int main() {
   Scene scene;
   scene.parts.push_back({"hole", load("models/hole_20.obj"), Pose{}, false});
   scene.parts.push_back({"peg", load("models/peg_0.94.obj"), Pose{Quat::Identity(), Vec3(0, 0, 0.03)}, true});  // held
-  HapticLoop loop(scene);  // throws Error when the parts intersect
+  HapticLoop loop(scene);  // throws Error when the parts overlap
 
   for (int ms = 0; ms <= 500; ++ms) {
     const Pose pen{Quat::Identity(), Vec3(0.004, 0, 0.03 - 2e-5 * ms)};  // m: down, four millimeters off the axis

@@ -44,6 +44,14 @@ MotionAnswer FclMotionCheck::check(const Pose& X, const Displacement& d, double 
   return blocking.empty() ? MotionAnswer::free : MotionAnswer::blocked;
 }
 
+MotionAnswer FclMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t) noexcept {
+  const Pose X_BA = poses_[part].inverse() * X;
+  FacePair nearest{};
+  const bool free =
+      !narrow_.intersects(part, X_BA) && narrow_.distance_below(clearance, part, X_BA, nearest) >= clearance;
+  return free ? MotionAnswer::free : MotionAnswer::blocked;
+}
+
 Pose FclMotionCheck::near_contact(const Pose& X, const Displacement& d,
                                   const std::vector<FacePair>& blocking) noexcept {
   // The paper moves A back by l_0 against the velocity of the vertices of its intersecting faces; here along its own

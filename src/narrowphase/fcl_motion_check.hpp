@@ -17,6 +17,7 @@ class FclMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
+  MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t) noexcept override;
   Pose near_contact(const Pose& X, const Displacement& d, const std::vector<FacePair>& blocking) noexcept override;
   double longest_motion() const override;
   bool overflow() const override { return false; }

@@ -26,6 +26,10 @@ class MotionCheck {
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;
+  /// Whether A at `X` comes no nearer than `clearance` (m) to fixed part `part`, whether that matters or not; unknown
+  /// after `deadline_ns`. To be called before begin(), which the next check() needs anew.
+  virtual MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance,
+                              std::int64_t deadline_ns) noexcept = 0;
   /// A pose close to where the blocking pairs of the last check meet, at which their nearest features are looked for.
   virtual Pose near_contact(const Pose& X, const Displacement& d, const std::vector<FacePair>& blocking) noexcept = 0;
   /// Longest motion of any point of A that one check should cover, m.

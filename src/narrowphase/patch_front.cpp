@@ -84,6 +84,8 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     const Outcome outcome = settle(failures_[i]);
     if (outcome == Outcome::out_of_work) {
       report_.exhausted = true;
+    } else if (outcome == Outcome::blocked && blocking_.size() >= limit_.blocking) {
+      break;
     } else if (outcome == Outcome::blocked && blocking_.size() == capacity_.blocking) {
       report_.overflow = true;
       break;
@@ -186,7 +188,8 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
         continue;
       }
       blocking_.push_back({p.a, p.b});
-      if (blocking_.size() == capacity_.blocking || blocking_.size() - before == kBlocksPerPair)
+      if (blocking_.size() >= std::min(capacity_.blocking, limit_.blocking) ||
+          blocking_.size() - before == kBlocksPerPair)
         return Outcome::blocked;
       continue;
     }

@@ -21,6 +21,7 @@ struct FrontCapacity {
 /// How much one call may do.
 struct WorkLimit {
   int searches = 8192;                     ///< searches for a plane; about 0.2 µs each
+  std::uint32_t blocking = 0xffffffffu;    ///< blocking triangle pairs after which to stop
   std::int64_t deadline_ns = kNoDeadline;  ///< of monotonic_ns()
 };
 

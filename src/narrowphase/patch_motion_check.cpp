@@ -17,6 +17,8 @@ constexpr std::size_t kMostPairs = 1u << 15;
 // Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they
 // leave out stops the next trial.
 constexpr std::uint32_t kMostBlocking = 24;
+// Searches for planes in one look at a part that need not be kept out of: what is left goes on in the next.
+constexpr int kStandSearches = 1024;
 // A motion carries no point farther than this share of the part's radius: limits are straightened at its start.
 constexpr double kLongestShare = 0.1;
 
@@ -93,6 +95,20 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   }
   if (all_free) return MotionAnswer::free;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance,
+                                      std::int64_t deadline_ns) noexcept {
+  one_[0] = part;
+  begin(one_, deadline_ns);
+  PatchFront& front = fronts_[front_of_[part]];
+  front.set_clearance(clearance);
+  WorkLimit limit = limit_;
+  limit.blocking = 1;
+  limit.searches = kStandSearches;
+  const CertifyReport report = front.certify(poses_[part].inverse() * X, Displacement{}, limit);
+  if (report.status == CertifyStatus::cut) return MotionAnswer::unknown;
+  return report.status == CertifyStatus::certified ? MotionAnswer::free : MotionAnswer::blocked;
 }
 
 }  // namespace tegotae

@@ -19,6 +19,7 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
+  MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
   double longest_motion() const override;
   bool overflow() const override { return overflow_; }
@@ -33,6 +34,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::shared_ptr<const PatchTree> held_;
   std::vector<std::shared_ptr<const PatchTree>> fixed_;
   std::vector<Pose> poses_;
+  std::vector<std::uint32_t> one_ = {0};  ///< the part of stands()
   std::vector<PatchFront> fronts_;
   std::vector<std::uint32_t> part_of_;   ///< of each front, kNobody while unused
   std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none

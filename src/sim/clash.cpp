@@ -60,8 +60,9 @@ class PairLook {
     clash.depth = 0;
     clash.triangle_pairs = pairs.size();
     if (!pairs.empty())
-      clash.place_W = b.part->pose * closest_points(triangle(a, pairs.front().first, X_BA),
-                                                    triangle(b, pairs.front().second, Pose())).b;
+      clash.place_W =
+          b.part->pose *
+          closest_points(triangle(a, pairs.front().first, X_BA), triangle(b, pairs.front().second, Pose())).b;
     if (!closed(a) && !closed(b)) {
       clash.depth = std::numeric_limits<double>::quiet_NaN();
       clash.kind = ClashKind::overlap;
@@ -82,8 +83,7 @@ class PairLook {
   static SignedDistance& prepared(const Side& s) {
     if (!s.data->distance) {
       const auto& mesh = s.part->mesh;
-      s.data->distance =
-          std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
+      s.data->distance = std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
       s.data->closed = report(*mesh).closed;
     }
     return *s.data->distance;

@@ -14,7 +14,7 @@ constexpr double kMargin = 1.2;
 // Where a vertex of the copy went farther than its faces, its contacts must open by more: steps of this share of the
 // relief.
 constexpr double kStep = 0.25;
-constexpr int kMostRounds = 60;
+constexpr int kMostRounds = 60, kMostCalls = 16;
 constexpr std::size_t kMostBlocking = 256;
 
 class Easer {
@@ -100,10 +100,19 @@ class Easer {
     return r.status == ResolveStatus::solved;
   }
 
+  /// One answer of the narrow phase; where its work for one call runs out the next call goes on.
+  MotionAnswer check(const std::vector<std::uint32_t>& parts, const Pose& X, const Displacement& d) {
+    MotionAnswer answer = MotionAnswer::unknown;
+    at_.check->begin(parts, kNoDeadline);
+    for (int i = 0; i < kMostCalls && answer == MotionAnswer::unknown; ++i) {
+      blocking_.clear();
+      answer = at_.check->check(X, d, kGapFloor, blocking_);
+    }
+    return answer;
+  }
+
   bool way_is_free(const Displacement& d, int& found) {
-    at_.check->begin(near_, kNoDeadline);
-    blocking_.clear();
-    if (at_.check->check(X_, d, kGapFloor, blocking_) == MotionAnswer::free) return true;
+    if (check(near_, X_, d) == MotionAnswer::free) return true;
     found += at_.contacts->seed(blocking_, X_, kNoDeadline);
     return false;
   }
@@ -111,9 +120,7 @@ class Easer {
   bool stands_free(Wanted& w, const Pose& P, int& found) {
     w.blocked = false;
     one_[0] = w.part;
-    at_.check->begin(one_, kNoDeadline);
-    blocking_.clear();
-    if (at_.check->check(P, Displacement{}, kGapFloor, blocking_) == MotionAnswer::free) return true;
+    if (check(one_, P, Displacement{}) == MotionAnswer::free) return true;
     // The copy has the same faces, and gaps that mean something.
     for (FacePair& pair : blocking_) pair.part = w.stand_in;
     found += at_.contacts->seed(blocking_, X_, kNoDeadline);

@@ -66,7 +66,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.candidate_parts = 0;
   collided_ = false;
   deadline_ns_ = deadline_ns;
-  if (at_.look_at_start(X_, blocking_)) tracked_ = false;
+  if (at_.look_at_start(X_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
   const int n = std::max(1, static_cast<int>(std::ceil(time / settings_.impulse.substep - 1e-9)));
   const double h = time / n;

@@ -18,8 +18,7 @@ InsideLook::Side::Side(const std::shared_ptr<const TriangleMesh>& mesh) {
     seen[part] = true;
     points.push_back(mesh->vertices[mesh->triangles[f][0]]);
   }
-  if (report(*mesh).closed)
-    distance = std::make_unique<SignedDistance>(std::move(surface), cached_patch_tree(mesh));
+  if (report(*mesh).closed) distance = std::make_unique<SignedDistance>(std::move(surface), cached_patch_tree(mesh));
 }
 
 InsideLook::InsideLook(const std::shared_ptr<const TriangleMesh>& a, const std::shared_ptr<const TriangleMesh>& b)
@@ -30,9 +29,8 @@ bool InsideLook::inside(const Pose& X_BA) const noexcept {
 }
 
 bool InsideLook::any_inside(const Side& inner, const Side& outer, const Pose& X) noexcept {
-  return outer.distance && std::any_of(inner.points.begin(), inner.points.end(), [&](const Vec3& p) {
-           return outer.distance->at(X * p, 0).distance < 0;
-         });
+  return outer.distance && std::any_of(inner.points.begin(), inner.points.end(),
+                                       [&](const Vec3& p) { return outer.distance->at(X * p, 0).distance < 0; });
 }
 
 }  // namespace tegotae

@@ -21,7 +21,6 @@ constexpr double kStepShare = 0.02;
 // Steps shorter than this (m) are rest.
 constexpr double kRest = 1e-8;
 constexpr std::size_t kMostSprings = 16384;
-constexpr std::size_t kMostBlocking = 8;
 
 }  // namespace
 
@@ -43,10 +42,8 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
     shells_.emplace_back(field(parts.held->mesh), field(p->mesh));
   }
   radius_ = radius_about(*parts.held->mesh, center_);
-  if (start_.waiting() > 0) {
+  if (start_.waiting() > 0)
     check_ = std::make_unique<PatchMotionCheck>(parts.held->mesh, center_, radius_, meshes, poses_);
-    blocking_.reserve(kMostBlocking);
-  }
   X_ = parts.held->pose;
   near_.reserve(parts.fixed.size());
   points_.reserve(kMostSprings);
@@ -131,7 +128,7 @@ void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.status = ResolveStatus::not_needed;
   report.cut = report.overflow = false;
   const double wanted = size(displacement(X_, Y, center_)), most = kStepShare * radius_;
-  if (check_) start_.look(X_, *check_, deadline_ns, blocking_);
+  if (check_) start_.look(X_, *check_, deadline_ns);
   report.suspended = start_.suspended();
   query(wanted);
   if (near_.empty()) {

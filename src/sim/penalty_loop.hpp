@@ -53,7 +53,6 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<VertexShell> shells_;
   StartPairs start_;
   std::unique_ptr<MotionCheck> check_;  ///< tells when suspended pairs are free; null when none is
-  std::vector<FacePair> blocking_;
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;

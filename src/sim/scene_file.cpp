@@ -81,8 +81,8 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
   std::string held;
-  const std::vector<TomlTable> tables = top.tables(
-      "part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color"});
+  const std::vector<TomlTable> tables =
+      top.tables("part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color"});
   for (const TomlTable& t : tables) {
     if (options.progress) options.progress(scene.parts.size(), tables.size());
     Part part;
@@ -189,10 +189,9 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(
-      top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance", "initial_overlap",
-                            "density", "impulse", "penalty"}),
-      scene.contact);
+  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance",
+                                     "initial_overlap", "density", "impulse", "penalty"}),
+               scene.contact);
   read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
                 scene.coupling);
   SafetySettings safety;

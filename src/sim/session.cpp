@@ -205,7 +205,7 @@ class Session {
   RunGoal goal_;
   std::optional<Recorder> recorder_;
   double duration_;
-  int waiting_ = 0;  // pairs that were not free when the run began
+  int waiting_ = 0;             // pairs that were not free when the run began
   std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   PoseCheck check_;
   LatencyHistogram tick_times_;

@@ -56,9 +56,8 @@ class StartPairs {
   /// Takes suspended parts out of a list of fixed parts, and puts copies in the place of theirs.
   void apply(std::vector<std::uint32_t>& near) const noexcept;
   /// Asks of one waiting pair whether it is free at `X` by kGapFloor; of the next one in the next call. When it is, it
-  /// is active from now on and returned, otherwise null. `blocking` is scratch. Never allocates.
-  const Waiting* look(const Pose& X, MotionCheck& check, std::int64_t deadline_ns,
-                      std::vector<FacePair>& blocking) noexcept;
+  /// is active from now on and returned, otherwise null. Before MotionCheck::begin() of the tick. Never allocates.
+  const Waiting* look(const Pose& X, MotionCheck& check, std::int64_t deadline_ns) noexcept;
   /// Makes waiting pair `i` active; it was freed before the first tick.
   void free_at_start(std::size_t i);
   void set_shift(double shift) { report_.shift = shift; }
@@ -66,8 +65,6 @@ class StartPairs {
  private:
   void suspend_or_refuse(const Scene& scene, StartPair& pair, const std::string& why);
   void retire(std::size_t i) noexcept;
-  bool is_free(const Waiting& w, const Pose& X, MotionCheck& check, std::int64_t deadline_ns,
-               std::vector<FacePair>& blocking, bool& unknown) noexcept;
 
   StartReport report_;
   std::vector<std::uint32_t> number_;  ///< of each part of the scene among the fixed ones
@@ -76,7 +73,6 @@ class StartPairs {
   int suspended_ = 0;
   std::uint32_t freed_ = 0;
   Pose last_;
-  std::vector<std::uint32_t> one_ = {0};
   bool ignore_ = false;
   double tolerance_ = 0;
 };

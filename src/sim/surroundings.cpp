@@ -99,10 +99,10 @@ bool Surroundings::is_way_free(const Pose& from, const Pose& to, const Vec3& cen
   return check->check(from, d, kGapFloor, blocking) == MotionAnswer::free;
 }
 
-bool Surroundings::look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept {
+bool Surroundings::look_at_start(const Pose& pose) noexcept {
   const std::int64_t deadline =
       std::isfinite(look_time_) ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_) : kNoDeadline;
-  const StartPairs::Waiting* freed = start.look(pose, *check, deadline, blocking);
+  const StartPairs::Waiting* freed = start.look(pose, *check, deadline);
   if (freed == nullptr) return false;
   if (freed->stand_in != StartPairs::kNobody) contacts->transfer(freed->stand_in, freed->part);
   return true;

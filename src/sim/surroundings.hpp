@@ -38,8 +38,8 @@ struct Surroundings {
   /// Parts whose sphere comes within `distance` (m) of the held part at `pose`, as the checks number them.
   void query(const Pose& pose, const Vec3& center, double distance, std::vector<std::uint32_t>& near) const;
   /// Looks whether one more pair that was not free at the start is so at `pose` (see StartPairs::look), in a share of
-  /// the tick's budget. When it is, contacts are to be tracked anew. `blocking` is scratch.
-  bool look_at_start(const Pose& pose, std::vector<FacePair>& blocking) noexcept;
+  /// the tick's budget. When it is, contacts are to be tracked anew.
+  bool look_at_start(const Pose& pose) noexcept;
   /// Whether the straight way of the held part from `from` to `to` is known by `deadline_ns` to be free of the `fresh`
   /// parts (null: of all). `near` and `blocking` are scratch.
   bool is_way_free(const Pose& from, const Pose& to, const Vec3& center, const std::vector<bool>* fresh,

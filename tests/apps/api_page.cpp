@@ -13,7 +13,7 @@ namespace {
 
 // In the order in which they build on each other.
 const std::vector<std::string> kParts = {"core",    "mesh",    "device",   "record", "narrowphase",
-                                         "contact", "resolve", "coupling", "servo",  "sim"};
+                                         "contact", "lp", "resolve", "coupling", "servo",  "sim"};
 
 bool starts_with(const std::string& s, const std::string& prefix) {
   return s.rfind(prefix, 0) == 0;

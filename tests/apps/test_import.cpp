@@ -1,6 +1,9 @@
 // `tegotae import`, and what is done with its scenes.
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 
@@ -9,6 +12,7 @@
 #ifdef TEGOTAE_HAS_STEP
 #include "mesh/step_assembly.hpp"
 #endif
+#include "recording.hpp"
 #include "tegotae/mesh/report.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
@@ -88,6 +92,81 @@ TEST_CASE("clashes are listed by name, depth and place", "[import]") {
 }
 
 #ifdef TEGOTAE_HAS_STEP
+namespace {
+
+/// The scene as binary glTF: a node for each part, meshes shared, positions as floats in meters.
+std::string glb_of(const Scene& scene) {
+  using nlohmann::json;
+  json top = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+  std::string bytes;
+  std::map<const TriangleMesh*, std::size_t> meshes;
+  const auto add = [&](const void* data, std::size_t size, json accessor) {
+    top["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", size}});
+    accessor["bufferView"] = top["bufferViews"].size() - 1;
+    top["accessors"].push_back(accessor);
+    bytes.append(static_cast<const char*>(data), size);
+    return top["accessors"].size() - 1;
+  };
+  for (const Part& part : scene.parts) {
+    const TriangleMesh& mesh = *part.mesh;
+    if (meshes.emplace(&mesh, meshes.size()).second) {
+      Eigen::Matrix3Xf points(3, mesh.vertices.size());
+      for (std::size_t i = 0; i < mesh.vertices.size(); ++i) points.col(i) = mesh.vertices[i].cast<float>();
+      const Eigen::Vector3f lo = points.rowwise().minCoeff(), hi = points.rowwise().maxCoeff();
+      const std::size_t at = add(points.data(), 12 * mesh.vertices.size(),
+                                 {{"componentType", 5126}, {"type", "VEC3"}, {"count", mesh.vertices.size()},
+                                  {"min", {lo.x(), lo.y(), lo.z()}}, {"max", {hi.x(), hi.y(), hi.z()}}});
+      const std::size_t faces =
+          add(mesh.triangles.data(), 12 * mesh.triangles.size(),
+              {{"componentType", 5125}, {"type", "SCALAR"}, {"count", 3 * mesh.triangles.size()}});
+      top["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", at}}}, {"indices", faces}}}}});
+    }
+    const Quat& q = part.pose.q;
+    const Vec3& p = part.pose.p;
+    top["nodes"].push_back({{"name", part.name}, {"mesh", meshes[&mesh]}, {"rotation", {q.x(), q.y(), q.z(), q.w()}},
+                            {"translation", {p.x(), p.y(), p.z()}}});
+  }
+  json nodes = json::array();
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) nodes.push_back(i);
+  top["scenes"] = {{{"nodes", nodes}}};
+  top["buffers"] = {{{"byteLength", bytes.size()}}};
+  std::string text = top.dump();
+  text.append((4 - text.size() % 4) % 4, ' ');
+  const auto word = [](std::size_t n) {
+    const auto value = static_cast<std::uint32_t>(n);
+    return std::string(reinterpret_cast<const char*>(&value), 4);
+  };
+  return "glTF" + word(2) + word(28 + text.size() + bytes.size()) + word(text.size()) + "JSON" + text +
+         word(bytes.size()) + std::string("BIN\0", 4) + bytes;
+}
+
+/// Takes `held` out of its place by `way` (m) along the assembly's axis, the world's -y, and puts it back.
+void check_out_and_in(const TempFolder& folder, const std::string& scene, const std::string& held, double way) {
+  CAPTURE(scene, held);
+  const SceneFile file = load_scene(scene, {held, true, {}});
+  const auto part = std::find_if(file.scene.parts.begin(), file.scene.parts.end(), [](const Part& p) { return p.held; });
+  const Vec3& p = part->pose.p;
+  const Quat& q = part->pose.q;
+  std::ostringstream script;
+  script.precision(17);
+  script << "t,px,py,pz,qw,qx,qy,qz\n";
+  for (const auto& [t, out] : {std::pair(0.0, 0.0), {0.8, way}, {1.6, 0.0}})
+    script << t << ',' << p.x() << ',' << p.y() - out << ',' << p.z() << ',' << q.w() << ',' << q.x() << ',' << q.y()
+           << ',' << q.z() << '\n';
+  const std::filesystem::path beside = std::filesystem::path(scene).parent_path();
+  std::ofstream(beside / "out_and_in.csv") << script.str();
+  std::ofstream(beside / "run.toml") << read_text(scene) << "\n[device]\nscript = \"out_and_in.csv\"\n";
+  const Output run = run_program("tegotae", "run --fast --hold " + held + " --record " + (folder / "run.csv") + " " +
+                                                (beside / "run.toml").string());
+  INFO(run.out << run.err);
+  CHECK(run.code == 0);  // back in place, and no pose intersects
+  double farthest = 0;
+  for (const RecordedRow& row : read_recording(folder / "run.csv")) farthest = std::max(farthest, p.y() - row.x.p.y());
+  CHECK(farthest > 0.95 * way);
+}
+
+}  // namespace
+
 TEST_CASE("damaged STEP files end in one line, whatever the reader does with them", "[import]") {
   const TempFolder folder;
   write_step_assembly(folder / "a.step", {}, "MM", "AP214IS");
@@ -152,30 +231,17 @@ TEST_CASE("a STEP assembly becomes a scene whose shaft can be held", "[import]")
     CHECK(gap >= nominal - 1e-9);
     CHECK(gap <= nominal + 10.1e-3);
   }
-  // The shaft comes out of its bushing along its axis, the world's -y, and goes back in.
-  const double x = parts[6].pose.p.x(), y = parts[6].pose.p.y(), z = parts[6].pose.p.z();
-  std::string script = "t,px,py,pz,qw,qx,qy,qz\n";
-  for (const auto& [t, out] : {std::pair(0.0, 0.0), {0.8, 0.06}, {1.6, 0.0}}) {
-    const Quat& q = parts[6].pose.q;
-    script += std::to_string(t);
-    for (const double value : {x, y - out, z, q.w(), q.x(), q.y(), q.z()}) script += "," + std::to_string(value);
-    script += "\n";
-  }
-  folder.write("out/out_and_in.csv", script);
-  folder.write("out/run.toml", read_text(folder / "out/scene.toml") + "\n[device]\nscript = \"out_and_in.csv\"\n");
-  const Output run = run_program("tegotae", "run --fast --record " + (folder / "run.csv") + " " + (folder / "out/run.toml"));
-  INFO(run.out << run.err);
-  CHECK(run.code == 0);
-  std::istringstream rows(read_text(folder / "run.csv"));
-  double farthest = 0;
-  std::string row;
-  std::getline(rows, row);
-  while (std::getline(rows, row)) {
-    std::vector<double> values;
-    std::istringstream cells(row);
-    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::strtod(cell.c_str(), nullptr));
-    farthest = std::max(farthest, y - values.at(11));  // x_py
-  }
-  CHECK(farthest > 0.055);
+  check_out_and_in(folder, folder / "out/scene.toml", "Welle", 0.06);
+  // The cover lies on the plate, exactly in line, with the dowels in its holes.
+  check_out_and_in(folder, folder / "out/scene.toml", "Blech", 0.02);
+
+  // The same assembly through glTF.
+  folder.write("a.glb", glb_of(file.scene));
+  const Output gltf = run_program("tegotae", "import " + (folder / "a.glb") + " -o " + (folder / "gltf"));
+  INFO(gltf.err);
+  REQUIRE(gltf.code == 0);
+  CHECK(gltf.out.find("7 parts, 5 meshes") != std::string::npos);
+  check_out_and_in(folder, folder / "gltf/scene.toml", "Welle", 0.06);
+  check_out_and_in(folder, folder / "gltf/scene.toml", "Blech", 0.02);
 }
 #endif

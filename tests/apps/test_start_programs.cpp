@@ -17,12 +17,14 @@ void write_scene(const TempFolder& folder, double into, double post_x, const std
     for (int i = 0; i < 8; ++i)
       obj += "v " + std::to_string(i & 1 ? x : -x) + " " + std::to_string(i & 2 ? y : -y) + " " +
              std::to_string(i & 4 ? z1 : z0) + "\n";
-    return obj + "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
-                 "f 2 4 6\nf 4 8 6\n";
+    return obj +
+           "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
+           "f 2 4 6\nf 4 8 6\n";
   };
   folder.write("plate.obj", box(50, 50, -10, 0));
   folder.write("cube.obj", box(5, 5, 0, 10));
-  folder.write("lift.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0," + std::to_string(-into) + ",1,0,0,0\n0.3,0,0,0.02,1,0,0,0\n");
+  folder.write("lift.csv",
+               "t,px,py,pz,qw,qx,qy,qz\n0,0,0," + std::to_string(-into) + ",1,0,0,0\n0.3,0,0,0.02,1,0,0,0\n");
   folder.write("scene.toml", "unit = \"mm\"\n[contact]\n" + contact +
                                  "[[part]]\nname = \"plate\"\nmesh = \"plate.obj\"\n"
                                  "[[part]]\nname = \"post\"\nmesh = \"cube.obj\"\nposition = [" +

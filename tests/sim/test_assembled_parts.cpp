@@ -98,8 +98,8 @@ TEST_CASE("each gear comes off its coplanar seat and goes back in mesh with its 
   CHECK(std::abs(start.pairs[0].clash.place_W.z() - 5e-3) < 1e-6);
   // Pressed down, off by 26 mm (the shaft ends there), turned a little and back, down again and pressed.
   const Vec3 up(0, 0, 0.026), down(0, 0, -5e-4), none = Vec3::Zero(), turned(0.03, 0, 0.2);
-  const Outcome out = lead(scene, loop,
-                           {{0, none}, {0.1, down}, {0.6, up}, {0.8, up, turned}, {1.0, up}, {1.6, down}, {1.8, down}});
+  const Outcome out =
+      lead(scene, loop, {{0, none}, {0.1, down}, {0.6, up}, {0.8, up, turned}, {1.0, up}, {1.6, down}, {1.8, down}});
   CHECK(out.intersecting == 0);
   CHECK(out.highest > 0.0259);
   CHECK(out.touching > 200);
@@ -138,8 +138,9 @@ TEST_CASE("the piston runs in its cylinder", "[real_parts]") {
   CHECK(loop.start().pairs.empty());  // 3 mm apart
   // Along the cylinder's axis, y, up and down, pressed to the wall on the way.
   const Vec3 none = Vec3::Zero(), high(0, 0.15, 0), low(0, -0.15, 0), pressed(0.03, 0, 0.03);
-  const Outcome out = lead(scene, loop,
-                           {{0, none}, {0.5, high}, {0.7, high + pressed}, {1.5, low + pressed}, {2, low - pressed}, {2.5, none}});
+  const Outcome out =
+      lead(scene, loop,
+           {{0, none}, {0.5, high}, {0.7, high + pressed}, {1.5, low + pressed}, {2, low - pressed}, {2.5, none}});
   CHECK(out.intersecting == 0);
   CHECK(out.touching > 500);
   CHECK(out.X.p.norm() < 1e-4);

@@ -113,6 +113,8 @@ position = [1, 2.5, -3]
 l_min = 1e-6
 l_0 = 2e-6
 resolver = "lp"
+touch_tolerance = 3e-6
+initial_overlap = "ignore"
 density = 7800
 [coupling]
 stiffness = 1
@@ -150,6 +152,8 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(contact.l_0 == 2e-6);
   CHECK(contact.resolver == "lp");
   CHECK(contact.density == 7800);
+  CHECK(contact.touch_tolerance == 3e-6);
+  CHECK(contact.initial_overlap == "ignore");
   const CouplingSettings& coupling = file.scene.coupling;
   CHECK(coupling.stiffness == 1);
   CHECK(coupling.damping == 0);

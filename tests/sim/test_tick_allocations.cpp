@@ -74,7 +74,9 @@ TEST_CASE("a tick does not allocate while pairs of the start come free", "[alloc
   HapticLoop loop(scene);
   CHECK(loop.report().suspended == 1);
   CHECK(loop.report().relieved == (resolver == "penalty" ? 0 : 2));
-  const auto pen_at = [](int tick) { return Pose{Quat::Identity(), {0, 0, 0.005 + 0.015 * (1 - std::cos(0.02 * tick))}}; };
+  const auto pen_at = [](int tick) {
+    return Pose{Quat::Identity(), {0, 0, 0.005 + 0.015 * (1 - std::cos(0.02 * tick))}};
+  };
   for (int tick = 0; tick < 10; ++tick) loop.step(pen_at(0), 1e-3);
   std::uint64_t allocations = 0;
   for (int tick = 0; tick < 300; ++tick) {

@@ -24,10 +24,10 @@ struct RecordFrame {
 
 /// What a recording says of itself, so that it can be shown with its parts. Unknown texts are empty.
 struct RecordingInfo {
-  std::string scene;     ///< path of the scene file, as the recording program saw it or from the recording's folder
-  std::string held;      ///< name of the held part
-  std::string resolver;  ///< name
-  std::string program;   ///< who wrote it, and its version
+  std::string scene;        ///< path of the scene file, as the recording program saw it or from the recording's folder
+  std::string held;         ///< name of the held part
+  std::string resolver;     ///< name
+  std::string program;      ///< who wrote it, and its version
   std::string suspended{};  ///< names of the parts that the held part overlapped at the start, and was not kept out of
 };
 

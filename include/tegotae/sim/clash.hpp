@@ -21,19 +21,19 @@ struct Clash {
   std::size_t a = 0, b = 0;  ///< indices into Scene::parts, a < b
   ClashKind kind = ClashKind::near;
   double gap = 0;  ///< m: distance of the surfaces; 0 when they intersect
-  /// m: how far the deepest point found of one part lies inside the other, measured to the nearest point of its surface;
-  /// 0 when they are apart, NaN when none of the two is closed. Looked at are all vertices and, of the edges that cross
-  /// the other surface, the middles of the pieces between crossings: a lower bound of the depth of the deepest point,
-  /// exact where that is a vertex.
+  /// m: how far the deepest point found of one part lies inside the other, measured to the nearest point of its
+  /// surface; 0 when they are apart, NaN when none of the two is closed. Looked at are all vertices and, of the edges
+  /// that cross the other surface, the middles of the pieces between crossings: a lower bound of the depth of the
+  /// deepest point, exact where that is a vertex.
   double depth = 0;
-  Vec3 place_W = Vec3::Zero();  ///< the deepest point, or the middle of the shortest gap, m
+  Vec3 place_W = Vec3::Zero();     ///< the deepest point, or the middle of the shortest gap, m
   std::size_t triangle_pairs = 0;  ///< that intersect; triangles that touch count
 };
 
 struct ClashOptions {
-  double tolerance = 10e-6;  ///< m: what counts as touching
-  double within = 0;         ///< m: pairs apart by up to this are listed too
-  bool held_only = false;    ///< only the pairs of the held part
+  double tolerance = 10e-6;                                           ///< m: what counts as touching
+  double within = 0;                                                  ///< m: pairs apart by up to this are listed too
+  bool held_only = false;                                             ///< only the pairs of the held part
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< pairs of parts whose boxes are near
 };
 

@@ -54,8 +54,8 @@ struct ContactSettings {
   /// bounded by work alone, so that the same pen gives the same motion bit for bit on any machine.
   double tick_budget = 0.8e-3;
   double touch_tolerance = 10e-6;  ///< m: parts apart or overlapping by up to this at the start touch
-  /// What becomes of a fixed part that the held one overlaps more at the start. "refuse": an Error; "ignore": the pair is
-  /// suspended (nothing keeps the two apart) until it has once come free.
+  /// What becomes of a fixed part that the held one overlaps more at the start. "refuse": an Error; "ignore": the pair
+  /// is suspended (nothing keeps the two apart) until it has once come free.
   std::string initial_overlap = "refuse";
   double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation, and its mass
   ImpulseSettings impulse;

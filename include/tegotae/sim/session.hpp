@@ -56,9 +56,9 @@ struct RunSettings {
   std::string program;  ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
-  const HandGuide* guide = nullptr;         ///< leads the simulated hand away from the script
+  const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
   std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end the run early; the recording is kept
+  const std::atomic<bool>* stop = nullptr;           ///< set it to end the run early; the recording is kept
 };
 
 /// How a run went.

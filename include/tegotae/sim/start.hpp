@@ -32,7 +32,8 @@ struct StartPair {
 /// How the held part starts, and what has become of it.
 struct StartReport {
   std::vector<StartPair> pairs;
-  double shift = 0;  ///< m: how far the point of the held part that went farthest was moved to part the pairs that touch
+  double shift =
+      0;  ///< m: how far the point of the held part that went farthest was moved to part the pairs that touch
 };
 
 }  // namespace tegotae
