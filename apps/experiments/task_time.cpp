@@ -59,7 +59,7 @@ Outcome task_time(const Work& work) {
   const std::vector<OperatorProfile>& people = operator_profiles();
   const std::vector<double> ratios =
       work.options.quick ? std::vector<double>{0.91, 0.94} : std::vector<double>{0.91, 0.92, 0.93, 0.94};
-  const int seeds = work.seeds(8, 1);
+  const int seeds = work.seeds(12, 1);
   const std::size_t n_seeds = static_cast<std::size_t>(seeds);
   Times all(names.size(),
             std::vector<std::vector<std::vector<Result>>>(
