@@ -76,9 +76,9 @@ double clearance_um(double ratio) {
 }
 
 template <typename F>
-Plot plot(const std::string& title, const std::string& label, bool log, const std::vector<std::string>& names,
+Plot plot(const std::string& title, const Axis& y, const std::vector<std::string>& names,
           const std::vector<double>& ratios, const Rungs& rungs, F value) {
-  Plot p{title, {"diametral clearance (µm)", true}, {label, log}, {}};
+  Plot p{title, {"diametral clearance (µm)", true}, y, {}};
   for (std::size_t r = 0; r < names.size(); ++r) {
     Series s{names[r], {}, {}};
     for (std::size_t k = ratios.size(); k-- > 0;) {
@@ -189,18 +189,18 @@ Outcome ladder(const Work& work) {
       "tilted one among them. Who is not there 15 s after the tip has reached the surface did not finish. The deepest "
       "penetration is measured in closed form on every tenth pose, and FCL is asked about sixty poses a run.";
   out.claims = claims_of(p, rungs);
-  const auto over_rungs = [&](const std::string& title, const std::string& label, bool log, auto value) {
-    return plot(title, label, log, p.names, p.ratios, rungs, value);
+  const auto over_rungs = [&](const std::string& title, const Axis& y, auto value) {
+    return plot(title, y, p.names, p.ratios, rungs, value);
   };
   out.sections = {
       {"All rungs",
        "",
-       {over_rungs("completed", "completed (%)", false, [](const Rung& g) { return 100.0 * g.completed / g.tries; }),
-        over_rungs("time to the bottom, of those completed", "time (s)", false,
-                   [](const Rung& g) { return mean(g.time); }),
-        over_rungs("jitter: motion of the center above 30 Hz", "RMS (µm)", true,
+       {over_rungs("completed", {"completed (%)", false, false, true},
+                   [](const Rung& g) { return 100.0 * g.completed / g.tries; }),
+        over_rungs("time to the bottom, of those completed", {"time (s)"}, [](const Rung& g) { return mean(g.time); }),
+        over_rungs("jitter: motion of the center above 30 Hz", {"RMS (µm)", true},
                    [](const Rung& g) { return 1e6 * mean(g.vibration); }),
-        over_rungs("deepest penetration", "depth (µm)", false, [](const Rung& g) { return 1e6 * g.penetration; })},
+        over_rungs("deepest penetration", {"depth (µm)"}, [](const Rung& g) { return 1e6 * g.penetration; })},
        {table_of(p, rungs)}}};
   out.csv = {csv_of(p, attempts)};
   return out;
