@@ -25,12 +25,16 @@ function decades(u, axisIndex, low, high) {
   return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, i) => 10 ** (first + i * step));
 }
 
+function wholeNumbers(u, axisIndex, low, high) {
+  return Array.from({ length: Math.floor(high) - Math.ceil(low) + 1 }, (_, i) => Math.ceil(low) + i);
+}
+
 function axis(spec, [low, high]) {
   return {
     label: spec.label,
     values: tickText,
     ...(spec.log && Math.log10(high / low) > kMostDecades ? { splits: decades, filter: (u, ticks) => ticks } : {}),
-    ...(spec.whole ? { incs: [1, 2, 5, 10, 20, 50, 100] } : {}),
+    ...(spec.whole ? { splits: wholeNumbers } : {}),
     stroke: color("--muted"),
     grid: { stroke: color("--line"), width: 1 },
     ticks: { stroke: color("--line"), width: 1 },
