@@ -14,8 +14,8 @@ picture() {  # NAME HEIGHT
 }
 picture wall 2100
 picture insertion 1480
-picture task-time 1100
-picture ladder 1330
+picture task-time 1250
+picture ladder 2330
 picture hold 1130
 picture widening 1640
 picture wrench 2080
