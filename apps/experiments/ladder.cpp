@@ -187,7 +187,9 @@ Outcome ladder(const Work& work) {
       std::to_string(p.starts) + (p.starts == 1 ? " start" : " starts") +
       " each, and push to the bottom. The rivals impulse and penalty get every fourth of the same starts, the most "
       "tilted one among them. Who is not there 15 s after the tip has reached the surface did not finish. The deepest "
-      "penetration is measured in closed form on every tenth pose, and FCL is asked about sixty poses a run.";
+      "penetration is measured in closed form on every tenth pose, and FCL is asked about sixty poses a run. Jitter is "
+      "that of "
+      "all runs; a part that is stuck has none.";
   out.claims = claims_of(p, rungs);
   const auto over_rungs = [&](const std::string& title, const Axis& y, auto value) {
     return plot(title, y, p.names, p.ratios, rungs, value);

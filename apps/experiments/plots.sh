@@ -15,7 +15,7 @@ picture() {  # NAME HEIGHT
 picture wall 2100
 picture insertion 1480
 picture task-time 1250
-picture ladder 2330
+picture ladder 1340
 picture hold 1130
 picture widening 1640
 picture wrench 2080
