@@ -6,7 +6,7 @@
 namespace tegotae::bench {
 namespace {
 
-// Of a tick's budget, for what ends after the last look at the clock (issue of the figures: budget + 0.1 ms), µs.
+// Of a tick's budget, for what ends after the last look at the clock, µs.
 constexpr double kBudgetSlack = 100;
 // The paper-sized programmes are to beat GLPK by this much at this many contacts.
 constexpr int kGlpkRows = 64;
