@@ -6,7 +6,7 @@
 namespace tegotae::apps {
 
 std::string format(const char* pattern, ...) {
-  char text[256];
+  char text[512];
   va_list arguments;
   va_start(arguments, pattern);
   std::vsnprintf(text, sizeof text, pattern, arguments);

@@ -1,13 +1,12 @@
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "bench/results.hpp"
+#include "format.hpp"
 
 namespace tegotae::bench {
 namespace {
 
-// Of a tick's budget, for what ends after the last look at the clock (issue of the figures: budget + 0.1 ms), µs.
+// Of a tick's budget, for what ends after the last look at the clock, µs.
 constexpr double kBudgetSlack = 100;
 // The paper-sized programmes are to beat GLPK by this much at this many contacts.
 constexpr int kGlpkRows = 64;
@@ -18,16 +17,7 @@ constexpr double kMostGrowth = 3;
 // How near (m) a peg comes to the bottom of its hole when it is pressed on it.
 constexpr double kArrived = 1e-4;
 
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-
-std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
+using apps::format;
 
 std::string number(double x) {
   if (!std::isfinite(x)) return "–";

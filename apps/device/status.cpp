@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format.hpp"
+#include "latency_json.hpp"
 #include "run_options.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/device/channel.hpp"
@@ -79,8 +80,8 @@ std::string text(const Status& s) {
   return out;
 }
 
-ordered_json to_json(const double (&us)[4]) {
-  return {{"p50", us[0]}, {"p99", us[1]}, {"p999", us[2]}, {"max", us[3]}};
+LatencySummary percentiles(const double (&us)[4]) {
+  return {us[0], us[1], us[2], us[3]};
 }
 
 ordered_json json(const Status& s) {
@@ -99,8 +100,8 @@ ordered_json json(const Status& s) {
   j["rate_hz"] = t.rate_hz;
   j["ticks"] = t.ticks;
   j["missed"] = t.missed;
-  j["late_us"] = to_json(t.late_us);
-  j["compute_us"] = to_json(t.compute_us);
+  j["late_us"] = to_json(percentiles(t.late_us));
+  j["compute_us"] = to_json(percentiles(t.compute_us));
   j["realtime"] = {{"fifo", (t.realtime & TEGOTAE_SHM_REALTIME_FIFO) != 0},
                    {"memory", (t.realtime & TEGOTAE_SHM_REALTIME_MEMORY) != 0},
                    {"timer_slack", (t.realtime & TEGOTAE_SHM_REALTIME_TIMER_SLACK) != 0},

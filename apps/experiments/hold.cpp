@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kFirstSeed = 1000;                                 // as in the test of the same configurations
 constexpr double kMoved = 1e-6, kTurned = 1e-4, kForceChange = 0.01;  // m, rad, share
 // Less is drawn as this much: the axis is logarithmic.
-constexpr double kFloor = 1e-9;
+constexpr double kFloor = 1e-6;
 
 /// The values in ascending order over their rank in percent.
 template <typename F>
@@ -82,7 +82,7 @@ Outcome hold(const Work& work) {
                   at_most(names[r] + ": change of the force", f, 100 * kForceChange, "%")};
   }
   out.sections = {{"All resolvers",
-                   "Configurations in the order of their motion; what is below 1e-9 is drawn there.",
+                   "Configurations in the order of their motion; what is below 1e-6 is drawn there.",
                    {moved, force},
                    {table}}};
   out.csv = {csv};

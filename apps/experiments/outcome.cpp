@@ -31,7 +31,7 @@ Json numbers(const std::vector<double>& values) {
 }
 
 Json to_json(const Axis& a) {
-  return {{"label", a.label}, {"log", a.log}};
+  return {{"label", a.label}, {"log", a.log}, {"whole", a.whole}, {"percent", a.percent}};
 }
 
 Json to_json(const Plot& p) {

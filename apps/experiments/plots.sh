@@ -7,15 +7,15 @@ mkdir -p "$to"
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
 picture() {  # NAME HEIGHT
-  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --force-device-scale-factor=0.85 \
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --force-device-scale-factor=0.8 --blink-settings=preferredColorScheme=1 \
     --user-data-dir="$profile" --window-size="1040,$2" --virtual-time-budget=3000 \
     --screenshot="$to/$1.png" "file://$(realpath "$reports/$1/report.html")" 2>/dev/null
   echo "$to/$1.png"
 }
-picture wall 1790
-picture insertion 1400
-picture task-time 1500
-picture ladder 1450
-picture hold 1000
-picture widening 1150
-picture wrench 1100
+picture wall 2100
+picture insertion 1480
+picture task-time 1250
+picture ladder 1340
+picture hold 1130
+picture widening 1640
+picture wrench 2080

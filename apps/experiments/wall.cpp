@@ -21,8 +21,8 @@ constexpr double kPushed = 0.012;         // how far the hand goes on behind the
 constexpr double kTilt = 12 * 0.0174533;  // of the cube in procedure B, about y, rad
 // The phases of the figures: (A) free, (B) at the wall, (C) at wall and floor; s.
 constexpr double kBegin = 0.5, kAtWall = 1.5, kDown = 3.0, kHold = 4.5, kEnd = 5.5;
-// Forces that tell of the wall and, while the cube slides down the wall a tick behind the pen, of the floor, N.
-constexpr double kTouch = 0.02, kTouchFloor = 0.25;
+// Force that tells of contact (N). On its way down the wall the cube also rubs, so the floor is met with the pen there.
+constexpr double kTouch = 0.02;
 // After the first touch the cube settles on its gap, s.
 constexpr double kSettle = 0.1;
 
@@ -65,7 +65,7 @@ Trace run_push(double tilt, const std::string& resolver) {
   Trace trace{run_trial(scene, {}, hand, nullptr, kEnd, nullptr), scene.coupling, {}, {}};
   for (const Sample& s : trace.samples) {
     if (!trace.wall && s.wrench.force.x() < -kTouch) trace.wall = s.t;
-    if (!trace.floor && s.wrench.force.z() > kTouchFloor) trace.floor = s.t;
+    if (!trace.floor && s.Y.p.z() < kFloorZ && s.wrench.force.z() > kTouch) trace.floor = s.t;
   }
   return trace;
 }

@@ -78,7 +78,7 @@ Outcome widening(const Work& work) {
       "grow: what does not fit seems to, which is what the paper's reference 5 warns of. Stiffer springs grow it less, "
       "but "
       "what a 1 kHz loop can render is bounded.";
-  Plot plot{"apparent clearance", {"stiffness of a penetrating vertex (N/m)", true}, {"play (µm)", true}, {}};
+  Plot plot{"apparent clearance", {"stiffness of a penetrating vertex (N/m)", true}, {"play (µm)"}, {}};
   Series penalty{"penalty", {}, {}}, mine{first, {}, {}}, truth{"true clearance", {}, {}};
   penalty.points = true;
   truth.dash = true;

@@ -15,6 +15,10 @@ namespace {
 constexpr int kMoveTicks = 300, kRestTicks = 400, kWatchedTicks = 300;
 // By these lengths (m) a torque that should not be there is compared with the force, and the other way round.
 constexpr double kLever = 0.01;
+// A ball of 192 facets around touches up to half a facet (0.16 mm) beside the line through its center; pushed by 1.5
+// mm, of the 4 mm at which it would fall over, it turns by 1.6 times what that alone would make: % of the force at
+// kLever.
+constexpr double kFacetStray = 2.6;
 
 struct Reading {
   double expected = 0, measured = 0;  // magnitude of the force, or of the torque where no force is expected: N or N·m
@@ -116,13 +120,14 @@ Outcome wrench(const Work& work) {
       "Magnitude: relative error of force and torque. Direction: the angle to the true one. Stray: force or torque "
       "that "
       "should be zero, by what is there (a torque counts as the force at 10 mm). Noise: standard deviation under the "
-      "still pen. What is left is the gap that contacts keep (2 µm of the spring's millimeters) and the facets.";
+      "still pen. What is left is the gap that contacts keep (2 µm of the spring's millimeters) and the facets: a ball "
+      "of 192 facets touches up to 0.16 mm beside the line through its center, and feels the torque of that.";
   Csv csv{"wrench",
           {"resolver", "scene", "probe", "expected", "measured", "magnitude_error_percent", "direction_error_deg",
            "stray_percent", "noise_percent"}};
   Worst own{0, 0, 0, 0};
   Section section{"Scenes", "", {}, {}};
-  Plot plot{"worst error of the magnitude, by scene", {"scene"}, {"error (%)", true}, {}};
+  Plot plot{"worst error of the magnitude, by scene", {"scene", false, true}, {"error (%)", true}, {}};
   for (std::size_t r = 0; r < names.size(); ++r) plot.series.push_back({names[r], {}, {}, {}, {}, true});
   std::string legend;
   for (std::size_t s = 0; s < scenes.size(); ++s) {
@@ -148,7 +153,7 @@ Outcome wrench(const Work& work) {
   section.plots = {plot};
   out.claims = {at_most(names[0] + ": magnitude", own.magnitude, 1, "%"),
                 at_most(names[0] + ": direction", own.direction, 1, "°"),
-                at_most(names[0] + ": stray force or torque", own.stray, 1, "%"),
+                at_most(names[0] + ": stray force or torque (facets allow so much)", own.stray, kFacetStray, "%"),
                 at_most(names[0] + ": noise under a still pen", own.noise, 0.1, "%")};
   out.sections = {section};
   out.csv = {csv};

@@ -44,7 +44,7 @@ Vec3 direction(int i, int n) {
 
 WrenchScene ball_in_sphere(int probes) {
   WrenchScene w{"sphere in a spherical socket", "F = −k (d − c) u, T = 0", {}, {}};
-  constexpr double kRadius = 0.01, kPush = 3e-3;
+  constexpr double kRadius = 0.01, kPush = 1.5e-3;
   TriangleMesh socket = shapes::sphere(4 * kRadius, 16, 8);  // a ball with a cavity
   append(inside_out(shapes::sphere(2 * (kRadius + kPlay), 192, 96)), socket);
   w.scene.parts.push_back(part("socket", socket, {}, false));
@@ -59,7 +59,7 @@ WrenchScene ball_in_sphere(int probes) {
 
 WrenchScene ball_in_tube(int probes) {
   WrenchScene w{"sphere in a cylindrical socket", "F = −k (d − c) u across the axis, T = 0", {}, {}};
-  constexpr double kRadius = 0.01, kPush = 3e-3;
+  constexpr double kRadius = 0.01, kPush = 1.5e-3;
   shapes::Block block;
   block.hole_diameter = 2 * (kRadius + kPlay);
   block.segments = 128;

@@ -129,9 +129,18 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     if (impulses < kMostImpulses) next = next_collision(left);
     double time = next.limit < 0 ? left : next.time;
     if (time > 0) {
-      const Advance outcome = advance(time, report);
-      if (outcome == Advance::found && ++searches <= kMostSearches) continue;
-      if (outcome != Advance::made) break;
+      const bool search = searches < kMostSearches && impulses < kMostImpulses;
+      const Advance outcome = advance(search, time, report);
+      if (outcome == Advance::found) {
+        ++searches;
+        continue;
+      }
+      if (outcome == Advance::stuck) {
+        // What cannot go on is at rest. With its speed kept the coupling would pull it up in every sub-step, to a meter
+        // a second of a part that stands still, and no number of impulses would take that off.
+        if (!late()) V_ = {};
+        break;
+      }
       left -= time;
       searches = 0;
       continue;  // the limits are followed to here first; the nearest of them collides
@@ -185,7 +194,7 @@ void ImpulseLoop::collide(const Collision& collision) {
   collided_ = true;
 }
 
-ImpulseLoop::Advance ImpulseLoop::advance(double& time, TickReport& report) {
+ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport& report) {
   const double length = time * (V_.v.norm() + at_.radius * V_.w.norm());
   if (length < kRest) return Advance::made;
   time *= std::min({1.0, piece_cap_ / length, kMostTurn / std::max(kMostTurn, time * V_.w.norm())});
@@ -200,7 +209,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(double& time, TickReport& report) {
       return Advance::made;
     }
     report.cut |= answer == MotionAnswer::unknown;
-    if (i == 0 && answer == MotionAnswer::blocked &&
+    if (search && i == 0 && answer == MotionAnswer::blocked &&
         (at_.contacts->seed(blocking_, at_.check->near_contact(X_, d, blocking_), deadline_ns_) > 0 ||
          at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0))
       return Advance::found;

@@ -41,9 +41,9 @@ class ImpulseLoop final : public ProxyLoop {
   /// The next collision within `time` (s).
   Collision next_collision(double time) const;
   void collide(const Collision& collision);
-  /// Moves by V · time, or by as much of it as is free (then `time` is what was made). `found`: no motion, but limits
-  /// that were not known.
-  Advance advance(double& time, TickReport& report);
+  /// Moves by V · time, or by as much of it as is free (then `time` is what was made). `found`, with `search` only: no
+  /// motion, but limits that were not known.
+  Advance advance(bool search, double& time, TickReport& report);
   /// Speed at which the contact should open at least: zero, or what recovers its gap.
   double opening_speed(const Contact& c) const;
   double floor(const Contact& c) const;

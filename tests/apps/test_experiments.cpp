@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
@@ -23,13 +24,11 @@ void check_claims(const json& summary) {
   }
 }
 
-}  // namespace
-
-TEST_CASE("the short form of each experiment holds its claims", "[experiment]") {
-  const char* name = GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench");
+/// Runs the experiment and looks at its claims and files.
+void check_experiment(const std::string& name, const std::string& options) {
   CAPTURE(name);
   const TempFolder folder;
-  const Output o = run_program("tegotae", std::string("experiment ") + name + " --quick --out " + (folder / "out"));
+  const Output o = run_program("tegotae", "experiment " + name + " " + options + " --out " + (folder / "out"));
   INFO(o.out << o.err);
   CHECK(o.code == 0);
   CHECK(o.err.empty());  // no progress line: not a terminal
@@ -48,6 +47,17 @@ TEST_CASE("the short form of each experiment holds its claims", "[experiment]") 
     CHECK(head.find(',') != std::string::npos);
   }
   CHECK(tables > 0);
+}
+
+}  // namespace
+
+TEST_CASE("the short form of each experiment holds its claims", "[experiment]") {
+  check_experiment(GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench"), "--quick");
+}
+
+// The short ladder is for the default resolver; with the rivals, which may jam, it takes minutes.
+TEST_CASE("every rung with all resolvers", "[.][experiment_long]") {
+  check_experiment("ladder", "--seeds 1");
 }
 
 TEST_CASE("results do not depend on the number of threads", "[experiment]") {

@@ -6,6 +6,12 @@ export function element(tag, text = "", className = "") {
   return e;
 }
 
+// What is nothing but rounding is told as small, not with its digits.
+function cellText(value) {
+  const rounding = typeof value === "number" && value !== 0 && Math.abs(value) < 1e-6;
+  return rounding ? "< 1e-6" : String(value ?? "–");
+}
+
 // A table of {caption?, head: [...], rows: [[cell, ...], ...]}; a cell is text, a number or {text, class}.
 export function tableOf({ caption, head, rows }) {
   const table = element("table");
@@ -17,7 +23,7 @@ export function tableOf({ caption, head, rows }) {
     const tr = element("tr");
     for (const cell of row) {
       const rich = cell !== null && typeof cell === "object";
-      tr.append(element("td", String(rich ? cell.text : cell ?? "–"), rich ? cell.class : ""));
+      tr.append(element("td", rich ? cell.text : cellText(cell), rich ? cell.class : ""));
     }
     table.append(tr);
   }

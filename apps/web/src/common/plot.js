@@ -1,6 +1,6 @@
 // Draws one plot of a report with uPlot.
 //
-// plot: {title, x: {label, log?}, y: {label, log?}, kind?, series: [{name, x: [...], y: [...], low?: [...], high?: [...],
+// plot: {title, x: {label, log?, whole?}, y: {label, log?, percent?}, kind?, series: [{name, x: [...], y: [...], low?: [...], high?: [...],
 //        points?: true, dash?: true}], marks?: [{x, label}]}
 // kind "time" (the default): x ascends in every series; the legend follows the pointer. kind "trace": x may go back and
 // forth (a path in a plane). low and high are the ends of error bars.
@@ -14,9 +14,27 @@ function color(name) {
 }
 const seriesColor = (i) => color(`--series-${i % 6}`);
 
-function axis(label) {
+// As many digits as a tick needs: uPlot's own labels stop at three decimals. On a log axis it leaves out some (null).
+const tickText = (u, ticks) => ticks.map((v) => (v == null ? "" : Number(v.toPrecision(6)).toString().replace("-", "−")));
+
+// Over many decades only powers of ten; uPlot would draw nine lines in each.
+const kMostDecades = 4;
+function decades(u, axisIndex, low, high) {
+  const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+  const step = last - first > 2 * kMostDecades ? 3 : 1;
+  return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, i) => 10 ** (first + i * step));
+}
+
+function wholeNumbers(u, axisIndex, low, high) {
+  return Array.from({ length: Math.floor(high) - Math.ceil(low) + 1 }, (_, i) => Math.ceil(low) + i);
+}
+
+function axis(spec, [low, high]) {
   return {
-    label,
+    label: spec.label,
+    values: tickText,
+    ...(spec.log && Math.log10(high / low) > kMostDecades ? { splits: decades, filter: (u, ticks) => ticks } : {}),
+    ...(spec.whole ? { splits: wholeNumbers } : {}),
     stroke: color("--muted"),
     grid: { stroke: color("--line"), width: 1 },
     ticks: { stroke: color("--line"), width: 1 },
@@ -83,6 +101,7 @@ function drawMarks(u, marks) {
   ctx.strokeStyle = ctx.fillStyle = color("--muted");
   ctx.lineWidth = devicePixelRatio;
   ctx.font = `${12 * devicePixelRatio}px ${color("--font")}`;
+  ctx.textAlign = "left";
   for (const mark of marks) {
     const x = Math.round(u.valToPos(mark.x, "x", true));
     if (x < u.bbox.left || x > u.bbox.left + u.bbox.width) continue;
@@ -118,6 +137,7 @@ function yRange(spec, series) {
     }
   }
   if (!(low <= high)) return [0, 1];
+  if (spec.percent) return [0, 105];
   return spec.log ? uPlot.rangeLog(low, high, 10, true) : uPlot.rangeNum(low, high, 0.1, true);
 }
 
@@ -131,7 +151,8 @@ function options(plot, width) {
     width,
     height: kHeight,
     scales: { x: plot.series.some((s) => s.points) && !plot.x.log ? { ...scale(plot.x), range: padded } : scale(plot.x), y: { ...scale(plot.y), range: () => yRange(plot.y, plot.series) } },
-    axes: [axis(plot.x.label), { ...axis(plot.y.label), size: 64 }],
+    padding: [null, 24, null, null],
+    axes: [axis(plot.x, [1, 1]), { ...axis(plot.y, yRange(plot.y, plot.series)), size: 64 }],
     cursor: { show: !trace, drag: { x: true, y: false } },
     legend: { live: !trace },
     series: [

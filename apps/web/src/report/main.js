@@ -6,11 +6,11 @@ const report = JSON.parse(document.getElementById("data").textContent);
 const root = document.getElementById("report");
 
 function claimsTable(claims) {
-  const number = (v) => (typeof v === "number" ? Number(v.toPrecision(4)).toString() : String(v));
+  const number = (v) => (typeof v === "number" ? Number(v.toPrecision(4)) : v);
   return tableOf({
     head: ["claim", "value", "target", "unit", "verdict"],
     rows: claims.map((c) => [
-      c.name, number(c.value), number(c.target), c.unit ?? "",
+      c.name, number(c.value), c.target, c.unit ?? "",
       { text: c.holds ? "holds" : "does not hold", class: c.holds ? "holds" : "fails" },
     ]),
   });
