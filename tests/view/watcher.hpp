@@ -39,7 +39,7 @@ class Watcher {
   /// The numbers of the newest frame (apps/view/wire.cpp), without its pairs.
   const std::vector<float>& row() const { return row_; }
 
-  // The newest status that came along with the frames so far; empty before the first.
+  /// The newest status that came along with the frames so far; empty before the first.
   const std::string& status() const { return status_; }
 
  private:
@@ -53,6 +53,7 @@ class Watcher {
         if (head[0] != 1 && head[0] != 2) throw std::runtime_error("no message");
         if (buffer_.size() < 8 + head[1]) break;
         if (head[0] == 1) std::memcpy(row_.data(), buffer_.data() + 8, kFloats * sizeof(float));
+        if (head[0] == 2) status_ = buffer_.substr(8, head[1]);
         buffer_.erase(0, 8 + head[1]);
         if (head[0] == 1) return true;
       }
