@@ -45,9 +45,11 @@ TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
   const SceneFile scene = load_scene(folder / "out/scene.toml", {"a/b", true, {}});
   REQUIRE(scene.scene.parts.size() == 2);
   CHECK(scene.scene.parts[1].name == "a/b_2");
-  CHECK((scene.scene.parts[1].pose * report(*scene.scene.parts[1].mesh).box_max - Vec3(0.05, 0.01, 0.01)).norm() < 1e-8);
+  CHECK((scene.scene.parts[1].pose * report(*scene.scene.parts[1].mesh).box_max - Vec3(0.05, 0.01, 0.01)).norm() <
+        1e-8);
   CHECK(run_program("tegotae", "run --fast --hold a/b_2 " + (folder / "out/scene.toml")).code == 0);
-  check_refused(run_program("tegotae", "run --fast " + (folder / "out/scene.toml")), {"no part is held", "--hold NAME"});
+  check_refused(run_program("tegotae", "run --fast " + (folder / "out/scene.toml")),
+                {"no part is held", "--hold NAME"});
   check_refused(run_program("tegotae", "run --fast --hold c " + (folder / "out/scene.toml")), {"no part is named c"});
   const Output check = run_program("tegotae", "check " + (folder / "out/scene.toml"));
   CHECK(check.code == 0);
@@ -64,7 +66,8 @@ TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
 TEST_CASE("control characters in names become spaces, so that the scene can be read", "[import]") {
   const TempFolder folder;
   folder.write("two.obj",
-               "g a\x01" "b\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+               "g a\x01"
+               "b\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
                "g c\nv 40 0 0\nv 50 0 0\nv 40 10 0\nv 40 0 10\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n");
   REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --split -o " + (folder / "out")).code == 0);
   CHECK(load_scene(folder / "out/scene.toml", {"a b", true, {}}).scene.parts.size() == 2);
@@ -114,8 +117,11 @@ std::string glb_of(const Scene& scene) {
       for (std::size_t i = 0; i < mesh.vertices.size(); ++i) points.col(i) = mesh.vertices[i].cast<float>();
       const Eigen::Vector3f lo = points.rowwise().minCoeff(), hi = points.rowwise().maxCoeff();
       const std::size_t at = add(points.data(), 12 * mesh.vertices.size(),
-                                 {{"componentType", 5126}, {"type", "VEC3"}, {"count", mesh.vertices.size()},
-                                  {"min", {lo.x(), lo.y(), lo.z()}}, {"max", {hi.x(), hi.y(), hi.z()}}});
+                                 {{"componentType", 5126},
+                                  {"type", "VEC3"},
+                                  {"count", mesh.vertices.size()},
+                                  {"min", {lo.x(), lo.y(), lo.z()}},
+                                  {"max", {hi.x(), hi.y(), hi.z()}}});
       const std::size_t faces =
           add(mesh.triangles.data(), 12 * mesh.triangles.size(),
               {{"componentType", 5125}, {"type", "SCALAR"}, {"count", 3 * mesh.triangles.size()}});
@@ -123,7 +129,9 @@ std::string glb_of(const Scene& scene) {
     }
     const Quat& q = part.pose.q;
     const Vec3& p = part.pose.p;
-    top["nodes"].push_back({{"name", part.name}, {"mesh", meshes[&mesh]}, {"rotation", {q.x(), q.y(), q.z(), q.w()}},
+    top["nodes"].push_back({{"name", part.name},
+                            {"mesh", meshes[&mesh]},
+                            {"rotation", {q.x(), q.y(), q.z(), q.w()}},
                             {"translation", {p.x(), p.y(), p.z()}}});
   }
   json nodes = json::array();
@@ -140,26 +148,27 @@ std::string glb_of(const Scene& scene) {
          word(bytes.size()) + std::string("BIN\0", 4) + bytes;
 }
 
-/// Takes `held` out of its place by `way` (m) along the assembly's axis, the world's -y, and puts it back.
-void check_out_and_in(const TempFolder& folder, const std::string& scene, const std::string& held, double way) {
+/// Takes `held` out of its place by `way` (m) along the assembly's axis, the world's -y, and puts it `back`.
+void check_out(const TempFolder& folder, const std::string& scene, const std::string& held, double way, bool back) {
   CAPTURE(scene, held);
   const SceneFile file = load_scene(scene, {held, true, {}});
-  const auto part = std::find_if(file.scene.parts.begin(), file.scene.parts.end(), [](const Part& p) { return p.held; });
+  const auto part =
+      std::find_if(file.scene.parts.begin(), file.scene.parts.end(), [](const Part& p) { return p.held; });
   const Vec3& p = part->pose.p;
   const Quat& q = part->pose.q;
   std::ostringstream script;
   script.precision(17);
   script << "t,px,py,pz,qw,qx,qy,qz\n";
-  for (const auto& [t, out] : {std::pair(0.0, 0.0), {0.8, way}, {1.6, 0.0}})
+  for (const auto& [t, out] : {std::pair(0.0, 0.0), {0.8, way}, {1.6, back ? 0 : way}})
     script << t << ',' << p.x() << ',' << p.y() - out << ',' << p.z() << ',' << q.w() << ',' << q.x() << ',' << q.y()
            << ',' << q.z() << '\n';
   const std::filesystem::path beside = std::filesystem::path(scene).parent_path();
-  std::ofstream(beside / "out_and_in.csv") << script.str();
-  std::ofstream(beside / "run.toml") << read_text(scene) << "\n[device]\nscript = \"out_and_in.csv\"\n";
+  std::ofstream(beside / "out.csv") << script.str();
+  std::ofstream(beside / "run.toml") << read_text(scene) << "\n[device]\nscript = \"out.csv\"\n";
   const Output run = run_program("tegotae", "run --fast --hold " + held + " --record " + (folder / "run.csv") + " " +
                                                 (beside / "run.toml").string());
   INFO(run.out << run.err);
-  CHECK(run.code == 0);  // back in place, and no pose intersects
+  CHECK(run.code == 0);  // it is where the script ends, and no pose intersected
   double farthest = 0;
   for (const RecordedRow& row : read_recording(folder / "run.csv")) farthest = std::max(farthest, p.y() - row.x.p.y());
   CHECK(farthest > 0.95 * way);
@@ -176,7 +185,8 @@ TEST_CASE("damaged STEP files end in one line, whatever the reader does with the
   for (int i = 0; i < 12; ++i) {
     std::string bad = whole;
     for (int k = 0; k < 1 + 3 * (i % 3); ++k)
-      bad[whole.find("DATA;") + random() % (whole.size() - whole.find("DATA;") - 40)] = "0123456789,#()$.AB"[random() % 18];
+      bad[whole.find("DATA;") + random() % (whole.size() - whole.find("DATA;") - 40)] =
+          "0123456789,#()$.AB"[random() % 18];
     folder.write("bad.step", bad);
     const Output o = run_program("tegotae", "import " + (folder / "bad.step") + " -o " + (folder / "out"));
     INFO(i << " " << o.err);
@@ -194,8 +204,7 @@ TEST_CASE("damaged STEP files end in one line, whatever the reader does with the
 TEST_CASE("a STEP assembly becomes a scene whose shaft can be held", "[import]") {
   const TempFolder folder;
   write_step_assembly(folder / "a.step", {}, "MM", "AP214IS");
-  const Output o =
-      run_program("tegotae", "import " + (folder / "a.step") + " --hold Welle -o " + (folder / "out"));
+  const Output o = run_program("tegotae", "import " + (folder / "a.step") + " --hold Welle -o " + (folder / "out"));
   INFO(o.err);
   REQUIRE(o.code == 0);
   CHECK(o.err.empty());
@@ -231,9 +240,9 @@ TEST_CASE("a STEP assembly becomes a scene whose shaft can be held", "[import]")
     CHECK(gap >= nominal - 1e-9);
     CHECK(gap <= nominal + 10.1e-3);
   }
-  check_out_and_in(folder, folder / "out/scene.toml", "Welle", 0.06);
+  check_out(folder, folder / "out/scene.toml", "Welle", 0.06, true);
   // The cover lies on the plate, exactly in line, with the dowels in its holes.
-  check_out_and_in(folder, folder / "out/scene.toml", "Blech", 0.02);
+  check_out(folder, folder / "out/scene.toml", "Blech", 0.02, false);
 
   // The same assembly through glTF.
   folder.write("a.glb", glb_of(file.scene));
@@ -241,7 +250,7 @@ TEST_CASE("a STEP assembly becomes a scene whose shaft can be held", "[import]")
   INFO(gltf.err);
   REQUIRE(gltf.code == 0);
   CHECK(gltf.out.find("7 parts, 5 meshes") != std::string::npos);
-  check_out_and_in(folder, folder / "gltf/scene.toml", "Welle", 0.06);
-  check_out_and_in(folder, folder / "gltf/scene.toml", "Blech", 0.02);
+  check_out(folder, folder / "gltf/scene.toml", "Welle", 0.06, true);
+  check_out(folder, folder / "gltf/scene.toml", "Blech", 0.02, false);
 }
 #endif

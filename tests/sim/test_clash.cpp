@@ -7,8 +7,8 @@
 #include "catch.hpp"
 #include "feature/simplex_distance.hpp"
 #include "models/shapes.hpp"
-#include "narrowphase/containment.hpp"
 #include "tegotae/sim/clash.hpp"
+#include "winding_number.hpp"
 
 using namespace tegotae;
 
@@ -43,7 +43,7 @@ double surface_distance(const Part& p, const Vec3& point_W) {
 }
 
 bool is_inside(const Part& p, const Vec3& point_W) {
-  return winding_number(*p.mesh, p.pose.inverse() * point_W) > 0.5;
+  return test::winding_number(*p.mesh, p.pose.inverse() * point_W) > 0.5;
 }
 
 /// Depth of the deepest of n² points on each triangle of `a` in `b`.
@@ -81,7 +81,8 @@ bool edges_cross(const Part& a, const Part& b) {
           return (b1 - a1).cross(c1 - a1).dot(d1 - a1);
         };
         if (volume(t.p[0], t.p[1], t.p[2], p) * volume(t.p[0], t.p[1], t.p[2], q) >= 0) continue;
-        const double u = volume(p, q, t.p[0], t.p[1]), v = volume(p, q, t.p[1], t.p[2]), w = volume(p, q, t.p[2], t.p[0]);
+        const double u = volume(p, q, t.p[0], t.p[1]), v = volume(p, q, t.p[1], t.p[2]),
+                     w = volume(p, q, t.p[2], t.p[0]);
         if ((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)) return true;
       }
     }
@@ -134,7 +135,8 @@ TEST_CASE("clashes of boxes are what they are by construction", "[clash]") {
 
 TEST_CASE("bars that cross have no vertex in each other and still a depth", "[clash]") {
   // Square bars 10 mm wide, 4 mm into each other at right angles: the edges of one cross the other 4 mm deep.
-  const auto found = clashes({part("a", shapes::box({0.1, 0.01, 0.01})), part("b", shapes::box({0.01, 0.1, 0.01}), {0, 0, 0.006})});
+  const auto found =
+      clashes({part("a", shapes::box({0.1, 0.01, 0.01})), part("b", shapes::box({0.01, 0.1, 0.01}), {0, 0, 0.006})});
   REQUIRE(found.size() == 1);
   CHECK(found[0].kind == ClashKind::overlap);
   CHECK(found[0].depth == Approx(0.004));
@@ -214,8 +216,8 @@ TEST_CASE("the list agrees with brute force", "[clash]") {
         const Part &a = scene.parts[i], &b = scene.parts[j];
         const auto c = std::find_if(found.begin(), found.end(), [&](const Clash& x) { return x.a == i && x.b == j; });
         const bool crossing = edges_cross(a, b) || edges_cross(b, a);
-        const bool overlap = crossing || is_inside(a, b.pose * b.mesh->vertices[0]) ||
-                             is_inside(b, a.pose * a.mesh->vertices[0]);
+        const bool overlap =
+            crossing || is_inside(a, b.pose * b.mesh->vertices[0]) || is_inside(b, a.pose * a.mesh->vertices[0]);
         INFO(round << ": " << i << " " << j);
         if (overlap) {
           REQUIRE(c != found.end());

@@ -41,6 +41,9 @@ class Watcher {
   /// The newest status that came along with the frames so far; empty before the first.
   const std::string& status() const { return status_; }
 
+  /// The newest status that came along with the frames so far; empty before the first.
+  const std::string& status() const { return status_; }
+
  private:
   static constexpr std::size_t kFloats = 32;
 
