@@ -42,7 +42,7 @@ constexpr double kKeepShare = 0.5;
 constexpr int kAdaptTicks = 8;
 constexpr double kKeepGrowth = 1.1;
 // A part that moved less than this in a tick (m) stands; normals with less than this dot product are of opposite sides,
-// looked for among so many limits.
+// looked for among about so many limits.
 constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMostWedging = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
@@ -193,10 +193,11 @@ void ContactLoop::adapt_keep(const Pose& Y) {
 
 bool ContactLoop::wedged() const {
   const auto& limits = at_.contacts->limits();
-  const std::size_t n = std::min(limits.size(), kMostWedging);
+  // Of many limits an even sample: neighbors in the list are of one side.
+  const std::size_t stride = limits.size() / kMostWedging + 1;
   const auto presses = [this](const Contact& c) { return c.age != kCutAge && c.gap <= keep_ / kKeepShare; };
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < i && presses(limits[i]); ++j)
+  for (std::size_t i = 0; i < limits.size(); i += stride)
+    for (std::size_t j = 0; j < i && presses(limits[i]); j += stride)
       if (presses(limits[j]) && limits[i].n.dot(limits[j].n) < kOpposite) return true;
   return false;
 }
