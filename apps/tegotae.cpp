@@ -9,6 +9,7 @@
 #include "experiments/experiments.hpp"
 #include "import.hpp"
 #include "length_option.hpp"
+#include "review/review_command.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
@@ -71,6 +72,9 @@ int main(int argc, char** argv) {
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
 
+  review::ReviewOptions review_options;
+  const CLI::App* review = review::add_review(app, review_options);
+
   bool isolated = false;
   for (CLI::App* reads : {run, check})
     reads->add_flag("--isolated", isolated, "Load meshes in a process of their own, bounded in time and memory");
@@ -114,6 +118,7 @@ int main(int argc, char** argv) {
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
+    if (review->parsed()) return review::run_review(review_options);
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
     return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
