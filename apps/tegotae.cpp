@@ -13,6 +13,7 @@
 #include "run_options.hpp"
 #include "status_line.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
+#include "tries/try_command.hpp"
 #include "view/replay.hpp"
 
 using namespace tegotae;
@@ -44,6 +45,8 @@ int main(int argc, char** argv) {
   run->add_option("SCENE", scene, "Scene file (TOML)")->required();
   std::string hold;
   run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
+  std::string script;
+  run->add_option("--script", script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
       ->check([](const std::string& text) -> std::string {
@@ -74,6 +77,9 @@ int main(int argc, char** argv) {
 
   review::ReviewOptions review_options;
   const CLI::App* review = review::add_review(app, review_options);
+
+  tries::TryOptions try_options;
+  const CLI::App* tries = tries::add_try(app, try_options);
 
   bool isolated = false;
   for (CLI::App* reads : {run, check})
@@ -119,8 +125,11 @@ int main(int argc, char** argv) {
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
     if (review->parsed()) return review::run_review(review_options);
+    if (tries->parsed()) return tries::run_tries(try_options);
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
-    return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
+    SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);
+    if (!script.empty()) loaded.script = read_script(script);
+    return run_and_report(std::move(loaded), options, scene);
   });
 }

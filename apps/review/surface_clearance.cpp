@@ -1,16 +1,15 @@
 #include "review/surface_clearance.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
-#include <thread>
 #include <unordered_map>
 
 #include "broadphase/bounding_spheres.hpp"
 #include "feature/signed_distance.hpp"
+#include "parallel_for.hpp"
 #include "sim/run_goal.hpp"
 #include "view/display_mesh.hpp"
 
@@ -20,7 +19,7 @@ namespace {
 // Triangles are cut until no edge is longer than this share of the part's radius, or a coarser one for many.
 constexpr double kEdgeShare = 1.0 / 12;
 constexpr double kCoarser = 1.3;
-constexpr std::size_t kBlock = 128;  // points that a thread takes at a time
+constexpr std::size_t kBlock = 64;  // points that a thread takes at a time
 
 struct Refined {
   std::vector<Vec3> points;
@@ -186,20 +185,17 @@ void add_clearance(const Scene& scene, const std::vector<RecordFrame>& rows, con
   surface.reach = reach;
   surface.clearance.resize(count);
   const PathClearance path(scene, rows, looked_at, reach);
-  std::atomic<std::size_t> next{0};
-  const auto work = [&](bool tells) {
-    for (std::size_t begin = next.fetch_add(kBlock); begin < count; begin = next.fetch_add(kBlock)) {
-      if (tells && progress) progress("clearance of the surface, point", begin, count);
-      for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) {
-        const float* p = surface.positions.data() + 3 * i;
-        surface.clearance[i] = static_cast<float>(path.least(Vec3(p[0], p[1], p[2])));
-      }
+  const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
+  const auto color = [&](int block) {
+    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+    for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) {
+      const float* p = surface.positions.data() + 3 * i;
+      surface.clearance[i] = static_cast<float>(path.least(Vec3(p[0], p[1], p[2])));
     }
   };
-  std::vector<std::thread> others;
-  for (unsigned k = 1; k < std::thread::hardware_concurrency(); ++k) others.emplace_back(work, false);
-  work(true);
-  for (std::thread& t : others) t.join();
+  apps::parallel_for(blocks, 0, color, [&](int done) {
+    if (progress) progress("clearance of the surface, point", static_cast<std::size_t>(done) * kBlock, count);
+  });
 }
 
 }  // namespace tegotae::review
