@@ -126,10 +126,11 @@ class Gltf {
       }
       Quat q = row.x.q;
       if (q.dot(last) < 0) q.coeffs() *= -1;
+      q.normalize();
       last = q;
       times.push_back(t);
       for (const double x : row.x.p) places.push_back(static_cast<float>(x));
-      for (const double x : q.normalized().coeffs()) turns.push_back(static_cast<float>(x));  // x, y, z, w
+      for (const double x : q.coeffs()) turns.push_back(static_cast<float>(x));  // x, y, z, w
     }
     const std::size_t input = add(times, "SCALAR", 1, 0, true);
     const std::size_t place = add(places, "VEC3", 3, 0, false), turn = add(turns, "VEC4", 4, 0, false);

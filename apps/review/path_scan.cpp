@@ -17,21 +17,25 @@ constexpr double kTwoSided = 0.1736;  // sine of 10 degrees
 constexpr int kMostSteps = 500;
 constexpr std::size_t kTellEvery = 64;  // rows
 
-/// Contacts of the led loop at a row.
+/// Contacts at a row whose clearances are known: those of the led loop, which knows many places of one part but only of
+/// parts that are in its way, and the nearest place of every part.
 void add_contacts(const view::Follower& follower, ScannedRow& out) {
   const HapticLoop& loop = follower.loop();
   out.contact_gap = loop.report().contact_gap;
-  if (follower.astray()) return;
   std::vector<Vec3> normals;
   Vec3 sum = Vec3::Zero();
-  for (const Contact& c : loop.limits()) {
-    if (c.age == kCutAge || c.gap > out.contact_gap) continue;
-    normals.push_back(c.n);
-    sum += c.r;
-  }
+  const auto add = [&](const Vec3& normal, const Vec3& place) {
+    normals.push_back(normal);
+    sum += place;
+  };
+  for (const Clearance& c : out.clearances)
+    if (c.distance > 0 && c.distance <= out.contact_gap)
+      add((c.on_held_W - c.on_other_W) / c.distance, c.on_held_W);
+  const Vec3 center = loop.report().proxy.X * loop.center();
+  for (const Contact& c : loop.limits())
+    if (!follower.astray() && c.age != kCutAge && c.gap <= out.contact_gap) add(c.n, center + c.r);
   out.two_sided = holds_from_two_sides(normals);
-  if (out.two_sided)
-    out.contact_W = loop.report().proxy.X * loop.center() + sum / static_cast<double>(normals.size());
+  if (out.two_sided) out.contact_W = sum / static_cast<double>(normals.size());
 }
 
 }  // namespace
@@ -77,12 +81,12 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
     ++next;
     ScannedRow row;
     row.row = i;
-    add_contacts(follower, row);
     const bool still = i > 0 && rows[i].x.p == rows[i - 1].x.p && rows[i].x.q.coeffs() == rows[i - 1].x.q.coeffs();
     if (still && scan.every == 1)
       row.clearances = scan.rows.back().clearances;
     else
       probe.at(rows[i].x, scan.reach, row.clearances);
+    add_contacts(follower, row);
     scan.rows.push_back(std::move(row));
   }
   scan.astray = follower.strayed();
