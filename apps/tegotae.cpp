@@ -27,8 +27,9 @@ int show_recording(const std::string& recording, const std::string& scene, const
   const std::string bundle =
       view::replay_bundle(recording, load_scene(scene.empty() ? view::recorded_scene(recording) : scene));
   if (html.empty())
-    view::serve_replay(bundle, view_address(address), catch_interrupts(),
-                       [](const std::string& url) { announce_page(url); });
+    view::serve_replay(
+        bundle, [&] { return review::recording_report(recording, scene); }, view_address(address), catch_interrupts(),
+        [](const std::string& url) { announce_page(url); });
   else
     view::write_replay(bundle, html);
   return kDone;

@@ -7,6 +7,7 @@
 #include "review/report_tables.hpp"
 #include "review/review.hpp"
 #include "review/surface_clearance.hpp"
+#include "sim/run_goal.hpp"
 #include "view/bundle.hpp"
 #include "web/page.hpp"
 
@@ -36,10 +37,7 @@ json verdict_json(const Verdict& v) {
 /// t and pose of rows, eight numbers each; and which of them are shown as ghosts: evenly along the way.
 void add_path(view::Bundle& bundle, const Review& r) {
   const auto& rows = r.recording.frames;
-  const double radius = bounding_sphere(*std::find_if(r.file.scene.parts.begin(), r.file.scene.parts.end(),
-                                                      [](const Part& p) { return p.held; })
-                                             ->mesh)
-                            .radius;
+  const double radius = bounding_sphere(*held_part(r.file.scene).mesh).radius;
   std::vector<float> path;
   std::vector<double> way;
   const RecordFrame* last = nullptr;
@@ -65,8 +63,7 @@ void add_path(view::Bundle& bundle, const Review& r) {
 
 void add_surface(view::Bundle& bundle, const Review& r, const Progress& progress) {
   const Scene& scene = r.file.scene;
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-  ColoredSurface surface = sampled_surface(held->mesh, kMostTriangles);
+  ColoredSurface surface = sampled_surface(held_part(scene).mesh, kMostTriangles);
   const std::vector<std::size_t> numbers = looked_at(r.recording.frames.size(), kMostColorPoses);
   add_clearance(scene, r.recording.frames, numbers, r.scan.reach, progress, surface);
   bundle.about["surface"] = {{"positions", bundle.add(surface.positions)},
@@ -114,7 +111,7 @@ json notes(const Review& r) {
 std::string report_html(const Review& r, const Progress& progress) {
   view::Bundle bundle;
   view::add_scene(bundle, r.file.scene, r.center);
-  bundle.about["title"] = r.path.substr(r.path.find_last_of('/') + 1);
+  bundle.about["title"] = held_part(r.file.scene).name + ": " + r.path.substr(r.path.find_last_of('/') + 1);
   bundle.about["subtitle"] = r.file.path + (r.recording.info.program.empty() ? "" : ", " + r.recording.info.program);
   bundle.about["verdict"] = verdict_json(r.verdict);
   add_path(bundle, r);

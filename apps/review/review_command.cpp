@@ -25,7 +25,23 @@ std::string beside(const std::string& recording) {
   return std::filesystem::path(recording).replace_extension().string() + ".review.html";
 }
 
+/// With the part in the hand that was held then.
+SceneOptions held_as(const std::string& recording) {
+  SceneOptions how;
+  how.hold = read_recording(recording).info.held;
+  return how;
+}
+
+std::string scene_of(const std::string& recording, const std::string& scene) {
+  return scene.empty() ? view::recorded_scene(recording) : scene;
+}
+
 }  // namespace
+
+std::string recording_report(const std::string& recording, const std::string& scene) {
+  SceneFile file = load_scene(scene_of(recording, scene), held_as(recording));
+  return report_html(review_recording(recording, std::move(file), std::nullopt, {}), {});
+}
 
 CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
   CLI::App* review = app.add_subcommand("review", "Report on a recording: does it go, how close to what, how hard");
@@ -43,7 +59,7 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
 
 int run_review(const ReviewOptions& o) {
   const std::string out = o.out.empty() ? beside(o.recording) : o.out;
-  SceneFile scene = apps::load_with_progress(o.scene.empty() ? view::recorded_scene(o.recording) : o.scene);
+  SceneFile scene = apps::load_with_progress(scene_of(o.recording, o.scene), held_as(o.recording));
   std::optional<Pose> goal;
   if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
   apps::StatusLine status;

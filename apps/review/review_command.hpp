@@ -19,4 +19,7 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& options);
 /// Writes the report and the exports, and prints the verdict. Returns the exit code. Throws Error.
 int run_review(const ReviewOptions& options);
 
+/// The report on `recording` over `scene` (empty: the one that it names), HTML. Throws Error.
+std::string recording_report(const std::string& recording, const std::string& scene);
+
 }  // namespace tegotae::review

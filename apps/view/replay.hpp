@@ -19,9 +19,10 @@ std::string recorded_scene(const std::string& path);
 /// Throws Error when the recording cannot be read or the part would stand in another one.
 std::string replay_bundle(const std::string& path, SceneFile file);
 
-/// Serves a bundle until `stop`; `announce` gets the address to open.
-void serve_replay(const std::string& bundle, const Address& address, const std::atomic<bool>& stop,
-                  const std::function<void(const std::string&)>& announce);
+/// Serves a bundle until `stop`; `announce` gets the address to open. `make_review` makes the HTML report on the
+/// recording when the page asks for it, in a thread of the server.
+void serve_replay(const std::string& bundle, const std::function<std::string()>& make_review, const Address& address,
+                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& announce);
 
 /// Writes the page with the bundle in it to `path`. Throws Error.
 void write_replay(const std::string& bundle, const std::string& path);

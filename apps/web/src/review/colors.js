@@ -1,6 +1,7 @@
 // From a clearance to a color: red is close, blue is as far as was looked, logarithmic; gray is farther.
 const stops = [[165, 0, 38], [244, 109, 67], [254, 224, 144], [116, 173, 209], [49, 54, 149]];
 const beyond = [150, 156, 163];
+const tickRoom = 0.24; // of the scale, for a label
 
 export class ClearanceScale {
   constructor(clearances, reach) {
@@ -19,10 +20,10 @@ export class ClearanceScale {
     const i = Math.min(Math.floor(x), stops.length - 2);
     return stops[i].map((c, k) => c + (x - i) * (stops[i + 1][k] - c));
   }
-  // Powers of ten within, and the end.
+  // Both ends, and powers of ten that have room between.
   ticks() {
-    const out = [];
-    for (let v = this.low; v < this.high / 2; v *= 10) out.push(v);
+    const out = [this.low];
+    for (let v = 10 * this.low; this.at(v) < 1 - tickRoom; v *= 10) if (this.at(v) - this.at(out.at(-1)) > tickRoom) out.push(v);
     return [...out, this.high];
   }
 }

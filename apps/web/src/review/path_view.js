@@ -68,7 +68,7 @@ export class PathView {
 
   addGhosts(bundle) {
     const group = new THREE.Group();
-    this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.05, depthWrite: false, side: THREE.DoubleSide });
+    this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.04, depthWrite: false, side: THREE.DoubleSide });
     this.ghostLines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.35, depthWrite: false });
     const [, , lines] = this.stage.held.group.children;
     for (const i of bundle.integers(bundle.about.ghosts)) {
