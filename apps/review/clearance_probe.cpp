@@ -34,7 +34,8 @@ bool ClearanceProbe::measure(Other& other, const Pose& X, double limit, Clearanc
   const Part& part = scene_.parts[other.part];
   const Pose X_BA = part.pose.inverse() * X;
   const auto nearest = [&] {
-    return closest_points(triangle(*held_.mesh, other.last.first, X_BA), triangle(*part.mesh, other.last.second, Pose()));
+    return closest_points(triangle(*held_.mesh, other.last.first, X_BA),
+                          triangle(*part.mesh, other.last.second, Pose()));
   };
   // The nearest triangles of the last pose bound the distance at this one, mostly closely.
   ClosestPoints points = nearest();
@@ -66,7 +67,8 @@ void ClearanceProbe::at(const Pose& X, double reach, std::vector<Clearance>& out
     best = std::min(best, c.distance);
     out.push_back(c);
   }
-  std::stable_sort(out.begin(), out.end(), [](const Clearance& a, const Clearance& b) { return a.distance < b.distance; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Clearance& a, const Clearance& b) { return a.distance < b.distance; });
   // What was measured before anything nearer was known.
   while (out.size() > 1 && out.back().distance > reach) out.pop_back();
 }

@@ -11,9 +11,9 @@ namespace tegotae::review {
 
 /// How far the held part is from another one at a pose.
 struct Clearance {
-  std::size_t part = 0;             ///< index into Scene::parts
-  double distance = 0;              ///< of the two surfaces, m; 0 when they intersect
-  Vec3 on_held_W = Vec3::Zero();    ///< the points nearest to each other, m
+  std::size_t part = 0;           ///< index into Scene::parts
+  double distance = 0;            ///< of the two surfaces, m; 0 when they intersect
+  Vec3 on_held_W = Vec3::Zero();  ///< the points nearest to each other, m
   Vec3 on_other_W = Vec3::Zero();
 };
 

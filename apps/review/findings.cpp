@@ -67,7 +67,8 @@ class Finder {
   template <typename Holds>
   auto runs(const Holds& holds, double least) const {
     // A thinned recording has breaks of its own.
-    return spans(scan_.rows.size(), [&](std::size_t i) { return row(i).t; }, holds, kJoin, least);
+    return spans(
+        scan_.rows.size(), [&](std::size_t i) { return row(i).t; }, holds, kJoin, least);
   }
 
   GoalFindings goal() const {

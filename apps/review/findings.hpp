@@ -18,10 +18,10 @@ struct Span {
 /// The held part in contact with another one.
 struct ContactEpisode {
   Span span;
-  std::size_t part = 0;      ///< index into Scene::parts
-  double force = 0;          ///< largest rendered, N
-  Vec3 place_W;              ///< of the other part's surface then, m
-  double clearance = 0;      ///< least, m
+  std::size_t part = 0;  ///< index into Scene::parts
+  double force = 0;      ///< largest rendered, N
+  Vec3 place_W;          ///< of the other part's surface then, m
+  double clearance = 0;  ///< least, m
 };
 
 /// Contacts that hold the part from two sides at once: it wedges when it is pressed.
@@ -56,18 +56,19 @@ struct Loads {
   double force_at = 0, torque_at = 0;        ///< s
   double asked_force = 0, asked_torque = 0;  ///< largest of the coupling's springs, before any limit
   double running_rms = 0;                    ///< largest RMS of the force over thermal_time (30 s) before each row
-  double limit_force = 0, limit_torque = 0, continuous = 0, thermal_time = 0;  ///< what holds; continuous 0: not limited
+  double limit_force = 0, limit_torque = 0, continuous = 0,
+         thermal_time = 0;  ///< what holds; continuous 0: not limited
 };
 
 /// Where the part was to go.
 struct GoalFindings {
-  bool reached = false;        ///< at the end of the recording, as RunSummary::completed has it
-  bool passed = false;         ///< at some row
-  double at = 0;               ///< s: when it was reached first
-  double missing = 0;          ///< m: of the center of mass at the end
-  double missing_angle = 0;    ///< rad
-  double depth = 0, way = 0;   ///< m: gone along the straight way at the end, and its length
-  double tolerance = 0;        ///< m
+  bool reached = false;       ///< at the end of the recording, as RunSummary::completed has it
+  bool passed = false;        ///< at some row
+  double at = 0;              ///< s: when it was reached first
+  double missing = 0;         ///< m: of the center of mass at the end
+  double missing_angle = 0;   ///< rad
+  double depth = 0, way = 0;  ///< m: gone along the straight way at the end, and its length
+  double tolerance = 0;       ///< m
 };
 
 /// What a recording says about an assembly.
@@ -75,7 +76,7 @@ struct Findings {
   double seconds = 0;
   double way = 0, turn = 0;  ///< that the center of mass went and the part turned, m, rad
   std::optional<GoalFindings> goal;
-  std::int64_t intersecting = 0;  ///< poses that intersect another part, by FCL
+  std::int64_t intersecting = 0;          ///< poses that intersect another part, by FCL
   std::vector<PartClearance> clearances;  ///< the closest first
   std::vector<ContactEpisode> contacts;
   std::vector<TwoSidedEpisode> two_sided;

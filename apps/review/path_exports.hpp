@@ -12,8 +12,8 @@ namespace tegotae::review {
 /// each row that was looked at.
 std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan);
 
-/// The path as a stylus script (CSV) for the scene's simulated hand: where the hand has to be for its spring to give the
-/// forces that the pen met, every 10 ms. `center`: center of mass of the held part, file frame, m.
+/// The path as a stylus script (CSV) for the scene's simulated hand: where the hand has to be for its spring to give
+/// the forces that the pen met, every 10 ms. `center`: center of mass of the held part, file frame, m.
 std::string path_script(const SceneFile& file, const std::vector<RecordFrame>& rows, const Vec3& center);
 
 /// The path as glTF 2.0 (Y up): a node for each part, the held one animated. Binary (GLB) when `binary`, else JSON with

@@ -100,10 +100,9 @@ class Gltf {
       for (const auto& t : part.mesh->triangles) indices.insert(indices.end(), t.begin(), t.end());
       accessors = {add(positions, "VEC3", 3, kVertices, true), add(indices, "SCALAR", 1, kIndices, false)};
     }
-    json_["meshes"].push_back({{"primitives",
-                                {{{"attributes", {{"POSITION", accessors[0]}}},
-                                  {"indices", accessors[1]},
-                                  {"material", material}}}}});
+    json_["meshes"].push_back(
+        {{"primitives",
+          {{{"attributes", {{"POSITION", accessors[0]}}}, {"indices", accessors[1]}, {"material", material}}}}});
     const Pose& X = part.pose;
     json_["nodes"].push_back({{"name", part.name},
                               {"mesh", json_["meshes"].size() - 1},

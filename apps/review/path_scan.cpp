@@ -29,8 +29,7 @@ void add_contacts(const view::Follower& follower, ScannedRow& out) {
     sum += place;
   };
   for (const Clearance& c : out.clearances)
-    if (c.distance > 0 && c.distance <= out.contact_gap)
-      add((c.on_held_W - c.on_other_W) / c.distance, c.on_held_W);
+    if (c.distance > 0 && c.distance <= out.contact_gap) add((c.on_held_W - c.on_other_W) / c.distance, c.on_held_W);
   const Vec3 center = loop.report().proxy.X * loop.center();
   for (const Contact& c : loop.limits())
     if (!follower.astray() && c.age != kCutAge && c.gap <= out.contact_gap) add(c.n, center + c.r);

@@ -29,19 +29,19 @@ struct ScannedRow {
 
 struct Scan {
   std::vector<ScannedRow> rows;
-  std::size_t every = 1;    ///< of the recording's rows, every so many-th
-  double reach = 0;         ///< m; distances to parts that are not the nearest are known below it
-  std::size_t astray = 0;   ///< rows at which contacts could not be found
-  Vec3 center;              ///< of mass of the held part, m, file frame
+  std::size_t every = 1;   ///< of the recording's rows, every so many-th
+  double reach = 0;        ///< m; distances to parts that are not the nearest are known below it
+  std::size_t astray = 0;  ///< rows at which contacts could not be found
+  Vec3 center;             ///< of mass of the held part, m, file frame
 };
 
-/// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the poses.
-/// `file` is the name of the recording, for messages. Throws Error when it does not fit the scene.
+/// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the
+/// poses. `file` is the name of the recording, for messages. Throws Error when it does not fit the scene.
 Scan scan_path(const Scene& scene, const std::string& file, const std::vector<RecordFrame>& rows,
                const Progress& progress);
 
-/// Whether no translation leaves all contacts with these normals (unit, from the others to the held part): the origin is
-/// in the convex hull of the normals, or nearer to it than a wedge of 10 degrees would be.
+/// Whether no translation leaves all contacts with these normals (unit, from the others to the held part): the origin
+/// is in the convex hull of the normals, or nearer to it than a wedge of 10 degrees would be.
 bool holds_from_two_sides(const std::vector<Vec3>& normals);
 
 }  // namespace tegotae::review

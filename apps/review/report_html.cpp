@@ -66,12 +66,9 @@ void add_surface(view::Bundle& bundle, const Review& r, const Progress& progress
   ColoredSurface surface = sampled_surface(held_part(scene).mesh, kMostTriangles);
   const std::vector<std::size_t> numbers = looked_at(r.recording.frames.size(), kMostColorPoses);
   add_clearance(scene, r.recording.frames, numbers, r.scan.reach, progress, surface);
-  bundle.about["surface"] = {{"positions", bundle.add(surface.positions)},
-                             {"indices", bundle.add(surface.indices)},
-                             {"clearance", bundle.add(surface.clearance)},
-                             {"reach", surface.reach},
-                             {"points", surface.positions.size() / 3},
-                             {"poses", numbers.size()}};
+  bundle.about["surface"] = {{"positions", bundle.add(surface.positions)}, {"indices", bundle.add(surface.indices)},
+                             {"clearance", bundle.add(surface.clearance)}, {"reach", surface.reach},
+                             {"points", surface.positions.size() / 3},     {"poses", numbers.size()}};
 }
 
 json place(const char* kind, const std::string& text, const Vec3& at, double t) {
@@ -94,14 +91,16 @@ json notes(const Review& r) {
   json out = json::array();
   const std::size_t n = r.recording.frames.size();
   out.push_back("Clearances are distances between the triangles of the parts, measured at " +
-                (r.scan.every == 1 ? "each of " + std::to_string(n) + " rows" :
-                 "every " + std::to_string(r.scan.every) + "th of " + std::to_string(n) + " rows") +
+                (r.scan.every == 1 ? "each of " + std::to_string(n) + " rows"
+                                   : "every " + std::to_string(r.scan.every) + "th of " + std::to_string(n) + " rows") +
                 " of the recording; to parts that are not the nearest they are known below " +
                 length_text(r.scan.reach) + ".");
-  out.push_back("Contacts are not in a recording: a contact loop is led along its poses and up to 50 µm on towards the "
-                "pen. In contact is a part nearer than what that loop counts as contact (" +
-                length_text(r.scan.rows.front().contact_gap) + " at the start). Held from two sides: no translation "
-                "leaves all contacts.");
+  out.push_back(
+      "Contacts are not in a recording: a contact loop is led along its poses and up to 50 µm on towards the "
+      "pen. In contact is a part nearer than what that loop counts as contact (" +
+      length_text(r.scan.rows.front().contact_gap) +
+      " at the start). Held from two sides: no translation "
+      "leaves all contacts.");
   out.push_back("A stall: slower than 1 mm/s for 0.2 s or more while the pen is more than 0.5 mm ahead.");
   return out;
 }

@@ -95,8 +95,10 @@ json way_plot(const Review& r, const Buckets& buckets, const json& times) {
     return 1e3 * (toward ? goal.depth(X) : displacement(first, X, r.center).dp.norm());
   };
   json series = json::array();
-  series.push_back({{"name", "part"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).x); })}});
-  series.push_back({{"name", "pen"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).y); })}});
+  series.push_back(
+      {{"name", "part"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).x); })}});
+  series.push_back(
+      {{"name", "pen"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).y); })}});
   if (toward) series.push_back(level("goal", times, 1e3 * goal.way()));
   return plot(toward ? "Way to the goal" : "Distance from the start", "center of mass (mm)", series);
 }

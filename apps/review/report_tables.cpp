@@ -31,7 +31,8 @@ std::vector<Episode> longest(std::vector<Episode> episodes) {
 
 std::string counted(std::size_t all, const std::string& text) {
   if (all <= kMostRows) return text;
-  return text + (text.empty() ? "" : " ") + "The " + std::to_string(kMostRows) + " longest of " + std::to_string(all) + ".";
+  return text + (text.empty() ? "" : " ") + "The " + std::to_string(kMostRows) + " longest of " + std::to_string(all) +
+         ".";
 }
 
 std::string seconds(double t) {
@@ -63,7 +64,8 @@ json contacts(const Review& r) {
 
 json two_sided(const Review& r) {
   const auto& list = r.findings.two_sided;
-  json t = table("Held from two sides", counted(list.size(), "Contacts that no translation leaves: pressed, the part wedges."),
+  json t = table("Held from two sides",
+                 counted(list.size(), "Contacts that no translation leaves: pressed, the part wedges."),
                  {"parts", "from (s)", "to (s)", "for (s)", "largest force (N)", "where"});
   for (const TwoSidedEpisode& e : longest(list))
     t["rows"].push_back({names_text(e.parts, r.file.scene), seconds(e.span.begin), seconds(e.span.end),

@@ -9,10 +9,10 @@ namespace tegotae::review {
 
 /// A recording, what it is of, and what was found in it.
 struct Review {
-  std::string path;     ///< of the recording
-  SceneFile file;       ///< the held part where the recording begins; the script goes to the goal
+  std::string path;  ///< of the recording
+  SceneFile file;    ///< the held part where the recording begins; the script goes to the goal
   Recording recording;
-  Vec3 center;          ///< of mass of the held part, m, file frame
+  Vec3 center;  ///< of mass of the held part, m, file frame
   Scan scan;
   Findings findings;
   Verdict verdict;

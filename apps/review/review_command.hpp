@@ -7,9 +7,9 @@ namespace tegotae::review {
 
 struct ReviewOptions {
   std::string recording;
-  std::string scene;   ///< empty: the one that the recording names
-  std::string goal;    ///< empty: where the scene's script ends
-  std::string out;     ///< report; empty: beside the recording
+  std::string scene;              ///< empty: the one that the recording names
+  std::string goal;               ///< empty: where the scene's script ends
+  std::string out;                ///< report; empty: beside the recording
   std::string csv, gltf, script;  ///< exports of the path; empty: none
 };
 

@@ -69,10 +69,10 @@ class Judge {
 
   void tell_goal() {
     const GoalFindings& g = *f_.goal;
-    const std::string text = format("At the end it is %s and %.1f° from its goal (tolerance %s, 5.7°), %s of %s on the way.",
-                                    length_text(g.missing).c_str(), g.missing_angle / kDegree,
-                                    length_text(g.tolerance).c_str(), length_text(g.depth).c_str(),
-                                    length_text(g.way).c_str());
+    const std::string text =
+        format("At the end it is %s and %.1f° from its goal (tolerance %s, 5.7°), %s of %s on the way.",
+               length_text(g.missing).c_str(), g.missing_angle / kDegree, length_text(g.tolerance).c_str(),
+               length_text(g.depth).c_str(), length_text(g.way).c_str());
     add(g.reached ? Evidence::Kind::good : Evidence::Kind::bad, text);
   }
 
@@ -93,9 +93,9 @@ class Judge {
   void tell_loads() {
     const Loads& l = f_.loads;
     const bool within = l.asked_force <= l.limit_force && l.asked_torque <= l.limit_torque;
-    const std::string text = format(
-        "At most %.2f N (limit %.2g N) and %.0f mN·m (limit %.3g mN·m); without limits %.2f N and %.0f mN·m.", l.force,
-        l.limit_force, 1e3 * l.torque, 1e3 * l.limit_torque, l.asked_force, 1e3 * l.asked_torque);
+    const std::string text =
+        format("At most %.2f N (limit %.2g N) and %.0f mN·m (limit %.3g mN·m); without limits %.2f N and %.0f mN·m.",
+               l.force, l.limit_force, 1e3 * l.torque, 1e3 * l.limit_torque, l.asked_force, 1e3 * l.asked_torque);
     add(within ? Evidence::Kind::good : Evidence::Kind::bad, text);
     if (l.continuous > 0)
       add(l.running_rms <= 0.999 * l.continuous ? Evidence::Kind::good : Evidence::Kind::bad,

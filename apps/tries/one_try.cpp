@@ -16,8 +16,8 @@ namespace tegotae::tries {
 namespace {
 
 constexpr double kDegree = 0.017453292519943295;
-// How far off (standard deviation in each direction) a part is brought to the rim, m on a radius of 25 mm, and how it is
-// tilted; one that is pulled out is pulled a little askew only.
+// How far off (standard deviation in each direction) a part is brought to the rim, m on a radius of 25 mm, and how it
+// is tilted; one that is pulled out is pulled a little askew only.
 constexpr double kOffset = 1e-3, kOffsetRadius = 0.025, kTilt = 2 * kDegree;
 constexpr double kPullOffset = 0.2e-3, kPullTilt = 0.5 * kDegree;
 // Of a leg's end, the rest is the next leg's.
@@ -34,9 +34,7 @@ class RouteHand final : public HandIntent {
 
   double begin() const noexcept override { return 0; }
   Pose start() const noexcept override { return operators_.front()->start(); }
-  HandTarget target(double t, const Pose& pen) noexcept override {
-    return operators_[leg_]->target(t - began_, pen);
-  }
+  HandTarget target(double t, const Pose& pen) noexcept override { return operators_[leg_]->target(t - began_, pen); }
 
   void see(double t, const Pose& X) noexcept {
     const Displacement rest = displacement(X, legs_[leg_].goal, center_);
@@ -88,7 +86,8 @@ class Watcher final : public RunObserver {
       if (n <= most) continue;
       most = n;
       result_.blocked_by = fixed_[part];
-      const auto last = std::find_if(touches_.rbegin(), touches_.rend(), [p = part](const Touch& t) { return t.part == p; });
+      const auto last =
+          std::find_if(touches_.rbegin(), touches_.rend(), [p = part](const Touch& t) { return t.part == p; });
       result_.place_W = last->place_W;
     }
   }

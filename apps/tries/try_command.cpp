@@ -59,7 +59,10 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
   tries->add_option("SCENE", o.scene, "Scene file (TOML)")->required();
   apps::add_pose_option(*tries, "--goal", o.goal, "Where the part is to go (where the scene's script ends)");
   tries->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
-  tries->add_option("--tries", o.tries, "How many")->check(CLI::Range(1, 100000))->capture_default_str()->type_name("N");
+  tries->add_option("--tries", o.tries, "How many")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->type_name("N");
   tries->add_option("--jobs", o.jobs, "At the same time (all processors unless told); no result depends on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");

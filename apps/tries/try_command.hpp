@@ -8,7 +8,7 @@ namespace tegotae::tries {
 
 struct TryOptions {
   std::string scene, hold;
-  std::string goal;         ///< empty: where the scene's script ends
+  std::string goal;           ///< empty: where the scene's script ends
   std::string out = "tries";  ///< folder
   int tries = 20, jobs = 0;
   std::uint64_t seed = 1;

@@ -116,11 +116,17 @@ Json tries_table(const std::vector<Result>& results) {
             {"rows", Json::array()}};
   for (const Result& r : results) {
     const Vec3 p = 1e3 * r.place_W;
-    t["rows"].push_back({std::to_string(r.number), r.who, r.route, format("%.2f", 1e3 * r.offset),
+    t["rows"].push_back({std::to_string(r.number),
+                         r.who,
+                         r.route,
+                         format("%.2f", 1e3 * r.offset),
                          format("%.1f", r.tilt * 57.29577951),
                          {{"text", r.reached ? "reached" : "not reached"}, {"class", r.reached ? "holds" : "fails"}},
-                         format("%.2f", r.time), format("%.2f", 1e3 * r.depth), format("%.2f", r.force),
-                         format("%.2f", r.stuck), r.reached ? "–" : blocker_name(r.blocked_by),
+                         format("%.2f", r.time),
+                         format("%.2f", 1e3 * r.depth),
+                         format("%.2f", r.force),
+                         format("%.2f", r.stuck),
+                         r.reached ? "–" : blocker_name(r.blocked_by),
                          r.reached || r.blocked_by.empty() ? "–" : format("%.2f, %.2f, %.2f", p.x(), p.y(), p.z())});
   }
   return t;
@@ -167,18 +173,22 @@ Json report(const Task& task, const std::vector<Result>& results) {
   groups["tables"].push_back(group_table("route", counted(results, [](const Result& r) { return r.route; })));
   if (!blockers(results).empty()) groups["tables"].push_back(blocker_table(results));
   if (!times(results).empty())
-    groups["plots"].push_back(plot("Time to the goal", "time (s)", results, true, [](const Result& r) { return r.time; }));
-  groups["plots"].push_back(plot("Largest force", "force (N)", results, false, [](const Result& r) { return r.force; }));
+    groups["plots"].push_back(
+        plot("Time to the goal", "time (s)", results, true, [](const Result& r) { return r.time; }));
+  groups["plots"].push_back(
+      plot("Largest force", "force (N)", results, false, [](const Result& r) { return r.force; }));
   sections.push_back(groups);
   sections.push_back({{"title", "Tries"}, {"text", ""}, {"tables", {tries_table(results)}}});
   const std::string held = held_part(task.file.scene).name;
-  return {{"title", "Tries with " + held},
-          {"subtitle", task.file.path + format(", seed %llu, %g s each", static_cast<unsigned long long>(task.seed), task.seconds)},
-          {"intro", headline(results) +
-                        "\nEach try is a modeled operator at a simulated pen, led astray and tilted at random; what is "
-                        "in the way when the time is over is who was touched most in the last half second. The best try "
-                        "is in best.csv, for tegotae review."},
-          {"sections", sections}};
+  return {
+      {"title", "Tries with " + held},
+      {"subtitle",
+       task.file.path + format(", seed %llu, %g s each", static_cast<unsigned long long>(task.seed), task.seconds)},
+      {"intro", headline(results) +
+                    "\nEach try is a modeled operator at a simulated pen, led astray and tilted at random; what is "
+                    "in the way when the time is over is who was touched most in the last half second. The best try "
+                    "is in best.csv, for tegotae review."},
+      {"sections", sections}};
 }
 
 void write(const std::string& path, const std::string& text) {
@@ -200,7 +210,8 @@ const Result* best_try(const std::vector<Result>& results) {
 
 std::string summary_text(const std::vector<Result>& results) {
   std::string text = headline(results) + "\n";
-  for (const auto& [part, n] : blockers(results)) text += format("  blocked %d times by ", n) + blocker_name(part) + "\n";
+  for (const auto& [part, n] : blockers(results))
+    text += format("  blocked %d times by ", n) + blocker_name(part) + "\n";
   return text;
 }
 

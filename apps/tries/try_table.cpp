@@ -55,7 +55,7 @@ std::vector<std::string> cells(const std::string& line) {
   }
   out.push_back(line.substr(at));
   return out.back().size() >= 2 && out.back().front() == '"' && out.back().back() == '"' ? out
-                                                                                        : std::vector<std::string>();
+                                                                                         : std::vector<std::string>();
 }
 
 template <typename Number>
@@ -74,9 +74,10 @@ bool read_row(const std::string& line, Result& r) {
   r.reached = reached != 0;
   r.blocked_by = unquoted(c[15]);
   const std::pair<std::size_t, double*> numbers[] = {
-      {3, &r.offset}, {4, &r.tilt},   {6, &r.time},           {7, &r.depth},          {8, &r.force},
+      {3, &r.offset}, {4, &r.tilt},   {6, &r.time},         {7, &r.depth},        {8, &r.force},
       {9, &r.torque}, {10, &r.stuck}, {12, &r.place_W.x()}, {13, &r.place_W.y()}, {14, &r.place_W.z()}};
-  return std::all_of(std::begin(numbers), std::end(numbers), [&](const auto& n) { return read_number(c[n.first], *n.second); });
+  return std::all_of(std::begin(numbers), std::end(numbers),
+                     [&](const auto& n) { return read_number(c[n.first], *n.second); });
 }
 
 std::string row(const Result& r) {
@@ -93,7 +94,8 @@ std::string row(const Result& r) {
 class Hash {
  public:
   void add(const void* data, std::size_t size) {
-    for (const auto* p = static_cast<const unsigned char*>(data); size-- > 0; ++p) value_ = (value_ ^ *p) * 0x100000001b3u;
+    for (const auto* p = static_cast<const unsigned char*>(data); size-- > 0; ++p)
+      value_ = (value_ ^ *p) * 0x100000001b3u;
   }
   void add(double x) { add(&x, sizeof x); }
   void add(const std::string& text) { add(text.data(), text.size() + 1); }
@@ -131,7 +133,8 @@ std::string fingerprint(const Task& task) {
                       static_cast<unsigned long long>(task.seed), static_cast<unsigned long long>(hash.value()));
 }
 
-TryTable::TryTable(const std::string& folder, const std::string& task) : path_(folder + "/tries.csv"), task_("# " + task) {
+TryTable::TryTable(const std::string& folder, const std::string& task)
+    : path_(folder + "/tries.csv"), task_("# " + task) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(folder + ": cannot be made: " + failed.message());
@@ -143,7 +146,8 @@ void TryTable::read() {
   std::string line;
   std::getline(in, line);
   if (line != task_)
-    throw Error(path_ + ":1: holds tries of another scene, goal, seed, time or version; choose another --out or delete it");
+    throw Error(path_ +
+                ":1: holds tries of another scene, goal, seed, time or version; choose another --out or delete it");
   std::getline(in, line);
   if (line + "\n" != kHeader) throw Error(path_ + ":2: has other columns; choose another --out or delete it");
   for (int number = 3; std::getline(in, line); ++number) {

@@ -7,8 +7,8 @@
 
 namespace tegotae::tries {
 
-/// The finished tries of a folder, in tries.csv: a comment line that tells the task, the header, a row a try in the order
-/// of their numbers. Replaced as a whole after every try, so that it is never half written.
+/// The finished tries of a folder, in tries.csv: a comment line that tells the task, the header, a row a try in the
+/// order of their numbers. Replaced as a whole after every try, so that it is never half written.
 class TryTable {
  public:
   /// Reads what an earlier call left in `folder`. Throws Error when that was of another task.

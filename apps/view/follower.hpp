@@ -7,8 +7,8 @@
 
 namespace tegotae::view {
 
-/// Leads a contact loop along recorded poses, and a little on towards where the pen was, so that what is in the way shows:
-/// contacts are not in a recording.
+/// Leads a contact loop along recorded poses, and a little on towards where the pen was, so that what is in the way
+/// shows: contacts are not in a recording.
 class Follower {
  public:
   /// `path` of the recording is for the message. Throws Error when the part would stand in another one at `first`.

@@ -36,7 +36,8 @@ double point_triangle(const Vec3& p, const Triangle& t) {
 double segment_segment(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = d - c, w = a - c;
   const double uv = u.dot(v), uu = u.dot(u), vv = v.dot(v), den = uu * vv - uv * uv;
-  double best = std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
+  double best =
+      std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
   if (den > 0) {
     const double s = (uv * v.dot(w) - vv * u.dot(w)) / den, t = (uu * v.dot(w) - uv * u.dot(w)) / den;
     if (s >= 0 && s <= 1 && t >= 0 && t <= 1) best = std::min(best, (w + s * u - t * v).norm());
@@ -67,7 +68,8 @@ double distance(const Triangle& s, const Triangle& t) {
 
 std::vector<Triangle> triangles(const TriangleMesh& mesh, const Pose& X) {
   std::vector<Triangle> out;
-  for (const auto& t : mesh.triangles) out.push_back({X * mesh.vertices[t[0]], X * mesh.vertices[t[1]], X * mesh.vertices[t[2]]});
+  for (const auto& t : mesh.triangles)
+    out.push_back({X * mesh.vertices[t[0]], X * mesh.vertices[t[1]], X * mesh.vertices[t[2]]});
   return out;
 }
 
@@ -93,7 +95,8 @@ TEST_CASE("clearances along a path are those of all pairs of triangles") {
   Scene scene;
   scene.parts.push_back({"left", shared(random_star_body(rng, 60, 0.01)), {Quat::Identity(), {-0.025, 0, 0}}, false});
   scene.parts.push_back({"held", shared(random_convex_body(rng, 30, 0.008)), Pose{}, true});
-  scene.parts.push_back({"right", shared(random_star_body(rng, 60, 0.01)), {rotation({1, 2, 0.5}), {0.025, 0, 0.003}}, false});
+  scene.parts.push_back(
+      {"right", shared(random_star_body(rng, 60, 0.01)), {rotation({1, 2, 0.5}), {0.025, 0, 0.003}}, false});
   ClearanceProbe probe(scene);
   const double reach = 0.02;
   std::vector<Clearance> found;
@@ -130,7 +133,8 @@ TEST_CASE("a box over a floor: every point's least clearance is the height of it
   std::vector<RecordFrame> rows;
   for (int i = 0; i <= 200; ++i) {
     const double s = i / 200.0;
-    rows.push_back(at(1e-3 * i, {rotation({0.4 * std::sin(5 * s), 0.2 * s, s}), {0.02 * s, 0, 0.06 - 0.03 * std::sin(3 * s)}}));
+    rows.push_back(
+        at(1e-3 * i, {rotation({0.4 * std::sin(5 * s), 0.2 * s, s}), {0.02 * s, 0, 0.06 - 0.03 * std::sin(3 * s)}}));
   }
   const double reach = 0.03;
   const std::vector<std::size_t> all = looked_at(rows.size(), 1000);
@@ -158,7 +162,8 @@ TEST_CASE("a surface of many triangles is sampled on itself") {
   TriangleMesh tube;
   const int n = 4000;
   for (int i = 0; i < n; ++i)
-    for (const double z : {0.0, 0.03}) tube.vertices.emplace_back(0.01 * std::cos(2 * M_PI * i / n), 0.01 * std::sin(2 * M_PI * i / n), z);
+    for (const double z : {0.0, 0.03})
+      tube.vertices.emplace_back(0.01 * std::cos(2 * M_PI * i / n), 0.01 * std::sin(2 * M_PI * i / n), z);
   for (int i = 0; i < n; ++i) {
     const auto a = static_cast<std::uint32_t>(2 * i), b = static_cast<std::uint32_t>(2 * ((i + 1) % n));
     tube.triangles.push_back({a, b, a + 1});

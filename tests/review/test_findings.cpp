@@ -45,11 +45,13 @@ RecordFrame row(int ms, double x, double z, double pen_z, double force) {
 std::vector<RecordFrame> down_and_up() {
   std::vector<RecordFrame> rows;
   const double low = 0.005 + 2e-6;
-  for (int i = 0; i <= 500; ++i) rows.push_back(row(i, 0, 0.01 + (low - 0.01) * i / 500, 0.01 + (low - 0.01) * i / 500, 0));
+  for (int i = 0; i <= 500; ++i)
+    rows.push_back(row(i, 0, 0.01 + (low - 0.01) * i / 500, 0.01 + (low - 0.01) * i / 500, 0));
   for (int i = 501; i <= 1500; ++i) rows.push_back(row(i, 0, low, low - 2.5e-3, 2));
   for (int i = 1501; i <= 2000; ++i) rows.push_back(row(i, 0, low + 1e-5 * (i - 1500), low + 1e-5 * (i - 1500), 0));
   const double beside = 0.02 - 0.005 - 3e-6;
-  for (int i = 2001; i <= 2500; ++i) rows.push_back(row(i, beside * (i - 2000) / 500, low + 5e-3, low + 5e-3, i == 2500 ? 0.5 : 0));
+  for (int i = 2001; i <= 2500; ++i)
+    rows.push_back(row(i, beside * (i - 2000) / 500, low + 5e-3, low + 5e-3, i == 2500 ? 0.5 : 0));
   return rows;
 }
 
@@ -151,7 +153,8 @@ TEST_CASE("held from two sides") {
   CHECK(holds_from_two_sides({Vec3::UnitX(), Vec3(-0.5, std::sqrt(0.75), 0), Vec3(-0.5, -std::sqrt(0.75), 0)}));
   // Leaning walls: the part comes free upwards when they lean by more than 10 degrees.
   for (const double lean : {0.1, wide})
-    CHECK(holds_from_two_sides({Vec3(std::cos(lean), 0, std::sin(lean)), Vec3(-std::cos(lean), 0, std::sin(lean))}) == (lean < wide));
+    CHECK(holds_from_two_sides({Vec3(std::cos(lean), 0, std::sin(lean)), Vec3(-std::cos(lean), 0, std::sin(lean))}) ==
+          (lean < wide));
   // Random normals: the best direction to leave, by trying many.
   std::mt19937 rng(5);
   int held = 0, decided = 0;

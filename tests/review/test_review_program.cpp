@@ -2,8 +2,8 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <assimp/Importer.hpp>
 #include <algorithm>
+#include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -141,9 +141,8 @@ TEST_CASE("a block that goes to its goal: verdict, report, exports") {
     check_gltf(folder / "p.gltf", read_recording(csv));
   }
   {  // the script goes the same way
-    const Output again =
-        run_program("tegotae", "run --fast --json --script " + folder / "s.csv" + " --record " + folder / "again.csv " +
-                                   folder / "scene.toml");
+    const Output again = run_program("tegotae", "run --fast --json --script " + folder / "s.csv" + " --record " +
+                                                    folder / "again.csv " + folder / "scene.toml");
     REQUIRE(again.code == 0);
     const std::vector<RecordedRow> a = read_recording(csv), b = read_recording(folder / "again.csv");
     double most = 0;
@@ -162,8 +161,8 @@ TEST_CASE("a block that presses on the floor does not go, and the script presses
   CHECK_THAT(o.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
   CHECK_THAT(o.out, Contains("Stalled 1 times"));
   CHECK_THAT(o.out, Contains("report: " + folder / "x.html"));
-  const Output again = run_program("tegotae", "run --fast --script " + folder / "s.csv --record " + folder / "again.csv " +
-                                                  folder / "scene.toml");
+  const Output again = run_program(
+      "tegotae", "run --fast --script " + folder / "s.csv --record " + folder / "again.csv " + folder / "scene.toml");
   const Output o2 = run_program("tegotae", "review " + folder / "again.csv");
   CHECK(o2.code == 1);
   CHECK_THAT(o2.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
@@ -211,12 +210,14 @@ TEST_CASE("what is no recording, or not of this scene, is one line") {
 TEST_CASE("a peg in its hole, and a peg out of its tray", "[.][parts]") {
   const TempFolder folder;
   SECTION("peg in hole") {
-    const Output run = run_program("tegotae", "run --fast --record " + folder / "peg.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
+    const Output run = run_program(
+        "tegotae", "run --fast --record " + folder / "peg.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
     REQUIRE(run.code == 0);
     const Output o = run_program("tegotae", "review " + folder / "peg.csv --script " + folder / "s.csv");
     CHECK(o.code == 0);
     CHECK_THAT(o.out, Contains("It goes in\n"));
-    const Output again = run_program("tegotae", "run --fast --json --script " + folder / "s.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
+    const Output again = run_program(
+        "tegotae", "run --fast --json --script " + folder / "s.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
     CHECK(again.code == 0);
     const auto j = nlohmann::json::parse(again.out);
     CHECK(j.at("completed") == true);
@@ -229,15 +230,18 @@ TEST_CASE("a peg in its hole, and a peg out of its tray", "[.][parts]") {
       std::puts("SKIPPED: no parts folder");
       return;
     }
-    folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.001,1,0,0,0\n0.3,0,0,0.001,1,0,0,0\n2,0,0,0.04,1,0,0,0\n");
-    folder.write("scene.toml", "[[part]]\nname = \"tray\"\nmesh = \"" + tray + "\"\n[[part]]\nname = \"peg\"\nmesh = \"" + peg +
+    folder.write("path.csv",
+                 "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.001,1,0,0,0\n0.3,0,0,0.001,1,0,0,0\n2,0,0,0.04,1,0,0,0\n");
+    folder.write("scene.toml", "[[part]]\nname = \"tray\"\nmesh = \"" + tray +
+                                   "\"\n[[part]]\nname = \"peg\"\nmesh = \"" + peg +
                                    "\"\nheld = true\nposition = [0, 0, 0.001]\n[device]\nscript = \"path.csv\"\n");
     record(folder, "r.csv");
     const Output o = run_program("tegotae", "review " + folder / "r.csv");
     INFO(o.out << o.err);
     CHECK(o.code == 0);
     CHECK_THAT(o.out, Contains("It comes out\n"));
-    const Output tried = run_program("tegotae", "try " + folder / "scene.toml --tries 3 --seconds 8 --out " + folder / "t");
+    const Output tried =
+        run_program("tegotae", "try " + folder / "scene.toml --tries 3 --seconds 8 --out " + folder / "t");
     INFO(tried.out << tried.err);
     CHECK(tried.code == 0);
   }

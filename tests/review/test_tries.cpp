@@ -109,8 +109,10 @@ TEST_CASE("an interrupted call keeps its tries and goes on") {
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
-    const std::string command = std::string(TEGOTAE_BIN_DIR "/tegotae try ") + scene + " --out " + out + " --tries 5000" + kGoal;
-    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >" + folder / "log" + " 2>&1").c_str(), static_cast<char*>(nullptr));
+    const std::string command =
+        std::string(TEGOTAE_BIN_DIR "/tegotae try ") + scene + " --out " + out + " --tries 5000" + kGoal;
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >" + folder / "log" + " 2>&1").c_str(),
+            static_cast<char*>(nullptr));
     ::_exit(127);
   }
   for (int i = 0; i < 3000 && lines(read_text(out + "/tries.csv")) < 5; ++i)
