@@ -18,9 +18,9 @@ double clearance_at(const Scene& scene, const Pose& X) {
 
 }  // namespace
 
-Review review_recording(const std::string& path, SceneFile file, const std::optional<Pose>& goal,
+Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
                         const Progress& progress) {
-  Review r{path, std::move(file), read_recording(path), Vec3::Zero(), {}, {}, {}};
+  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}};
   const std::vector<RecordFrame>& rows = r.recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
   for (std::size_t i = 1; i < rows.size(); ++i)

@@ -18,9 +18,9 @@ struct Review {
   Verdict verdict;
 };
 
-/// Looks at the recording at `path` over the scene `file`. `goal` (X_WF of the held part) replaces where the scene's
-/// script ends. Throws Error for a recording that cannot be read, is empty or does not fit the scene.
-Review review_recording(const std::string& path, SceneFile file, const std::optional<Pose>& goal,
+/// Looks at `recording`, read from `path`, over the scene `file`. `goal` (X_WF of the held part) replaces where the
+/// scene's script ends. Throws Error for a recording that is empty or does not fit the scene.
+Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
                         const Progress& progress);
 
 /// The report, self-contained HTML.

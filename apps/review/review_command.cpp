@@ -25,22 +25,12 @@ std::string beside(const std::string& recording) {
   return std::filesystem::path(recording).replace_extension().string() + ".review.html";
 }
 
-/// With the part in the hand that was held then.
-SceneOptions held_as(const std::string& recording) {
-  SceneOptions how;
-  how.hold = read_recording(recording).info.held;
-  return how;
-}
-
-std::string scene_of(const std::string& recording, const std::string& scene) {
-  return scene.empty() ? view::recorded_scene(recording) : scene;
-}
-
 }  // namespace
 
 std::string recording_report(const std::string& recording, const std::string& scene) {
-  SceneFile file = load_scene(scene_of(recording, scene), held_as(recording));
-  return report_html(review_recording(recording, std::move(file), std::nullopt, {}), {});
+  Recording read = read_recording(recording);
+  SceneFile file = view::load_recorded_scene(recording, read.info, scene);
+  return report_html(review_recording(recording, std::move(read), std::move(file), std::nullopt, {}), {});
 }
 
 CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
@@ -59,14 +49,17 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
 
 int run_review(const ReviewOptions& o) {
   const std::string out = o.out.empty() ? beside(o.recording) : o.out;
-  SceneFile scene = apps::load_with_progress(scene_of(o.recording, o.scene), held_as(o.recording));
-  std::optional<Pose> goal;
-  if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
   apps::StatusLine status;
   const Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
     status.show(what, done, total);
   };
-  const Review r = review_recording(o.recording, std::move(scene), goal, progress);
+  Recording recording = read_recording(o.recording);
+  SceneOptions how;
+  how.progress = [&](std::size_t done, std::size_t total) { progress("reading meshes of part", done, total); };
+  SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
+  std::optional<Pose> goal;
+  if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
+  const Review r = review_recording(o.recording, std::move(recording), std::move(scene), goal, progress);
   const auto& rows = r.recording.frames;
   write(out, report_html(r, progress));
   if (!o.csv.empty()) write(o.csv, path_csv(r.file.scene, rows, r.scan));
