@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "broadphase/bounding_spheres.hpp"
@@ -110,8 +110,9 @@ json notes(const Review& r) {
 std::string report_html(const Review& r, const Progress& progress) {
   view::Bundle bundle;
   view::add_scene(bundle, r.file.scene, r.center);
-  bundle.about["title"] = held_part(r.file.scene).name + ": " + r.path.substr(r.path.find_last_of('/') + 1);
-  bundle.about["subtitle"] = r.file.path + (r.recording.info.program.empty() ? "" : ", " + r.recording.info.program);
+  bundle.about["title"] = held_part(r.file.scene).name + ": " + std::filesystem::path(r.path).filename().string();
+  bundle.about["subtitle"] = std::filesystem::path(r.file.path).filename().string() +
+                             (r.recording.info.program.empty() ? "" : ", " + r.recording.info.program);
   bundle.about["verdict"] = verdict_json(r.verdict);
   add_path(bundle, r);
   add_surface(bundle, r, progress);

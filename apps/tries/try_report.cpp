@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -182,8 +183,8 @@ Json report(const Task& task, const std::vector<Result>& results) {
   const std::string held = held_part(task.file.scene).name;
   return {
       {"title", "Tries with " + held},
-      {"subtitle",
-       task.file.path + format(", seed %llu, %g s each", static_cast<unsigned long long>(task.seed), task.seconds)},
+      {"subtitle", std::filesystem::path(task.file.path).filename().string() +
+                       format(", seed %llu, %g s each", static_cast<unsigned long long>(task.seed), task.seconds)},
       {"intro", headline(results) +
                     "\nEach try is a modeled operator at a simulated pen, led astray and tilted at random; what is "
                     "in the way when the time is over is who was touched most in the last half second. The best try "
