@@ -17,7 +17,7 @@ namespace tegotae::review {
 namespace {
 
 // Triangles are cut until no edge is longer than this share of the part's radius, or a coarser one for many.
-constexpr double kEdgeShare = 1.0 / 10;
+constexpr double kEdgeShare = 1.0 / 8;
 constexpr double kCoarser = 1.3;
 constexpr std::size_t kBlock = 64;  // points that a thread takes at a time
 

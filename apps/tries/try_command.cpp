@@ -87,16 +87,15 @@ int run_tries(const TryOptions& o) {
     if (number < o.tries) results.push_back(r);
   write_report(task, results, o.out);
   std::cout << summary_text(results);
-  if (interrupted) {
+  const std::string recording = o.out + "/best.csv";
+  const Result* best = best_try(results);
+  if (interrupted || !run_try(task, best->number, interrupted, recording)) {
     std::cout << "interrupted; the same command goes on from here" << std::endl;
     return apps::kRunFailed;
   }
-  const Result& best = *best_try(results);
-  const std::string recording = o.out + "/best.csv";
-  run_try(task, best.number, interrupted, recording);
-  std::cout << apps::format("best: try %d, %.2f s, recorded in ", best.number, best.time) << recording << "\n"
+  std::cout << apps::format("best: try %d, %.2f s, recorded in ", best->number, best->time) << recording << "\n"
             << "report: " << o.out << "/report.html" << std::endl;
-  return best.reached ? apps::kDone : apps::kRunFailed;
+  return best->reached ? apps::kDone : apps::kRunFailed;
 }
 
 }  // namespace tegotae::tries
