@@ -9,9 +9,11 @@
 #include "experiments/experiments.hpp"
 #include "import.hpp"
 #include "length_option.hpp"
+#include "review/review_command.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
+#include "tries/try_command.hpp"
 #include "view/replay.hpp"
 
 using namespace tegotae;
@@ -24,8 +26,9 @@ int show_recording(const std::string& recording, const std::string& scene, const
                    const std::string& address) {
   const std::string bundle = view::replay_bundle(recording, scene);
   if (html.empty())
-    view::serve_replay(bundle, view_address(address), catch_interrupts(),
-                       [](const std::string& url) { announce_page(url); });
+    view::serve_replay(
+        bundle, [&] { return review::recording_report(recording, scene); }, view_address(address), catch_interrupts(),
+        [](const std::string& url) { announce_page(url); });
   else
     view::write_replay(bundle, html);
   return kDone;
@@ -42,6 +45,8 @@ int main(int argc, char** argv) {
   run->add_option("SCENE", scene, "Scene file (TOML)")->required();
   std::string hold;
   run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
+  std::string script;
+  run->add_option("--script", script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (to the end of the script unless told)")
       ->check([](const std::string& text) -> std::string {
@@ -69,6 +74,12 @@ int main(int argc, char** argv) {
 
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
+
+  review::ReviewOptions review_options;
+  const CLI::App* review = review::add_review(app, review_options);
+
+  tries::TryOptions try_options;
+  const CLI::App* tries = tries::add_try(app, try_options);
 
   bool isolated = false;
   for (CLI::App* reads : {run, check})
@@ -113,8 +124,12 @@ int main(int argc, char** argv) {
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);
+    if (review->parsed()) return review::run_review(review_options);
+    if (tries->parsed()) return tries::run_tries(try_options);
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
-    return run_and_report(options.json ? load_scene(scene, how) : load_with_progress(scene, how), options, scene);
+    SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);
+    if (!script.empty()) loaded.script = read_script(script);
+    return run_and_report(std::move(loaded), options, scene);
   });
 }

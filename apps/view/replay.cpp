@@ -6,14 +6,15 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tegotae/core/error.hpp"
-#include "tegotae/record/recording.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
 #include "view/bundle.hpp"
+#include "view/follower.hpp"
 #include "view/frame_maker.hpp"
 #include "view/server.hpp"
 #include "view/wire.hpp"
@@ -24,10 +25,6 @@ namespace {
 
 // Frames that a page gets: more than pixels in a plot, and a file of some megabytes.
 constexpr std::size_t kMostFrames = 12'000;
-// Contacts show when something is in the way: the part is led this far (m) towards where the pen was.
-constexpr double kPush = 5e-5;
-// A part that is led and stays this far (m) behind the recording is held back by something that was not there.
-constexpr double kAstray = 1e-4;
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
 Part& held_part(Scene& scene) {
@@ -36,65 +33,42 @@ Part& held_part(Scene& scene) {
   throw Error("no part is held");
 }
 
-/// Leads a contact loop along the recorded poses.
-class Follower {
- public:
-  Follower(Scene scene, const std::string& path, const Pose& first) try
-      : loop_((held_part(scene).pose = first, scene.contact.tick_budget = std::numeric_limits<double>::infinity(),
-               scene)),
-        maker_(scene) {
-    for (const Vec3& v : held_part(scene).mesh->vertices) radius_ = std::max(radius_, (v - loop_.center()).norm());
-  } catch (const Error& e) {
-    throw Error(path + ": does not fit this scene: " + e.what());
-  }
+/// The frame of a row: recorded values, with the contacts found.
+void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& maker, Frame& frame) {
+  maker.add_loop(follower.loop(), frame);
+  if (follower.astray()) frame.pair_count = 0;
+  frame.tick = row.tick;
+  frame.t = row.t;
+  store(row.x, frame.x);
+  store(row.y, frame.y);
+  store(row.wrench, frame.wrench);
+  frame.gap = row.gap;
+  frame.tick_us = row.tick_us;
+  frame.servo_late_us = std::numeric_limits<double>::quiet_NaN();
+  frame.contacts = static_cast<std::uint32_t>(row.contacts);
+  frame.flags = row.contacts > 0 ? Frame::touching : 0u;
+}
 
-  const Vec3& center() const { return loop_.center(); }
-
-  void step(const RecordFrame& row) {
-    const Displacement push = displacement(row.x, row.y, loop_.center());
-    const double size = push.dp.norm() + radius_ * push.dr.norm();
-    loop_.step(displaced(row.x, loop_.center(), (size > kPush ? kPush / size : 1) * push), 1e-3);
-    astray_ = displacement(loop_.report().proxy.X, row.x, loop_.center()).dp.norm() > kAstray;
-    strayed_ += astray_ ? 1 : 0;
-  }
-
-  /// The frame of a row: recorded values, with the contacts found.
-  void fill(const RecordFrame& row, Frame& frame) const {
-    maker_.add_loop(loop_, frame);
-    if (astray_) frame.pair_count = 0;
-    frame.tick = row.tick;
-    frame.t = row.t;
-    store(row.x, frame.x);
-    store(row.y, frame.y);
-    store(row.wrench, frame.wrench);
-    frame.gap = row.gap;
-    frame.tick_us = row.tick_us;
-    frame.servo_late_us = std::numeric_limits<double>::quiet_NaN();
-    frame.contacts = static_cast<std::uint32_t>(row.contacts);
-    frame.flags = row.contacts > 0 ? Frame::touching : 0u;
-  }
-
-  std::size_t strayed() const { return strayed_; }
-
- private:
-  HapticLoop loop_;
-  FrameMaker maker_;
-  double radius_ = 0;  // of the held part about its center of mass
-  bool astray_ = false;
-  std::size_t strayed_ = 0;
-};
-
-/// All in the bundle.
+/// All in the bundle, and a review that is made when it is first asked for.
 class ReplaySource final : public ViewSource {
  public:
-  explicit ReplaySource(std::string bundle) : bundle_(std::make_shared<const std::string>(std::move(bundle))) {}
+  ReplaySource(std::string bundle, std::function<std::string()> make_review)
+      : bundle_(std::make_shared<const std::string>(std::move(bundle))), make_review_(std::move(make_review)) {}
   std::shared_ptr<const std::string> scene() const override { return bundle_; }
   const FrameRing* frames() const override { return nullptr; }
   std::string status() const override { return "{}"; }
   void command(const nlohmann::json&) override { throw Error("a recording takes no commands"); }
+  std::string review() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (review_.empty()) review_ = make_review_();
+    return review_;
+  }
 
  private:
   std::shared_ptr<const std::string> bundle_;
+  std::function<std::string()> make_review_;
+  std::mutex mutex_;
+  std::string review_;
 };
 
 std::string named_scene(const std::string& path, const std::string& scene) {
@@ -107,14 +81,19 @@ std::string named_scene(const std::string& path, const std::string& scene) {
 
 }  // namespace
 
+SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info, const std::string& scene,
+                              SceneOptions how) {
+  how.hold = info.held;
+  return load_scene(scene.empty() ? named_scene(path, info.scene) : scene, how);
+}
+
 std::string replay_bundle(const std::string& path, const std::string& scene) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
-  SceneOptions how;
-  how.hold = recording.info.held;
-  SceneFile file = load_scene(scene.empty() ? named_scene(path, recording.info.scene) : scene, how);
+  SceneFile file = load_recorded_scene(path, recording.info, scene);
   Follower follower(file.scene, path, rows.front().x);
+  const FrameMaker maker(file.scene);
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
   std::vector<float> frames, pairs;
   std::vector<std::uint32_t> pair_begin;
@@ -122,7 +101,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     follower.step(rows[i]);
     if (i % every != 0 && i + 1 < rows.size()) continue;
-    follower.fill(rows[i], frame);
+    fill(rows[i], follower, maker, frame);
     append_frame(frame, frames);
     pair_begin.push_back(static_cast<std::uint32_t>(pairs.size() / kPairFloats));
     append_pairs(frame, pairs);
@@ -132,7 +111,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene) {
                 std::to_string(follower.strayed()) + " of " + std::to_string(rows.size()) + " rows");
   Bundle bundle;
   held_part(file.scene).pose = rows.front().x;
-  add_scene(bundle, file.scene, follower.center());
+  add_scene(bundle, file.scene, follower.loop().center());
   bundle.about["mode"] = "replay";
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
@@ -148,9 +127,9 @@ std::string replay_bundle(const std::string& path, const std::string& scene) {
   return bundle.bytes();
 }
 
-void serve_replay(const std::string& bundle, const Address& address, const std::atomic<bool>& stop,
-                  const std::function<void(const std::string&)>& announce) {
-  ReplaySource source(bundle);
+void serve_replay(const std::string& bundle, const std::function<std::string()>& make_review, const Address& address,
+                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& announce) {
+  ReplaySource source(bundle, make_review);
   Server server(address, source);
   announce(server.url());
   while (!stop) std::this_thread::sleep_for(kPoll);

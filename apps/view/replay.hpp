@@ -4,20 +4,28 @@
 #include <functional>
 #include <string>
 
+#include "tegotae/record/recording.hpp"
+#include "tegotae/sim/scene_file.hpp"
 #include "view/address.hpp"
 
 namespace tegotae::view {
 
-/// The bundle of the recording at `path` over its scene, for the page, with the part in the hand that was held then.
-/// `scene`: the scene file; empty: the one that the recording names, from here or from the recording's folder. Contacts
+/// The scene of the recording at `path`, with the part in the hand that was held then: the scene file `scene`, or when
+/// that is empty the one that the recording names, from here or from the recording's folder. Throws Error when that
+/// does not say or there is no such file.
+SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info, const std::string& scene,
+                              SceneOptions how = {});
+
+/// The bundle of the recording at `path` over its scene (as load_recorded_scene has it), for the page. Contacts
 /// are not in a recording: they are found anew, by a contact loop that is led along the recorded poses and a little
 /// towards the pen. Long recordings are thinned.
 /// Throws Error when the recording cannot be read, its scene is not known, or the part would stand in another one.
 std::string replay_bundle(const std::string& path, const std::string& scene = {});
 
-/// Serves a bundle until `stop`; `announce` gets the address to open.
-void serve_replay(const std::string& bundle, const Address& address, const std::atomic<bool>& stop,
-                  const std::function<void(const std::string&)>& announce);
+/// Serves a bundle until `stop`; `announce` gets the address to open. `make_review` makes the HTML report on the
+/// recording when the page asks for it, in a thread of the server.
+void serve_replay(const std::string& bundle, const std::function<std::string()>& make_review, const Address& address,
+                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& announce);
 
 /// Writes the page with the bundle in it to `path`. Throws Error.
 void write_replay(const std::string& bundle, const std::string& path);

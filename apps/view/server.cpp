@@ -112,6 +112,8 @@ struct Server::Impl {
       respond(connection, 200, "OK", "application/octet-stream", *source.scene());
     } else if (method == "GET" && uri == "/stream" && source.frames()) {
       serve_stream(connection);
+    } else if (method == "GET" && uri == "/review") {
+      serve_review(connection);
     } else if (method == "POST" && uri == "/command") {
       serve_command(connection, request.content_length);
     } else {
@@ -127,6 +129,17 @@ struct Server::Impl {
             "Content-Security-Policy: default-src 'none'; connect-src 'self'; img-src data: blob:; script-src 'nonce-" +
                 nonce + "'; style-src 'nonce-" + nonce +
                 "'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\nX-Frame-Options: DENY\r\n");
+  }
+
+  void serve_review(mg_connection* connection) {
+    constexpr const char* text = "text/plain; charset=utf-8";
+    try {
+      const std::string report = source.review();
+      if (report.empty()) return respond(connection, 404, "Not Found", text, "this is no recording\n");
+      respond(connection, 200, "OK", "application/octet-stream", report);
+    } catch (const Error& e) {
+      respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
+    }
   }
 
   void serve_command(mg_connection* connection, long long length) {

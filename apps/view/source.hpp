@@ -20,6 +20,8 @@ class ViewSource {
   virtual std::string status() const = 0;
   /// Obeys a command of the page. Throws Error when it cannot.
   virtual void command(const nlohmann::json& command) = 0;
+  /// The report (HTML) on the recording that is shown; empty when none is. May take seconds. Throws Error.
+  virtual std::string review() { return {}; }
 };
 
 }  // namespace tegotae::view

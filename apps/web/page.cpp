@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "web/base64.hpp"
+
 #define TEGOTAE_EMBED(name, file)     \
   asm(".section .rodata\n"            \
       ".global " #name "\n" #name     \
@@ -20,6 +22,7 @@
   }
 
 TEGOTAE_EMBED(tegotae_report_html, TEGOTAE_WEB_DIST "/report.html")
+TEGOTAE_EMBED(tegotae_review_html, TEGOTAE_WEB_DIST "/review.html")
 TEGOTAE_EMBED(tegotae_view_html, TEGOTAE_WEB_DIST "/view.html")
 
 namespace tegotae::apps {
@@ -27,19 +30,6 @@ namespace {
 
 std::string_view between(const char* begin, const char* end) {
   return {begin, static_cast<std::size_t>(end - begin)};
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve(4 * (bytes.size() / 3 + 1));
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
 }
 
 /// `page` with the only `marker` replaced by `text`.
@@ -62,6 +52,10 @@ std::string filled(std::string_view page, const nlohmann::json& data) {
 
 std::string report_page(const nlohmann::json& report) {
   return filled(between(tegotae_report_html, tegotae_report_html_end), report);
+}
+
+std::string review_page(const std::string& bundle) {
+  return replaced(between(tegotae_review_html, tegotae_review_html_end), "/*DATA*/", base64(bundle));
 }
 
 std::string view_page(const std::string& nonce) {

@@ -10,6 +10,9 @@ namespace tegotae::apps {
 /// rows}. Numbers that are not finite come out as gaps.
 std::string report_page(const nlohmann::json& report);
 
+/// The review page with its data (a view::Bundle's bytes) inside, self-contained.
+std::string review_page(const std::string& bundle);
+
 /// The view page for a server: its scripts and styles carry `nonce`, and its data come over the network.
 std::string view_page(const std::string& nonce);
 /// The view page with its data (a view::Bundle's bytes) inside, to be opened without a server.

@@ -33,7 +33,7 @@ RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
 }
 
 bool RunGoal::reached(const Pose& X) const {
-  const Displacement d = displacement(X, end_, center_);
+  const Displacement d = missing(X);
   return d.dp.norm() <= tolerance_ && d.dr.norm() <= kEndRotationTolerance;
 }
 

@@ -17,6 +17,10 @@ class RunGoal {
   double depth(const Pose& X) const { return direction_.dot(X * center_ - from_); }
   /// Whether the held part is where the script ends, as RunSummary::completed says.
   bool reached(const Pose& X) const;
+  /// What is missing from `X` to where the script ends, of the center of mass.
+  Displacement missing(const Pose& X) const { return displacement(X, end_, center_); }
+  double way() const { return (end_ * center_ - from_).norm(); }  ///< straight, m
+  double tolerance() const { return tolerance_; }                 ///< of reached(), m
 
  private:
   Vec3 center_;

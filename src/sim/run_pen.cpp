@@ -21,11 +21,16 @@ ServoSettings servo_settings(const SceneFile& file) {
   return s;
 }
 
+SimulatedDevice make_device(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand) {
+  const SimulatedDeviceSettings settings = with_clock(file.device, wall_clock);
+  return hand ? SimulatedDevice(settings, *hand, loop.center()) : SimulatedDevice(settings, file.script, loop.center());
+}
+
 class LocalPen final : public RunPen {
  public:
-  LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, const HandGuide* guide)
+  LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand, const HandGuide* guide)
       : wall_clock_(wall_clock),
-        device_(with_clock(file.device, wall_clock), file.script, loop.center()),
+        device_(make_device(file, loop, wall_clock, hand)),
         channel_(Channel::create()),
         servo_(device_, channel_, servo_settings(file)),
         link_(channel_, file.scene.coupling, loop.center(), loop.gyration()),
@@ -101,9 +106,9 @@ class RemotePen final : public RunPen {
 
 }  // namespace
 
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock,
+std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand,
                                        const HandGuide* guide) {
-  return std::make_unique<LocalPen>(file, loop, wall_clock, guide);
+  return std::make_unique<LocalPen>(file, loop, wall_clock, hand, guide);
 }
 
 std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tegotae/device/hand_guide.hpp"
+#include "tegotae/device/hand_intent.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -38,8 +39,8 @@ class RunPen {
 };
 
 /// The scene's simulated pen with a servo of its own, in this process.
-/// `guide` (may be null) leads its hand away from the script.
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock,
+/// `hand` (may be null) moves it instead of the script; `guide` (may be null) leads its hand away from that.
+std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand,
                                        const HandGuide* guide);
 /// A device in another process, "shm:NAME". Throws Error when there is none.
 std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop);

@@ -37,7 +37,7 @@ HapticLoop make_loop(const SceneFile& file, bool real_time) try {
 }
 
 std::unique_ptr<RunPen> make_pen(const SceneFile& file, const RunSettings& settings, const HapticLoop& loop) {
-  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time, settings.guide);
+  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time, settings.hand, settings.guide);
   if (!settings.real_time) throw Error("a device in another process has its own clock; it cannot run in virtual time");
   return make_remote_pen(settings.device, file, loop);
 }

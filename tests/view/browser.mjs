@@ -2,6 +2,7 @@
 //   TEGOTAE_BIN_DIR=build/release/bin TEGOTAE_MODELS_DIR=models node tests/view/browser.mjs [PART OF A NAME]
 import "./browser_live.mjs";
 import "./browser_replay.mjs";
+import "./browser_review.mjs";
 import { runCases } from "./cases.mjs";
 
 process.exit((await runCases(process.argv[2] ?? "")) > 0 ? 1 : 0);

@@ -1,4 +1,4 @@
-// Makes the pictures of docs/view.md:
+// Makes the pictures of docs/view.md and docs/review.md:
 //   TEGOTAE_BIN_DIR=build/release/bin node tests/view/screenshots.mjs
 // A live run in virtual time, stopped where the tilted peg jams (light), and a recording at the rim (dark).
 import { mkdtempSync, rmSync } from "node:fs";
@@ -67,7 +67,19 @@ async function dark() {
   await picture(page, "view-dark.png");
 }
 
+async function review() {
+  const recording = join(folder, "peg.csv"), file = join(folder, "review.html");
+  await run("tegotae", "run", scene, "--fast", "--record", recording);
+  await run("tegotae", "review", recording, "--out", file);
+  const page = await browser.newPage({ viewport: { width: 1100, height: 1180 }, colorScheme: "light" });
+  await page.goto(`file://${file}`);
+  await page.waitForSelector("#tables table");
+  await page.locator("#views button", { hasText: "Front" }).click();
+  await picture(page, "review.png");
+}
+
 await light();
 await dark();
+await review();
 await browser.close();
 rmSync(folder, { recursive: true });

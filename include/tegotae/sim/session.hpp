@@ -7,6 +7,7 @@
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/device/hand_guide.hpp"
+#include "tegotae/device/hand_intent.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -56,6 +57,7 @@ struct RunSettings {
   std::string program;  ///< name and version, for the recording's info
   RunProgress* progress = nullptr;
   RunObserver* observer = nullptr;
+  HandIntent* hand = nullptr;                        ///< moves the simulated pen instead of the script
   const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
   std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
   const std::atomic<bool>* stop = nullptr;           ///< set it to end the run early; the recording is kept

@@ -1,9 +1,9 @@
 // Draws one plot of a report with uPlot.
 //
-// plot: {title, x: {label, log?, whole?}, y: {label, log?, percent?}, kind?, series: [{name, x: [...], y: [...], low?: [...], high?: [...],
+// plot: {title, x: {label, log?, whole?}, y: {label, log?, percent?}, kind?, gaps?: true, series: [{name, x: [...], y: [...], low?: [...], high?: [...],
 //        points?: true, dash?: true}], marks?: [{x, label}]}
 // kind "time" (the default): x ascends in every series; the legend follows the pointer. kind "trace": x may go back and
-// forth (a path in a plane). low and high are the ends of error bars.
+// forth (a path in a plane). low and high are the ends of error bars. With gaps a line breaks where its y is null.
 import uPlot from "uplot";
 import { element } from "./dom.js";
 
@@ -162,7 +162,7 @@ function options(plot, width) {
         stroke: seriesColor(i),
         width: s.points ? 0 : 1.5,
         dash: s.dash ? [6, 4] : undefined,
-        spanGaps: true,
+        spanGaps: !plot.gaps,
         points: s.points ? { show: true, size: 6, fill: seriesColor(i) } : { show: false },
         value: (u, v) => (v == null ? "–" : Number(v.toPrecision(4)).toString()),
       })),

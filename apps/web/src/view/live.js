@@ -13,12 +13,19 @@ export class Live {
     this.sending = false;
   }
 
-  async scene() {
-    const answer = await fetch("scene", { headers: this.headers }).catch(() => {
+  async get(what) {
+    const answer = await fetch(what, { headers: this.headers }).catch(() => {
       throw new Error("The program does not answer.");
     });
     if (!answer.ok) throw new Error((await answer.text()).trim());
-    return readBundle(await answer.arrayBuffer());
+    return answer;
+  }
+  async scene() {
+    return readBundle(await (await this.get("scene")).arrayBuffer());
+  }
+  // The report on a recording, a blob.
+  async review() {
+    return (await this.get("review")).blob();
   }
 
   // Until the server ends it.

@@ -11,6 +11,7 @@ import { Numbers } from "./numbers.js";
 import { Overlay } from "./overlay.js";
 import { Plots } from "./plots.js";
 import { Replay } from "./replay.js";
+import { addReview } from "./review.js";
 import { Stage } from "./stage.js";
 
 const $ = (id) => document.getElementById(id);
@@ -157,6 +158,7 @@ async function begin() {
     bundle = await live.scene();
   }
   if (bundle.about.mode === "replay") {
+    if (live) addReview($("review"), live, bundle.about.title, showMessage);
     live = null;
     replay = new Replay(bundle, { onFrame: showFrame, onStatus: showStatus });
   }

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "review/path_scan.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+namespace tegotae::review {
+
+/// A stretch of time, s.
+struct Span {
+  double begin = 0, end = 0;
+  double length() const { return end - begin; }
+};
+
+/// The held part in contact with another one.
+struct ContactEpisode {
+  Span span;
+  std::size_t part = 0;  ///< index into Scene::parts
+  double force = 0;      ///< largest rendered, N
+  Vec3 place_W;          ///< of the other part's surface then, m
+  double clearance = 0;  ///< least, m
+};
+
+/// Contacts that hold the part from two sides at once: it wedges when it is pressed.
+struct TwoSidedEpisode {
+  Span span;
+  std::vector<std::size_t> parts;  ///< in contact meanwhile
+  double force = 0;                ///< largest rendered, N
+  Vec3 place_W;                    ///< middle of the contacts then, m
+};
+
+/// The part stands though the pen is ahead of it.
+struct Stall {
+  Span span;
+  std::vector<std::size_t> parts;  ///< in contact for at least half of the time
+  double force = 0;                ///< largest rendered, N
+  double ahead = 0;                ///< most that the pen was ahead of the part, m
+  Vec3 place_W;                    ///< of a contact in it; of the center of mass where none is known, m
+  double depth = 0;                ///< along the way to the goal, m; 0 without a goal
+};
+
+/// The least that was measured to a part.
+struct PartClearance {
+  std::size_t part = 0;
+  double distance = 0;  ///< m
+  double t = 0;         ///< s
+  Vec3 place_W;         ///< middle of the gap, m
+};
+
+/// Forces and torques over the recording, N and N·m.
+struct Loads {
+  double force = 0, torque = 0;              ///< largest rendered
+  double force_at = 0, torque_at = 0;        ///< s
+  double asked_force = 0, asked_torque = 0;  ///< largest of the coupling's springs, before any limit
+  double running_rms = 0;                    ///< largest RMS of the force over thermal_time (30 s) before each row
+  double limit_force = 0, limit_torque = 0, continuous = 0,
+         thermal_time = 0;  ///< what holds; continuous 0: not limited
+};
+
+/// Where the part was to go.
+struct GoalFindings {
+  bool reached = false;       ///< at the end of the recording, as RunSummary::completed has it
+  bool passed = false;        ///< at some row
+  double at = 0;              ///< s: when it was reached first
+  double missing = 0;         ///< m: of the center of mass at the end
+  double missing_angle = 0;   ///< rad
+  double depth = 0, way = 0;  ///< m: gone along the straight way at the end, and its length
+  double tolerance = 0;       ///< m
+};
+
+/// What a recording says about an assembly.
+struct Findings {
+  double seconds = 0;
+  double way = 0, turn = 0;  ///< that the center of mass went and the part turned, m, rad
+  std::optional<GoalFindings> goal;
+  std::int64_t intersecting = 0;          ///< poses that intersect another part, by FCL
+  std::vector<PartClearance> clearances;  ///< the closest first
+  std::vector<ContactEpisode> contacts;
+  std::vector<TwoSidedEpisode> two_sided;
+  std::vector<Stall> stalls;
+  Loads loads;
+};
+
+/// `file`: the scene with the held part where the recording begins, and as script where it was to go.
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center);
+
+}  // namespace tegotae::review

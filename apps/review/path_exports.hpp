@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "review/path_scan.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+namespace tegotae::review {
+
+/// The path as CSV: t, pose of the held part's file frame, clearance and the part it is to, force and torque; a row for
+/// each row that was looked at.
+std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan);
+
+/// The path as a stylus script (CSV) for the scene's simulated hand: where the hand has to be for its spring to give
+/// the forces that the pen met, every 10 ms. `center`: center of mass of the held part, file frame, m.
+std::string path_script(const SceneFile& file, const std::vector<RecordFrame>& rows, const Vec3& center);
+
+/// The path as glTF 2.0 (Y up): a node for each part, the held one animated. Binary (GLB) when `binary`, else JSON with
+/// its data inside.
+std::string path_gltf(const Scene& scene, const std::vector<RecordFrame>& rows, bool binary);
+
+}  // namespace tegotae::review

@@ -1,0 +1,110 @@
+#include "review/report_tables.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "format.hpp"
+
+namespace tegotae::review {
+namespace {
+
+using apps::format;
+using nlohmann::json;
+
+constexpr std::size_t kMostRows = 200;
+
+json table(const std::string& title, const std::string& text, const std::vector<std::string>& head) {
+  return {{"title", title}, {"text", text}, {"head", head}, {"rows", json::array()}};
+}
+
+/// The longest episodes, in order of time.
+template <typename Episode>
+std::vector<Episode> longest(std::vector<Episode> episodes) {
+  if (episodes.size() <= kMostRows) return episodes;
+  const auto longer = [](const Episode& a, const Episode& b) { return a.span.length() > b.span.length(); };
+  std::nth_element(episodes.begin(), episodes.begin() + kMostRows, episodes.end(), longer);
+  episodes.resize(kMostRows);
+  std::stable_sort(episodes.begin(), episodes.end(),
+                   [](const Episode& a, const Episode& b) { return a.span.begin < b.span.begin; });
+  return episodes;
+}
+
+std::string counted(std::size_t all, const std::string& text) {
+  if (all <= kMostRows) return text;
+  return text + (text.empty() ? "" : " ") + "The " + std::to_string(kMostRows) + " longest of " + std::to_string(all) +
+         ".";
+}
+
+std::string seconds(double t) {
+  return format("%.3f", t);
+}
+std::string newtons(double f) {
+  return format("%.2f", f);
+}
+
+json clearances(const Review& r) {
+  json t = table("Closest parts", "", {"part", "least clearance", "time (s)", "place"});
+  const auto& list = r.findings.clearances;
+  for (std::size_t i = 0; i < std::min(kMostRows, list.size()); ++i)
+    t["rows"].push_back({r.file.scene.parts[list[i].part].name, length_text(list[i].distance), seconds(list[i].t),
+                         place_text(list[i].place_W)});
+  if (list.size() > kMostRows) t["text"] = format("The closest %zu of %zu.", kMostRows, list.size());
+  return t;
+}
+
+json contacts(const Review& r) {
+  const auto& list = r.findings.contacts;
+  json t = table("Contacts", counted(list.size(), "Where: on the part, at the largest force."),
+                 {"part", "from (s)", "to (s)", "for (s)", "largest force (N)", "where", "closest"});
+  for (const ContactEpisode& e : longest(list))
+    t["rows"].push_back({r.file.scene.parts[e.part].name, seconds(e.span.begin), seconds(e.span.end),
+                         seconds(e.span.length()), newtons(e.force), place_text(e.place_W), length_text(e.clearance)});
+  return t;
+}
+
+json two_sided(const Review& r) {
+  const auto& list = r.findings.two_sided;
+  json t = table("Held from two sides",
+                 counted(list.size(), "Contacts that no translation leaves: pressed, the part wedges."),
+                 {"parts", "from (s)", "to (s)", "for (s)", "largest force (N)", "where"});
+  for (const TwoSidedEpisode& e : longest(list))
+    t["rows"].push_back({names_text(e.parts, r.file.scene), seconds(e.span.begin), seconds(e.span.end),
+                         seconds(e.span.length()), newtons(e.force), place_text(e.place_W)});
+  return t;
+}
+
+json stalls(const Review& r) {
+  const auto& list = r.findings.stalls;
+  json t = table("Stalls", counted(list.size(), ""),
+                 {"by", "from (s)", "to (s)", "for (s)", "pen ahead", "largest force (N)", "where", "on the way"});
+  for (const Stall& e : longest(list))
+    t["rows"].push_back({e.parts.empty() ? "–" : names_text(e.parts, r.file.scene), seconds(e.span.begin),
+                         seconds(e.span.end), seconds(e.span.length()), length_text(e.ahead), newtons(e.force),
+                         place_text(e.place_W), r.findings.goal ? length_text(e.depth) : "–"});
+  return t;
+}
+
+json loads(const Review& r) {
+  const Loads& l = r.findings.loads;
+  json t = table("Force and torque", "Without limits: what the coupling's springs ask for.",
+                 {"", "largest", "at (s)", "without limits", "limit"});
+  t["rows"].push_back({"force", format("%.2f N", l.force), seconds(l.force_at), format("%.2f N", l.asked_force),
+                       format("%.3g N", l.limit_force)});
+  t["rows"].push_back({"torque", format("%.1f mN·m", 1e3 * l.torque), seconds(l.torque_at),
+                       format("%.1f mN·m", 1e3 * l.asked_torque), format("%.3g mN·m", 1e3 * l.limit_torque)});
+  t["rows"].push_back({format("RMS of the force over %.0f s", l.thermal_time), format("%.2f N", l.running_rms), "", "",
+                       l.continuous > 0 ? format("%.3g N", l.continuous) : "none"});
+  return t;
+}
+
+}  // namespace
+
+json report_tables(const Review& r) {
+  json out = json::array({clearances(r), loads(r)});
+  if (!r.findings.contacts.empty()) out.push_back(contacts(r));
+  if (!r.findings.two_sided.empty()) out.push_back(two_sided(r));
+  if (!r.findings.stalls.empty()) out.push_back(stalls(r));
+  return out;
+}
+
+}  // namespace tegotae::review

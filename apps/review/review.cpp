@@ -1,0 +1,48 @@
+#include "review/review.hpp"
+
+#include "broadphase/bounding_spheres.hpp"
+#include "sim/run_goal.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+#include "view/follower.hpp"
+
+namespace tegotae::review {
+namespace {
+
+double clearance_at(const Scene& scene, const Pose& X) {
+  ClearanceProbe probe(scene);
+  std::vector<Clearance> out;
+  probe.at(X, 0, out);
+  return out.empty() ? 0 : out.front().distance;
+}
+
+}  // namespace
+
+Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
+                        const Progress& progress) {
+  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}};
+  const std::vector<RecordFrame>& rows = r.recording.frames;
+  if (rows.empty()) throw Error(path + ": has no rows");
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (rows[i].t < rows[i - 1].t)
+      throw Error(path + ": row " + std::to_string(i + 1) + ": its time is before that of the row before");
+  for (Part& part : r.file.scene.parts)
+    if (part.held) part.pose = rows.front().x;
+  if (goal) {
+    r.file.script = StylusScript({{0, rows.front().x}, {1, *goal}});
+    r.file.scale = 1;
+  }
+  r.scan = scan_path(r.file.scene, path, rows, progress);
+  r.center = r.scan.center;
+  if (2 * r.scan.astray > rows.size())
+    throw Error(path + ": does not fit this scene: the part would stand in another one for " +
+                std::to_string(r.scan.astray) + " of " + std::to_string(rows.size()) + " rows");
+  if (progress) progress("asking for intersections", 0, 0);
+  r.findings = find(r.file, rows, r.scan, r.center);
+  const Pose& end = r.file.script.pose(r.file.script.end());
+  const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
+  r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
+  return r;
+}
+
+}  // namespace tegotae::review

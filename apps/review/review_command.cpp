@@ -1,0 +1,76 @@
+#include "review/review_command.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "pose_option.hpp"
+#include "review/path_exports.hpp"
+#include "review/review.hpp"
+#include "run_options.hpp"
+#include "status_line.hpp"
+#include "tegotae/core/error.hpp"
+#include "view/replay.hpp"
+
+namespace tegotae::review {
+namespace {
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text << std::flush;
+  if (!file) throw Error(path + ": cannot be written");
+}
+
+std::string beside(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension().string() + ".review.html";
+}
+
+}  // namespace
+
+std::string recording_report(const std::string& recording, const std::string& scene) {
+  Recording read = read_recording(recording);
+  SceneFile file = view::load_recorded_scene(recording, read.info, scene);
+  return report_html(review_recording(recording, std::move(read), std::move(file), std::nullopt, {}), {});
+}
+
+CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
+  CLI::App* review = app.add_subcommand("review", "Report on a recording: does it go, how close to what, how hard");
+  review->add_option("RECORDING", o.recording, "What --record wrote")->required();
+  review->add_option("SCENE", o.scene, "Its scene file (the one that the recording names)");
+  apps::add_pose_option(*review, "--goal", o.goal, "Where the part was to go (where the scene's script ends)");
+  review->add_option("--out", o.out, "The report (RECORDING.review.html, beside it)")->type_name("FILE.html");
+  review->add_option("--csv", o.csv, "Also write the path, with clearances and forces")->type_name("FILE.csv");
+  review->add_option("--gltf", o.gltf, "Also write the path as an animation, binary when it ends in .glb")
+      ->type_name("FILE.gltf");
+  review->add_option("--script", o.script, "Also write the pen's path as a stylus script, for run --script")
+      ->type_name("FILE.csv");
+  return review;
+}
+
+int run_review(const ReviewOptions& o) {
+  const std::string out = o.out.empty() ? beside(o.recording) : o.out;
+  apps::StatusLine status;
+  const Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
+    status.show(what, done, total);
+  };
+  Recording recording = read_recording(o.recording);
+  SceneOptions how;
+  how.progress = [&](std::size_t done, std::size_t total) { progress("reading meshes of part", done, total); };
+  SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
+  std::optional<Pose> goal;
+  if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
+  const Review r = review_recording(o.recording, std::move(recording), std::move(scene), goal, progress);
+  const auto& rows = r.recording.frames;
+  write(out, report_html(r, progress));
+  if (!o.csv.empty()) write(o.csv, path_csv(r.file.scene, rows, r.scan));
+  if (!o.script.empty()) write(o.script, path_script(r.file, rows, r.center));
+  if (!o.gltf.empty())
+    write(o.gltf, path_gltf(r.file.scene, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
+  status.say("");
+  std::cout << r.verdict.headline << "\n";
+  for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";
+  std::cout << "report: " << out << std::endl;
+  return r.verdict.outcome == Outcome::does_not_go ? apps::kRunFailed : apps::kDone;
+}
+
+}  // namespace tegotae::review

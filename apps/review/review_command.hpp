@@ -1,0 +1,25 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace tegotae::review {
+
+struct ReviewOptions {
+  std::string recording;
+  std::string scene;              ///< empty: the one that the recording names
+  std::string goal;               ///< empty: where the scene's script ends
+  std::string out;                ///< report; empty: beside the recording
+  std::string csv, gltf, script;  ///< exports of the path; empty: none
+};
+
+/// The subcommand `review`.
+CLI::App* add_review(CLI::App& app, ReviewOptions& options);
+
+/// Writes the report and the exports, and prints the verdict. Returns the exit code. Throws Error.
+int run_review(const ReviewOptions& options);
+
+/// The report on `recording` over `scene` (empty: the one that it names), HTML. Throws Error.
+std::string recording_report(const std::string& recording, const std::string& scene);
+
+}  // namespace tegotae::review

@@ -1,0 +1,158 @@
+#include "review/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "format.hpp"
+
+namespace tegotae::review {
+
+using apps::format;
+
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+class Judge {
+ public:
+  Judge(const Findings& f, const Scene& scene, bool inwards, const Scan& scan)
+      : f_(f), scene_(scene), inwards_(inwards), scan_(scan) {}
+
+  Verdict verdict(const std::string& damage) {
+    decide();
+    if (f_.goal) tell_goal();
+    tell_intersections();
+    tell_clearance();
+    tell_loads();
+    tell_contacts();
+    if (!damage.empty()) bad("The end of the recording is missing: " + damage + ".");
+    return v_;
+  }
+
+ private:
+  void add(Evidence::Kind kind, const std::string& text) { v_.evidence.push_back({kind, text}); }
+  void good(const std::string& text) { add(Evidence::Kind::good, text); }
+  void bad(const std::string& text) { add(Evidence::Kind::bad, text); }
+  void plain(const std::string& text) { add(Evidence::Kind::plain, text); }
+
+  void decide() {
+    const char* goes = inwards_ ? "goes in" : "comes out";
+    const char* go = inwards_ ? "go in" : "come out";
+    if (f_.intersecting > 0) {
+      v_.outcome = Outcome::does_not_go;
+      v_.headline = std::to_string(f_.intersecting) + " poses intersect other parts: no way for a rigid part";
+    } else if (!f_.goal) {
+      v_.headline = "A way of " + length_text(f_.way) + " without a goal";
+    } else if (f_.goal->reached) {
+      v_.outcome = Outcome::goes;
+      v_.headline = std::string("It ") + goes;
+    } else if (f_.goal->passed) {
+      v_.outcome = Outcome::goes;
+      v_.headline = std::string("It ") + goes + ", and leaves again: it was there after " + seconds_text(f_.goal->at);
+    } else {
+      v_.outcome = Outcome::does_not_go;
+      v_.headline = std::string("It does not ") + go + blocked();
+    }
+  }
+
+  /// Who is in the way at the end.
+  std::string blocked() const {
+    const double end = scan_.rows.empty() ? 0 : f_.seconds;
+    const Stall* last = f_.stalls.empty() ? nullptr : &f_.stalls.back();
+    if (last && !last->parts.empty())
+      return ": blocked by " + names_text(last->parts, scene_) + " at " + place_text(last->place_W);
+    const auto touches_at_end = [&](const ContactEpisode& e) { return e.span.end >= end - 1e-9; };
+    const auto found = std::find_if(f_.contacts.begin(), f_.contacts.end(), touches_at_end);
+    if (found == f_.contacts.end()) return ": nothing was in its way at the end, the hand did not bring it there";
+    return ": blocked by " + scene_.parts[found->part].name + " at " + place_text(found->place_W);
+  }
+
+  void tell_goal() {
+    const GoalFindings& g = *f_.goal;
+    const std::string text =
+        format("At the end it is %s and %.1f° from its goal (tolerance %s, 5.7°), %s of %s on the way.",
+               length_text(g.missing).c_str(), g.missing_angle / kDegree, length_text(g.tolerance).c_str(),
+               length_text(g.depth).c_str(), length_text(g.way).c_str());
+    add(g.reached ? Evidence::Kind::good : Evidence::Kind::bad, text);
+  }
+
+  void tell_intersections() {
+    if (f_.intersecting == 0)
+      good("No pose intersects another part, by their triangles and asked independently of the run.");
+    else
+      bad(format("%lld poses intersect another part.", static_cast<long long>(f_.intersecting)));
+  }
+
+  void tell_clearance() {
+    if (f_.clearances.empty()) return;
+    const PartClearance& c = f_.clearances.front();
+    plain("Least clearance " + length_text(c.distance) + " to " + scene_.parts[c.part].name + " at " +
+          place_text(c.place_W) + ", after " + seconds_text(c.t) + ".");
+  }
+
+  void tell_loads() {
+    const Loads& l = f_.loads;
+    const bool within = l.asked_force <= l.limit_force && l.asked_torque <= l.limit_torque;
+    const std::string text =
+        format("At most %.2f N (limit %.2g N) and %.0f mN·m (limit %.3g mN·m); without limits %.2f N and %.0f mN·m.",
+               l.force, l.limit_force, 1e3 * l.torque, 1e3 * l.limit_torque, l.asked_force, 1e3 * l.asked_torque);
+    add(within ? Evidence::Kind::good : Evidence::Kind::bad, text);
+    if (l.continuous > 0)
+      add(l.running_rms <= 0.999 * l.continuous ? Evidence::Kind::good : Evidence::Kind::bad,
+          format("Running RMS over %.0f s at most %.2f N; the motors stand for %.2g N.", l.thermal_time, l.running_rms,
+                 l.continuous));
+  }
+
+  void tell_contacts() {
+    if (f_.contacts.empty()) plain("Nothing was touched.");
+    if (!f_.two_sided.empty()) {
+      double total = 0;
+      for (const TwoSidedEpisode& e : f_.two_sided) total += e.span.length();
+      plain(format("Held from two sides %zu times, %.2f s together: it wedges when it is pressed.", f_.two_sided.size(),
+                   total));
+    }
+    if (f_.stalls.empty()) return plain("It never stalled.");
+    const auto longest = std::max_element(f_.stalls.begin(), f_.stalls.end(), [](const Stall& a, const Stall& b) {
+      return a.span.length() < b.span.length();
+    });
+    const std::string by = longest->parts.empty() ? "" : " by " + names_text(longest->parts, scene_);
+    plain(format("Stalled %zu times, longest for %.2f s after %.2f s", f_.stalls.size(), longest->span.length(),
+                 longest->span.begin) +
+          by + " at " + place_text(longest->place_W) + ".");
+  }
+
+  const Findings& f_;
+  const Scene& scene_;
+  bool inwards_;
+  const Scan& scan_;
+  Verdict v_;
+};
+
+}  // namespace
+
+std::string length_text(double meters) {
+  const double size = std::abs(meters);
+  if (size < 1e-4) return format("%.3g µm", 1e6 * meters);
+  return size < 1 ? format("%.3g mm", 1e3 * meters) : format("%.3g m", meters);
+}
+
+std::string place_text(const Vec3& p) {
+  return format("(%.2f, %.2f, %.2f) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
+}
+
+std::string seconds_text(double seconds) {
+  return format("%.2f s", seconds);
+}
+
+std::string names_text(const std::vector<std::size_t>& parts, const Scene& scene) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + scene.parts[parts[i]].name;
+  return text;
+}
+
+Verdict judge(const Findings& findings, const Scene& scene, bool inwards, const Scan& scan, const std::string& damage) {
+  return Judge(findings, scene, inwards, scan).verdict(damage);
+}
+
+}  // namespace tegotae::review

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tegotae/device/operator.hpp"
+#include "tegotae/sim/scene.hpp"
+
+namespace tegotae::tries {
+
+/// A way for the held part from its start to the goal: what an operator does, one task after the other.
+struct Route {
+  std::string name;  ///< "straight", "along -z", "along the part's x"
+  std::vector<InsertionTask> legs;
+  bool pulls = false;  ///< out of where the part is, instead of pushing it in
+};
+
+/// The routes worth trying: the straight one, and in (out) along an axis of the world or of the part where nothing is
+/// in the way at the poses that were looked at. Whether the part goes in or comes out is told by what is nearer to the
+/// other parts, the goal or the start. `center`: center of mass of the held part, file frame, m.
+std::vector<Route> find_routes(const Scene& scene, const Pose& goal, const Vec3& center);
+
+}  // namespace tegotae::tries

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+namespace tegotae::tries {
+
+struct TryOptions {
+  std::string scene, hold;
+  std::string goal;           ///< empty: where the scene's script ends
+  std::string out = "tries";  ///< folder
+  int tries = 20, jobs = 0;
+  std::uint64_t seed = 1;
+  double seconds = 20;
+};
+
+/// The subcommand `try`.
+CLI::App* add_try(CLI::App& app, TryOptions& options);
+
+/// Tries what is missing in the folder, and tells what came out. Returns the exit code. Throws Error.
+int run_tries(const TryOptions& options);
+
+}  // namespace tegotae::tries

@@ -1,0 +1,176 @@
+// Clearances against brute force over all pairs of triangles, and against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "review/clearance_probe.hpp"
+#include "review/surface_clearance.hpp"
+
+using namespace tegotae;
+using namespace tegotae::review;
+using namespace tegotae::test;
+
+namespace {
+
+using Triangle = std::array<Vec3, 3>;
+
+double point_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  return (a + std::clamp(d.dot(p - a) / d.squaredNorm(), 0.0, 1.0) * d - p).norm();
+}
+
+double point_triangle(const Vec3& p, const Triangle& t) {
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  bool inside = true;
+  double edges = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+    inside = inside && (b - a).cross(p - a).dot(n) >= 0;
+    edges = std::min(edges, point_segment(p, a, b));
+  }
+  return inside ? std::abs(n.dot(p - t[0])) : edges;
+}
+
+double segment_segment(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = d - c, w = a - c;
+  const double uv = u.dot(v), uu = u.dot(u), vv = v.dot(v), den = uu * vv - uv * uv;
+  double best =
+      std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
+  if (den > 0) {
+    const double s = (uv * v.dot(w) - vv * u.dot(w)) / den, t = (uu * v.dot(w) - uv * u.dot(w)) / den;
+    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) best = std::min(best, (w + s * u - t * v).norm());
+  }
+  return best;
+}
+
+bool crosses(const Vec3& a, const Vec3& b, const Triangle& t) {
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double da = n.dot(a - t[0]), db = n.dot(b - t[0]);
+  if (da * db > 0) return false;
+  const Vec3 p = a + da / (da - db) * (b - a);
+  for (int k = 0; k < 3; ++k)
+    if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(n) < 0) return false;
+  return true;
+}
+
+double distance(const Triangle& s, const Triangle& t) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    best = std::min({best, point_triangle(s[i], t), point_triangle(t[i], s)});
+    const Vec3 &a = s[i], &b = s[(i + 1) % 3];
+    if (crosses(a, b, t) || crosses(t[i], t[(i + 1) % 3], s)) return 0;
+    for (int j = 0; j < 3; ++j) best = std::min(best, segment_segment(a, b, t[j], t[(j + 1) % 3]));
+  }
+  return best;
+}
+
+std::vector<Triangle> triangles(const TriangleMesh& mesh, const Pose& X) {
+  std::vector<Triangle> out;
+  for (const auto& t : mesh.triangles)
+    out.push_back({X * mesh.vertices[t[0]], X * mesh.vertices[t[1]], X * mesh.vertices[t[2]]});
+  return out;
+}
+
+double brute(const TriangleMesh& a, const Pose& X_a, const TriangleMesh& b, const Pose& X_b) {
+  double best = std::numeric_limits<double>::infinity();
+  const auto in_b = triangles(b, X_b);
+  for (const Triangle& s : triangles(a, X_a))
+    for (const Triangle& t : in_b) best = std::min(best, distance(s, t));
+  return best;
+}
+
+RecordFrame at(double t, const Pose& X) {
+  RecordFrame row;
+  row.t = t;
+  row.x = row.y = X;
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("clearances along a path are those of all pairs of triangles") {
+  std::mt19937 rng(11);
+  Scene scene;
+  scene.parts.push_back({"left", shared(random_star_body(rng, 60, 0.01)), {Quat::Identity(), {-0.025, 0, 0}}, false});
+  scene.parts.push_back({"held", shared(random_convex_body(rng, 30, 0.008)), Pose{}, true});
+  scene.parts.push_back(
+      {"right", shared(random_star_body(rng, 60, 0.01)), {rotation({1, 2, 0.5}), {0.025, 0, 0.003}}, false});
+  ClearanceProbe probe(scene);
+  const double reach = 0.02;
+  std::vector<Clearance> found;
+  int within = 0, second = 0, intersecting = 0;
+  for (int i = 0; i <= 60; ++i) {
+    // From the left part to the right one, turning; it runs into the right one at the end.
+    const Pose X{rotation({0, 0.02 * i, 0.05 * i}), {-0.008 + 0.0004 * i, 0.001 * std::sin(0.3 * i), 0}};
+    probe.at(X, reach, found);
+    const double left = brute(*scene.parts[1].mesh, X, *scene.parts[0].mesh, scene.parts[0].pose);
+    const double right = brute(*scene.parts[1].mesh, X, *scene.parts[2].mesh, scene.parts[2].pose);
+    INFO("pose " << i << ", left " << left << ", right " << right);
+    REQUIRE(!found.empty());
+    CHECK(found.front().part == (left <= right ? 0u : 2u));
+    CHECK(found.front().distance == Approx(std::min(left, right)).margin(1e-12));
+    const bool both = std::max(left, right) < reach;
+    REQUIRE(found.size() == (both ? 2u : 1u));
+    if (both) CHECK(found[1].distance == Approx(std::max(left, right)).margin(1e-12));
+    for (const Clearance& c : found)
+      if (c.distance > 0) CHECK((c.on_held_W - c.on_other_W).norm() == Approx(c.distance).epsilon(1e-9));
+    within += std::min(left, right) < reach;
+    second += both;
+    intersecting += std::min(left, right) == 0;
+  }
+  CHECK(within > 20);
+  CHECK(second > 0);
+  CHECK(intersecting > 0);
+  CHECK(intersecting < 40);
+}
+
+TEST_CASE("a box over a floor: every point's least clearance is the height of its lowest place") {
+  Scene scene;
+  scene.parts.push_back({"floor", shared(box({0.2, 0.2, 0.02})), {Quat::Identity(), {0, 0, -0.01}}, false});
+  scene.parts.push_back({"held", shared(box({0.02, 0.02, 0.04})), Pose{}, true});
+  std::vector<RecordFrame> rows;
+  for (int i = 0; i <= 200; ++i) {
+    const double s = i / 200.0;
+    rows.push_back(
+        at(1e-3 * i, {rotation({0.4 * std::sin(5 * s), 0.2 * s, s}), {0.02 * s, 0, 0.06 - 0.03 * std::sin(3 * s)}}));
+  }
+  const double reach = 0.03;
+  const std::vector<std::size_t> all = looked_at(rows.size(), 1000);
+  REQUIRE(all.size() == rows.size());
+  ColoredSurface surface = sampled_surface(scene.parts[1].mesh, 4000);
+  REQUIRE(surface.indices.size() / 3 > 1000);
+  REQUIRE(surface.indices.size() / 3 <= 4000);
+  add_clearance(scene, rows, all, reach, {}, surface);
+  int far = 0;
+  for (std::size_t i = 0; i < surface.clearance.size(); ++i) {
+    const Vec3 p(surface.positions[3 * i], surface.positions[3 * i + 1], surface.positions[3 * i + 2]);
+    // On the box: one coordinate is that of a face.
+    const Vec3 q = p.cwiseAbs().cwiseQuotient(Vec3(0.01, 0.01, 0.02));
+    REQUIRE(std::abs(q.maxCoeff() - 1) < 1e-6);
+    double least = reach;
+    for (const RecordFrame& row : rows) least = std::min(least, (row.x * p).z());
+    CHECK(surface.clearance[i] == Approx(least).margin(1e-8));
+    far += surface.clearance[i] == static_cast<float>(reach);
+  }
+  CHECK(far > 0);
+}
+
+TEST_CASE("a surface of many triangles is sampled on itself") {
+  // A cylinder of radius 10 mm with 4000 facets.
+  TriangleMesh tube;
+  const int n = 4000;
+  for (int i = 0; i < n; ++i)
+    for (const double z : {0.0, 0.03})
+      tube.vertices.emplace_back(0.01 * std::cos(2 * M_PI * i / n), 0.01 * std::sin(2 * M_PI * i / n), z);
+  for (int i = 0; i < n; ++i) {
+    const auto a = static_cast<std::uint32_t>(2 * i), b = static_cast<std::uint32_t>(2 * ((i + 1) % n));
+    tube.triangles.push_back({a, b, a + 1});
+    tube.triangles.push_back({b, b + 1, a + 1});
+  }
+  const ColoredSurface surface = sampled_surface(shared(tube), 2000);
+  CHECK(surface.indices.size() / 3 <= 2000);
+  for (std::size_t i = 0; i < surface.positions.size(); i += 3)
+    CHECK(std::abs(std::hypot(surface.positions[i], surface.positions[i + 1]) - 0.01) < 2e-8);
+}

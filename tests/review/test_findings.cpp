@@ -1,0 +1,211 @@
+// What a recording says, on recordings whose answers are known in closed form.
+#include <cmath>
+
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "review/findings.hpp"
+#include "review/path_scan.hpp"
+#include "review/spans.hpp"
+#include "review/verdict.hpp"
+#include "tegotae/core/error.hpp"
+
+using namespace tegotae;
+using namespace tegotae::review;
+using namespace tegotae::test;
+
+namespace {
+
+/// A block of 10 mm over a floor (top at z = 0) beside a wall (its side at x = 20 mm).
+Scene blocks() {
+  Scene scene;
+  scene.parts.push_back({"floor", shared(box({0.2, 0.2, 0.02})), {Quat::Identity(), {0, 0, -0.01}}, false});
+  scene.parts.push_back({"wall", shared(box({0.02, 0.2, 0.1})), {Quat::Identity(), {0.03, 0, 0.06}}, false});
+  scene.parts.push_back({"block", shared(box({0.01, 0.01, 0.01})), {Quat::Identity(), {0, 0, 0.01}}, true});
+  return scene;
+}
+
+SceneFile file_of(const Scene& scene, const Pose& goal) {
+  const Pose start = scene.parts.back().pose;
+  return {"blocks.toml", scene, {}, StylusScript({{0, start}, {1, goal}})};
+}
+
+RecordFrame row(int ms, double x, double z, double pen_z, double force) {
+  RecordFrame r;
+  r.tick = static_cast<std::uint64_t>(ms);
+  r.t = 1e-3 * ms;
+  r.x.p = {x, 0, z};
+  r.y.p = {x, 0, pen_z};
+  r.wrench.force = {0, 0, force};
+  r.wrench.torque = {0.001 * force, 0, 0};
+  r.contacts = force > 0 ? 4 : 0;
+  return r;
+}
+
+/// Down from 5 mm to 2 µm over the floor in half a second, a second of rest there with 2 N, up again, to the wall.
+std::vector<RecordFrame> down_and_up() {
+  std::vector<RecordFrame> rows;
+  const double low = 0.005 + 2e-6;
+  for (int i = 0; i <= 500; ++i)
+    rows.push_back(row(i, 0, 0.01 + (low - 0.01) * i / 500, 0.01 + (low - 0.01) * i / 500, 0));
+  for (int i = 501; i <= 1500; ++i) rows.push_back(row(i, 0, low, low - 2.5e-3, 2));
+  for (int i = 1501; i <= 2000; ++i) rows.push_back(row(i, 0, low + 1e-5 * (i - 1500), low + 1e-5 * (i - 1500), 0));
+  const double beside = 0.02 - 0.005 - 3e-6;
+  for (int i = 2001; i <= 2500; ++i)
+    rows.push_back(row(i, beside * (i - 2000) / 500, low + 5e-3, low + 5e-3, i == 2500 ? 0.5 : 0));
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("contacts, stalls, loads and clearances of a block that presses on a floor and goes to a wall") {
+  const Scene scene = blocks();
+  const std::vector<RecordFrame> rows = down_and_up();
+  const Vec3 center = Vec3::Zero();
+  const SceneFile file = file_of(scene, rows.back().x);
+  const Scan scan = scan_path(scene, "test", rows, {});
+  CHECK(scan.astray == 0);
+  CHECK(scan.every == 1);
+  CHECK((scan.center - center).norm() < 1e-12);
+  const Findings f = find(file, rows, scan, center);
+
+  CHECK(f.seconds == Approx(2.5));
+  CHECK(f.intersecting == 0);
+  CHECK(f.way == Approx(0.005 - 2e-6 + 0.005 + 0.015 - 3e-6).epsilon(1e-9));
+  REQUIRE(f.clearances.size() == 2);
+  CHECK(f.clearances[0].part == 0);
+  CHECK(f.clearances[0].distance == Approx(2e-6).epsilon(1e-6));
+  CHECK(f.clearances[0].place_W.z() == Approx(1e-6).epsilon(1e-6));
+  CHECK(f.clearances[1].part == 1);
+  CHECK(f.clearances[1].distance == Approx(3e-6).epsilon(1e-6));
+  CHECK(f.clearances[1].t == Approx(2.5));
+
+  REQUIRE(f.contacts.size() == 2);
+  CHECK(f.contacts[0].part == 0);
+  const double gap = scan.rows[1000].contact_gap;  // some micrometers: 10 µm a millisecond are passed on the way
+  CHECK(gap > 2e-6);
+  CHECK(f.contacts[0].span.begin == Approx(0.5).margin(1e-3 + 0.5 * gap / 0.01));
+  CHECK(f.contacts[0].span.end == Approx(1.5).margin(1e-3 + gap / 0.01));
+  CHECK(f.contacts[0].force == 2);
+  CHECK(std::abs(f.contacts[0].place_W.z()) < 1e-12);
+  CHECK(f.contacts[1].part == 1);
+  CHECK(f.contacts[1].force == 0.5);
+  CHECK(f.contacts[1].place_W.x() == Approx(0.02));
+
+  CHECK(f.two_sided.empty());
+  REQUIRE(f.stalls.size() == 1);
+  // The window of 50 ms comes to rest after the part does.
+  CHECK(f.stalls[0].span.begin == Approx(0.53).margin(0.03));
+  CHECK(f.stalls[0].span.end == Approx(1.5).margin(2e-3));
+  CHECK(f.stalls[0].parts == std::vector<std::size_t>{0});
+  CHECK(f.stalls[0].ahead == Approx(2.5e-3));
+
+  CHECK(f.loads.force == 2);
+  CHECK(f.loads.torque == Approx(0.002));
+  CHECK(f.loads.asked_force == Approx(800 * 2.5e-3));
+  // 2 N for a second and 0.5 N for a millisecond, over 30 s.
+  CHECK(f.loads.running_rms == Approx(std::sqrt((4.0 + 0.25e-3) / 30)).epsilon(1e-3));
+  CHECK(f.loads.limit_force == 8.5);
+  CHECK(f.loads.continuous == 1.4);
+
+  REQUIRE(f.goal);
+  CHECK(f.goal->reached);
+  CHECK(f.goal->missing == Approx(0).margin(1e-12));
+  const Verdict v = judge(f, scene, true, scan, "");
+  CHECK(v.outcome == review::Outcome::goes);
+  CHECK(v.headline == "It goes in");
+}
+
+TEST_CASE("a recording that ends against a part tells who is in the way, and where") {
+  const Scene scene = blocks();
+  std::vector<RecordFrame> rows = down_and_up();
+  rows.resize(1400);
+  const SceneFile file = file_of(scene, {Quat::Identity(), {0, 0, -0.02}});
+  const Scan scan = scan_path(scene, "test", rows, {});
+  const Findings f = find(file, rows, scan, Vec3::Zero());
+  REQUIRE(f.goal);
+  CHECK_FALSE(f.goal->reached);
+  CHECK_FALSE(f.goal->passed);
+  CHECK(f.goal->depth == Approx(0.005 - 2e-6).epsilon(1e-9));
+  CHECK(f.goal->way == Approx(0.03));
+  const Verdict v = judge(f, scene, true, scan, "");
+  CHECK(v.outcome == review::Outcome::does_not_go);
+  CHECK(v.headline.find("It does not go in: blocked by floor at (") == 0);
+}
+
+TEST_CASE("poses inside of a part are counted, and are no way") {
+  const Scene scene = blocks();
+  std::vector<RecordFrame> rows = down_and_up();
+  for (int i = 0; i < 7; ++i) rows.push_back(row(2501 + i, 0.0149, 0.004 - 1e-5 * i, 0.004, 0));
+  const SceneFile file = file_of(scene, rows.back().x);
+  const Scan scan = scan_path(scene, "test", rows, {});
+  const Findings f = find(file, rows, scan, Vec3::Zero());
+  CHECK(f.intersecting == 7);
+  CHECK(f.clearances[0].distance == 0);
+  CHECK(judge(f, scene, true, scan, "").outcome == review::Outcome::does_not_go);
+}
+
+TEST_CASE("held from two sides") {
+  const double wide = 0.2;
+  CHECK_FALSE(holds_from_two_sides({}));
+  CHECK_FALSE(holds_from_two_sides({Vec3::UnitZ()}));
+  CHECK_FALSE(holds_from_two_sides({Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY()}));  // a corner
+  CHECK(holds_from_two_sides({Vec3::UnitZ(), -Vec3::UnitZ()}));
+  CHECK(holds_from_two_sides({Vec3::UnitX(), Vec3(-0.5, std::sqrt(0.75), 0), Vec3(-0.5, -std::sqrt(0.75), 0)}));
+  // Leaning walls: the part comes free upwards when they lean by more than 10 degrees.
+  for (const double lean : {0.1, wide})
+    CHECK(holds_from_two_sides({Vec3(std::cos(lean), 0, std::sin(lean)), Vec3(-std::cos(lean), 0, std::sin(lean))}) ==
+          (lean < wide));
+  // Random normals: the best direction to leave, by trying many.
+  std::mt19937 rng(5);
+  int held = 0, decided = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<Vec3> normals(2 + trial % 5);
+    for (Vec3& n : normals) n = random_direction(rng);
+    double best = -1;
+    for (int k = 0; k < 4000; ++k) {
+      const double z = 1 - (2 * k + 1) / 4000.0, r = std::sqrt(1 - z * z), a = 2.399963 * k;
+      const Vec3 v(r * std::cos(a), r * std::sin(a), z);
+      double least = 1;
+      for (const Vec3& n : normals) least = std::min(least, n.dot(v));
+      best = std::max(best, least);
+    }
+    if (std::abs(best - 0.1736) < 0.05) continue;
+    ++decided;
+    held += best < 0.1736;
+    CHECK(holds_from_two_sides(normals) == (best < 0.1736));
+  }
+  CHECK(decided > 100);
+  CHECK(held > 10);
+}
+
+TEST_CASE("a block between two walls is held from two sides while it touches both") {
+  Scene scene;
+  scene.parts.push_back({"left", shared(box({0.02, 0.1, 0.1})), {Quat::Identity(), {-0.015 - 2e-6, 0, 0}}, false});
+  scene.parts.push_back({"right", shared(box({0.02, 0.1, 0.1})), {Quat::Identity(), {0.015 + 2e-6, 0, 0}}, false});
+  scene.parts.push_back({"block", shared(box({0.01, 0.01, 0.01})), {Quat::Identity(), {0, 0, 0.08}}, true});
+  std::vector<RecordFrame> rows;
+  for (int i = 0; i <= 400; ++i) rows.push_back(row(i, 0, 0.08 - 2e-4 * i, 0.08 - 2e-4 * i, 1));
+  const Scan scan = scan_path(scene, "test", rows, {});
+  const Findings f = find(file_of(scene, rows.back().x), rows, scan, Vec3::Zero());
+  REQUIRE(f.two_sided.size() == 1);
+  // Its lower side comes between them at z = 55 mm, after 125 ms.
+  CHECK(f.two_sided[0].span.begin == Approx(0.125).margin(0.02));
+  CHECK(f.two_sided[0].span.end == Approx(0.4).margin(2e-3));
+  CHECK(f.two_sided[0].parts == std::vector<std::size_t>{0, 1});
+}
+
+TEST_CASE("spans join short breaks and leave out what is short") {
+  const std::vector<int> on = {1, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1};
+  const auto time = [](std::size_t i) { return 0.01 * static_cast<double>(i); };
+  const auto holds = [&](std::size_t i) { return on[i] == 1; };
+  using Spans = std::vector<std::pair<std::size_t, std::size_t>>;
+  CHECK(spans(on.size(), time, holds, 0.025, 0) == Spans{{0, 3}, {7, 7}, {12, 13}});
+  CHECK(spans(on.size(), time, holds, 0.025, 0.005) == Spans{{0, 3}, {12, 13}});
+  CHECK(spans(0, time, holds, 0.025, 0).empty());
+}
+
+TEST_CASE("rows that are looked at") {
+  CHECK(looked_at(0, 10).empty());
+  CHECK(looked_at(3, 10) == std::vector<std::size_t>{0, 1, 2});
+  CHECK(looked_at(11, 5) == std::vector<std::size_t>{0, 3, 6, 9, 10});
+}

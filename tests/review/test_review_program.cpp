@@ -1,0 +1,248 @@
+// `tegotae review` as a user runs it: verdict, report, exports, bad input.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "catch.hpp"
+#include "recording.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const kCube =
+    "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+    "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n";
+
+/// A block 3 mm over a floor cube; the hand takes it to (x, z) mm, with a turn, in 0.4 s.
+void write_cubes(const TempFolder& folder, double x, double z) {
+  folder.write("cube.obj", kCube);
+  char end[96];
+  std::snprintf(end, sizeof end, "0.4,%g,0,%g,0.995,0,0,0.0998749\n", 1e-3 * x, 1e-3 * z);
+  folder.write("path.csv", std::string("t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.013,1,0,0,0\n") + end);
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"floor, \\\"the\\\"\"\nmesh = \"cube.obj\"\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.013]\n"
+               "[device]\nscript = \"path.csv\"\n");
+}
+
+std::string record(const TempFolder& folder, const std::string& name, int code = 0) {
+  const Output o = run_program("tegotae", "run --fast --record " + folder / name + " " + folder / "scene.toml");
+  INFO(o.err);
+  REQUIRE(o.code == code);
+  return folder / name;
+}
+
+std::string without_last_line(const std::string& text) {
+  return text.substr(0, text.rfind('\n', text.size() - 2));
+}
+
+std::vector<std::vector<std::string>> csv_rows(const std::string& path) {
+  std::istringstream in(read_text(path));
+  std::string line, cell;
+  std::vector<std::vector<std::string>> out;
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    out.emplace_back();
+    while (std::getline(cells, cell, ',')) out.back().push_back(cell);
+  }
+  return out;
+}
+
+Pose pose_of(const aiNodeAnim& channel, unsigned i) {
+  const aiVector3D p = channel.mPositionKeys[i].mValue;
+  const aiQuaternion q = channel.mRotationKeys[i].mValue;
+  return {Quat(q.w, q.x, q.y, q.z), Vec3(p.x, p.y, p.z)};
+}
+
+/// The glTF read by assimp against the recording.
+void check_gltf(const std::string& path, const std::vector<RecordedRow>& rows) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+  INFO(importer.GetErrorString());
+  REQUIRE(scene);
+  REQUIRE(scene->mNumMeshes == 2);
+  for (unsigned i = 0; i < 2; ++i) CHECK(scene->mMeshes[i]->mNumFaces == 12);
+  const aiNode* block = scene->mRootNode->FindNode("block");
+  REQUIRE(block);
+  // z is up in the scene, y in the file: what is 13 mm high in one is so in the other.
+  const aiMatrix4x4 up = block->mParent->mTransformation;
+  const aiVector3D high = up * aiVector3D(0, 0, 0.013f);
+  CHECK(high.y == Approx(0.013));
+  CHECK(std::abs(high.z) < 1e-8);
+  REQUIRE(scene->mNumAnimations == 1);
+  const aiAnimation& animation = *scene->mAnimations[0];
+  REQUIRE(animation.mNumChannels == 1);
+  const aiNodeAnim& channel = *animation.mChannels[0];
+  CHECK(std::string(channel.mNodeName.C_Str()) == "block");
+  REQUIRE(channel.mNumPositionKeys == channel.mNumRotationKeys);
+  const double second = animation.mTicksPerSecond;
+  CHECK(animation.mDuration / second == Approx(rows.back().t).epsilon(1e-5));
+  std::size_t row = 0;
+  for (unsigned k = 0; k < channel.mNumPositionKeys; ++k) {
+    const double t = channel.mPositionKeys[k].mTime / second;
+    while (row + 1 < rows.size() && rows[row + 1].t < t + 5e-4) ++row;
+    const Pose X = pose_of(channel, k);
+    REQUIRE((X.p - rows[row].x.p).norm() < 1e-8);
+    REQUIRE(X.q.angularDistance(rows[row].x.q) < 1e-3);  // of single precision, near 1
+  }
+  CHECK(channel.mNumPositionKeys > 800);
+}
+
+}  // namespace
+
+TEST_CASE("a block that goes to its goal: verdict, report, exports") {
+  const TempFolder folder;
+  write_cubes(folder, 4, 16);
+  const std::string csv = record(folder, "r.csv"), mcap = record(folder, "m.mcap");
+  const Output o = run_program("tegotae", "review " + csv + " --csv " + folder / "path_out.csv" + " --gltf " +
+                                              folder / "p.gltf" + " --script " + folder / "s.csv");
+  INFO(o.err);
+  REQUIRE(o.code == 0);
+  CHECK(o.err.empty());
+  CHECK_THAT(o.out, Contains("It comes out\n"));
+  CHECK_THAT(o.out, Contains("No pose intersects another part"));
+  CHECK_THAT(o.out, Contains("Nothing was touched."));
+
+  const std::string report = read_text(folder / "r.review.html");
+  CHECK(report.find("<script src") == std::string::npos);  // all is inside
+  CHECK(report.size() > 500'000);
+  CHECK(report.size() < 3'000'000);
+
+  {  // MCAP says the same as CSV
+    const Output m = run_program("tegotae", "review " + mcap + " --gltf " + folder / "m.glb");
+    CHECK(m.code == 0);
+    CHECK(without_last_line(m.out) == without_last_line(o.out));
+    check_gltf(folder / "m.glb", read_recording(csv));
+  }
+  {  // the path in CSV
+    const auto out = csv_rows(folder / "path_out.csv");
+    const std::vector<RecordedRow> rows = read_recording(csv);
+    REQUIRE(out.size() == rows.size() + 1);
+    CHECK(out[0][8] == "clearance");
+    for (std::size_t i = 0; i < rows.size(); i += 50) {
+      const Pose& X = rows[i].x;
+      CHECK(std::stod(out[i + 1][0]) == rows[i].t);
+      CHECK(std::stod(out[i + 1][3]) == X.p.z());
+      // Cubes one over the other, the upper one turned about z: their faces are apart by the height.
+      CHECK(std::stod(out[i + 1][8]) == Approx(X.p.z() - 0.01).epsilon(1e-9));
+      CHECK(out[i + 1][9] == "\"floor");  // quoted: the name has a comma and quotes in it
+    }
+  }
+  {  // glTF
+    check_gltf(folder / "p.gltf", read_recording(csv));
+  }
+  {  // the script goes the same way
+    const Output again = run_program("tegotae", "run --fast --json --script " + folder / "s.csv" + " --record " +
+                                                    folder / "again.csv " + folder / "scene.toml");
+    REQUIRE(again.code == 0);
+    const std::vector<RecordedRow> a = read_recording(csv), b = read_recording(folder / "again.csv");
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i].x.p - b[i].x.p).norm());
+    CHECK(most < 3e-4);
+    CHECK((a.back().x.p - b.back().x.p).norm() < 1e-4);
+  }
+}
+
+TEST_CASE("a block that presses on the floor does not go, and the script presses alike") {
+  const TempFolder folder;
+  write_cubes(folder, 1, 6);
+  const std::string csv = record(folder, "r.csv", 1);
+  const Output o = run_program("tegotae", "review " + csv + " --script " + folder / "s.csv --out " + folder / "x.html");
+  CHECK(o.code == 1);
+  CHECK_THAT(o.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
+  CHECK_THAT(o.out, Contains("Stalled 1 times"));
+  CHECK_THAT(o.out, Contains("report: " + folder / "x.html"));
+  const Output again = run_program(
+      "tegotae", "run --fast --script " + folder / "s.csv --record " + folder / "again.csv " + folder / "scene.toml");
+  const Output o2 = run_program("tegotae", "review " + folder / "again.csv");
+  CHECK(o2.code == 1);
+  CHECK_THAT(o2.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
+  const auto force = [](const std::string& text) { return std::stod(text.substr(text.find("At most ") + 8)); };
+  CHECK(force(o2.out) == Approx(force(o.out)).epsilon(0.2));  // the hand's mass is not in it
+  // To another goal, where it came by.
+  CHECK(run_program("tegotae", "review " + csv + " --goal 0.0005,0,0.0102,0.995,0,0,0.09987").code == 0);
+}
+
+TEST_CASE("what is no recording, or not of this scene, is one line") {
+  const TempFolder folder;
+  write_cubes(folder, 4, 16);
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Output o = run_program("tegotae", "review " + arguments);
+    INFO(arguments << ": " << o.err);
+    CHECK(o.code == 2);
+    CHECK(o.out.empty());
+    CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    CHECK_THAT(o.err, Contains(why));
+  };
+  const std::string scene = " " + folder / "scene.toml";
+  const std::string header =
+      "tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,fx,fy,fz,tx,ty,tz,contacts,"
+      "gap,tick_us\n";
+  const auto row = [](const char* t, const char* z) {
+    const std::string pose = std::string("0,0,") + z + ",1,0,0,0,";
+    return std::string("0,0,") + t + "," + pose + pose + "0,0,0,0,0,0,0,inf,0\n";
+  };
+  folder.write("empty.csv", header);
+  folder.write("garbage.csv", "no recording\n");
+  folder.write("inside.csv", header + row("0", "0.002"));
+  folder.write("back.csv", header + row("0.5", "0.02") + row("0.4", "0.02"));
+  folder.write("good.csv", header + row("0", "0.02") + row("0.1", "0.02"));
+  refused(folder / "none.csv" + scene, "cannot read the recording");
+  refused(folder / "garbage.csv" + scene, "garbage.csv:1:");
+  refused(folder / "empty.csv" + scene, "has no rows");
+  refused(folder / "inside.csv" + scene, "does not fit this scene");
+  refused(folder / "back.csv" + scene, "row 2: its time is before");
+  refused(folder / "good.csv", "does not say which scene");
+  refused(folder / "good.csv" + scene + " --goal 1,2", "no pose");
+  refused(folder / "good.csv" + scene + " --out " + folder / "no/such/x.html", "cannot be written");
+  CHECK(run_program("tegotae", "review " + folder / "good.csv" + scene).code == 1);  // it never left the start
+}
+
+TEST_CASE("a peg in its hole, and a peg out of its tray", "[.][parts]") {
+  const TempFolder folder;
+  SECTION("peg in hole") {
+    const Output run = run_program(
+        "tegotae", "run --fast --record " + folder / "peg.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
+    REQUIRE(run.code == 0);
+    const Output o = run_program("tegotae", "review " + folder / "peg.csv --script " + folder / "s.csv");
+    CHECK(o.code == 0);
+    CHECK_THAT(o.out, Contains("It goes in\n"));
+    const Output again = run_program(
+        "tegotae", "run --fast --json --script " + folder / "s.csv " TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
+    CHECK(again.code == 0);
+    const auto j = nlohmann::json::parse(again.out);
+    CHECK(j.at("completed") == true);
+    CHECK(j.at("depth_m").get<double>() == Approx(0.06).margin(2e-4));
+  }
+  SECTION("tray") {
+    const std::string peg = TEGOTAE_PARTS_DIR "/industreal/industreal_rectangular_peg_8mm.obj",
+                      tray = TEGOTAE_PARTS_DIR "/industreal/industreal_tray_insert_rectangular_peg_8mm.obj";
+    if (!std::filesystem::exists(peg)) {
+      std::puts("SKIPPED: no parts folder");
+      return;
+    }
+    folder.write("path.csv",
+                 "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.001,1,0,0,0\n0.3,0,0,0.001,1,0,0,0\n2,0,0,0.04,1,0,0,0\n");
+    folder.write("scene.toml", "[[part]]\nname = \"tray\"\nmesh = \"" + tray +
+                                   "\"\n[[part]]\nname = \"peg\"\nmesh = \"" + peg +
+                                   "\"\nheld = true\nposition = [0, 0, 0.001]\n[device]\nscript = \"path.csv\"\n");
+    record(folder, "r.csv");
+    const Output o = run_program("tegotae", "review " + folder / "r.csv");
+    INFO(o.out << o.err);
+    CHECK(o.code == 0);
+    CHECK_THAT(o.out, Contains("It comes out\n"));
+    const Output tried =
+        run_program("tegotae", "try " + folder / "scene.toml --tries 3 --seconds 8 --out " + folder / "t");
+    INFO(tried.out << tried.err);
+    CHECK(tried.code == 0);
+  }
+}

@@ -1,0 +1,162 @@
+// `tegotae try`: the same for any number of jobs, after an interruption, and in words.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "catch.hpp"
+#include "fcl_oracle.hpp"
+#include "recording.hpp"
+#include "tegotae/sim/scene_file.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+using Catch::Matchers::Contains;
+using nlohmann::json;
+
+namespace {
+
+/// A cube of 10 mm over a floor cube, and a roof beside it.
+std::string write_scene(const TempFolder& folder) {
+  folder.write(
+      "cube.obj",
+      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
+               "[[part]]\nname = \"roof\"\nmesh = \"cube.obj\"\nposition = [0.02, 0, 0.04]\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.03]\n");
+  return folder / "scene.toml";
+}
+
+// Onto the floor, 20 µm over it.
+const char* const kGoal = " --goal 0,0,0.01002 --seconds 6";
+
+Output tries(const std::string& scene, const std::string& out, const std::string& more) {
+  const Output o = run_program("tegotae", "try " + scene + " --out " + out + " " + more);
+  INFO(o.err);
+  CHECK(o.err.empty());
+  return o;
+}
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST_CASE("tries are the same for any number of jobs and after going on") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder);
+  const std::string one = folder / "one", two = folder / "two", bits = folder / "bits";
+  const Output o = tries(scene, one, std::string("--tries 4 --jobs 1") + kGoal);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("4 of 4 tries reached the goal"));
+  tries(scene, two, std::string("--tries 4 --jobs 2") + kGoal);
+  tries(scene, bits, std::string("--tries 2 --jobs 2") + kGoal);
+  CHECK(lines(read_text(bits + "/tries.csv")) == 4);
+  tries(scene, bits, std::string("--tries 4 --jobs 2") + kGoal);
+  for (const char* file : {"/tries.csv", "/summary.json", "/best.csv"}) {
+    INFO(file);
+    CHECK(!read_text(one + file).empty());
+    CHECK(read_text(one + file) == read_text(two + file));
+    CHECK(read_text(one + file) == read_text(bits + file));
+  }
+  const json summary = json::parse(read_text(one + "/summary.json"));
+  CHECK(summary.at("tries") == 4);
+  CHECK(summary.at("reached") == 4);
+  for (const char* group : {"by_operator", "by_route"}) {
+    int made = 0, reached = 0;
+    for (const auto& counted : summary.at(group)) {
+      made += counted.at("tries").get<int>();
+      reached += counted.at("reached").get<int>();
+    }
+    CHECK(made == 4);
+    CHECK(reached == 4);
+  }
+  CHECK(read_text(one + "/report.html").find("4 of 4 tries reached the goal") != std::string::npos);
+
+  // Another seed is another task, and gives other paths.
+  const Output refused = run_program("tegotae", "try " + scene + " --out " + one + " --seed 2 --tries 4" + kGoal);
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Contains("tries.csv:1: holds tries of another"));
+  tries(scene, folder / "other", std::string("--seed 2 --tries 4") + kGoal);
+  CHECK(read_text(folder / "other/best.csv") != read_text(one + "/best.csv"));
+
+  // The best path, asked of FCL, ends at its goal.
+  const FclOracle oracle(load_scene(scene).scene);
+  const std::vector<RecordedRow> rows = read_recording(one + "/best.csv");
+  for (const RecordedRow& row : rows) REQUIRE(oracle.intersecting(row.x).empty());
+  CHECK((rows.back().x.p - Vec3(0, 0, 0.01002)).norm() < 2e-3);
+  const Output review = run_program("tegotae", "review " + one + "/best.csv --goal 0,0,0.01002");
+  INFO(review.out << review.err);
+  CHECK(review.code == 0);
+  CHECK_THAT(review.out, Contains("It goes in"));
+}
+
+TEST_CASE("tries that cannot succeed tell who is in the way") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder);
+  // Into the roof from below: the straight way only, for no other one is free.
+  const Output o = tries(scene, folder / "t", "--tries 2 --goal 0.02,0,0.036 --seconds 3");
+  CHECK(o.code == 1);
+  CHECK_THAT(o.out, Contains("0 of 2 tries reached the goal"));
+  const json summary = json::parse(read_text(folder / "t/summary.json"));
+  CHECK(summary.at("reached") == 0);
+  CHECK(summary.at("blocked_by").at("roof") == 2);
+}
+
+TEST_CASE("an interrupted call keeps its tries and goes on") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder), out = folder / "t";
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const std::string command =
+        std::string(TEGOTAE_BIN_DIR "/tegotae try ") + scene + " --out " + out + " --tries 5000" + kGoal;
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >" + folder / "log" + " 2>&1").c_str(),
+            static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  for (int i = 0; i < 3000 && lines(read_text(out + "/tries.csv")) < 5; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ::kill(child, SIGINT);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 1);
+  CHECK_THAT(read_text(folder / "log"), Contains("interrupted; the same command goes on from here"));
+  const std::string kept = read_text(out + "/tries.csv");
+  REQUIRE(lines(kept) >= 5);
+  CHECK(lines(kept) < 5000);
+  // What is there agrees with a call of its own.
+  tries(scene, folder / "fresh", std::string("--tries 3") + kGoal);
+  const std::string fresh = read_text(folder / "fresh/tries.csv");
+  tries(scene, out, std::string("--tries 3") + kGoal);
+  CHECK(read_text(out + "/tries.csv").compare(0, fresh.size(), fresh) == 0);
+  CHECK(read_text(out + "/best.csv") == read_text(folder / "fresh/best.csv"));
+}
+
+TEST_CASE("bad input of try is one line") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder);
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Output o = run_program("tegotae", "try " + scene + " --out " + folder / "t " + arguments);
+    INFO(arguments << ": " << o.err);
+    CHECK(o.code == 2);
+    CHECK(lines(o.err) == 1);
+    CHECK_THAT(o.err, Contains(why));
+  };
+  refused("", "its script goes nowhere");
+  refused("--goal 1", "is no pose");
+  refused("--goal 0,0,0.03", "the goal is where the held part starts");
+  refused("--goal 0,0,0.02 --tries 0", "--tries");
+  std::filesystem::create_directories(folder / "t");
+  folder.write("t/tries.csv", "something else\n");
+  refused("--goal 0,0,0.02", "tries.csv:1:");
+}
