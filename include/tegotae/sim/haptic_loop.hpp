@@ -26,10 +26,10 @@ struct TickReport {
   int candidate_parts = 0;   ///< fixed parts that passed the broad phase
   int resolves = 0;          ///< programmes solved (penalty: Newton steps)
   int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
-  ResolveStatus status = ResolveStatus::not_needed;
-  double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
-  bool cut = false;       ///< time or work ran out before the wanted motion was decided
-  bool overflow = false;  ///< a capacity was exceeded; the motion is still free
+  ResolveStatus status = ResolveStatus::not_needed;  ///< of the last programme
+  double fraction = 1;                               ///< part of the wanted motion made, in [0, 1]
+  bool cut = false;                                  ///< time or work ran out before the wanted motion was decided
+  bool overflow = false;                             ///< a capacity was exceeded; the motion is still free
 };
 
 /// The contact loop: follows the pen with the held part so that no two parts ever intersect.
@@ -47,12 +47,13 @@ class HapticLoop {
   /// throws; a pose that is not finite is ignored (X stays). The report is valid until the next call.
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
+  /// Of the last step(); before the first one, of the start.
   const TickReport& report() const;
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;
-  Mat3 gyration() const;                   ///< its inertia over its mass about the center, m², file axes
   const Vec3& center() const;              ///< center of mass of the held part, m, file frame
+  Mat3 gyration() const;                   ///< its inertia over its mass about that center, m², file axes
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
 
  private:
