@@ -6,8 +6,9 @@
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
 #   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
 #   determinism   the recording of a run in virtual time, of builds with -O2 and -O3
+#   docs          every public name has a docstring (doxygen), links of the documents
 #   fuzz          every fuzz target for TEGOTAE_FUZZ_SECONDS (20) seconds
-# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14.
+# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14 doxygen.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -85,10 +86,16 @@ check_determinism() {
   [ "$(printf '%s\n' "${sums[@]}" | sort -u | wc -l)" = 1 ] || fail "the recordings differ"
 }
 
+check_docs() {
+  command -v doxygen >/dev/null || fail "doxygen is not installed"
+  bash tests/docs/doxygen.sh build/doxygen
+  python3 tests/docs/check_links.py
+}
+
 check_fuzz() { bash tests/fuzz/run.sh "${TEGOTAE_FUZZ_SECONDS:-20}"; }
 
-[ $# -gt 0 ] || fail "name a check: format asan tsan clang tidy determinism fuzz, or all"
-[ "$*" != all ] || set -- format tsan determinism clang tidy asan fuzz
+[ $# -gt 0 ] || fail "name a check: format asan tsan clang tidy determinism docs fuzz, or all"
+[ "$*" != all ] || set -- format docs tsan determinism clang tidy asan fuzz
 for name in "$@"; do
   declare -F "check_$name" >/dev/null || fail "unknown check $name"
   SECONDS=0
