@@ -83,7 +83,7 @@ class Device {
   /// Renders `wrench` (on the pen, at the held part's center of mass, world) until the next call.
   virtual void write(const Wrench& wrench) noexcept = 0;
 
-  virtual DeviceStatus status() const noexcept = 0;  ///< as of the last read() or write()
+  virtual DeviceStatus status() const noexcept = 0;  ///< now
   virtual ForceOff reason() const noexcept = 0;      ///< why it renders no force; ForceOff::none when it does
 
   /// The point of the pen, in its frame, m, of which DeviceState::velocity tells the velocity and at which wrenches

@@ -9,7 +9,7 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// What a surface is like, counted after welding (see load.hpp).
 struct MeshReport {
-  std::size_t vertices = 0;            ///< that a triangle uses
+  std::size_t vertices = 0;            ///< all; weld() drops those that no triangle uses
   std::size_t triangles = 0;           ///< all, degenerate and duplicate ones too
   std::size_t components = 0;          ///< sets of triangles joined over shared edges, collapsed ones left out
   std::size_t boundary_edges = 0;      ///< edges of one face

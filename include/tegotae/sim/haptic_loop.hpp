@@ -26,7 +26,7 @@ struct TickReport {
   int candidate_parts = 0;   ///< fixed parts that passed the broad phase
   int resolves = 0;          ///< programmes solved (penalty: Newton steps)
   int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
-  ResolveStatus status = ResolveStatus::not_needed;  ///< of the last programme
+  ResolveStatus status = ResolveStatus::not_needed;  ///< of the last programme or step of the tick
   double fraction = 1;                               ///< part of the wanted motion made, in [0, 1]
   bool cut = false;                                  ///< time or work ran out before the wanted motion was decided
   bool overflow = false;                             ///< a capacity was exceeded; the motion is still free
