@@ -12,7 +12,7 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.M | re.S)
-BUILD_LINE = "bash .ci/setup.sh\n"
+BUILD_LINE = "bash .ci/setup.sh installed\n"
 MARK = "@@ block "
 
 
