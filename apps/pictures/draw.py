@@ -246,8 +246,24 @@ def draw_rates(data):
     return p
 
 
+def draw_deadline(_):
+    """Of the table kept beside the pictures: time on the clock does not repeat."""
+    rows, p = table(os.path.join(ROOT, "docs", "pictures"), "deadline"), Picture(720, 300)
+    a = Axes(p, (60, 30, 430, 210), (0, 0.45), (0, 15), [0, 0.1, 0.2, 0.3, 0.4], [0, 5, 10, 15],
+             "how far the part is from the pen, mm", "time, s")
+    stop = a.place(0.3, 0)[0]
+    p.line([(stop, 30), (stop, 240)], FAINT, 1, "3 3")
+    p.text(stop + 5, 44, "the pen stops", "#888888")
+    for i, (budget, color) in enumerate(((5e-5, RED), (1e-4, ORANGE), (8e-4, BLUE))):
+        own = [r for r in rows if r["budget"] == budget]
+        a.plot(column(own, "t"), column(own, "lag", 1e3), color, 1.8)
+        cut = sum(column(own, "cut"))
+        p.text(505, 70 + 22 * i, "%g ms: %d of %d ticks cut" % (1e3 * budget, cut, len(own)), color)
+    return p
+
+
 PICTURES = {"coupling": draw_coupling, "gap": draw_gap, "contacts": draw_contacts, "way": draw_way,
-            "safety": draw_safety, "rates": draw_rates}
+            "safety": draw_safety, "rates": draw_rates, "deadline": draw_deadline}
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 

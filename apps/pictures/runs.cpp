@@ -1,7 +1,10 @@
 // The runs behind the pictures of docs/concepts.md: doc_pictures MODELS OUT writes a table (CSV) for each of them into
-// OUT, which draw.py draws. Virtual time and no budget, so the same build gives the same tables.
+// OUT, which draw.py draws. Virtual time and no budget, so the same build gives the same tables. Only what is on the
+// clock does not repeat: `doc_pictures MODELS docs/pictures deadline` writes that table, which is kept beside the
+// pictures.
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -178,12 +181,31 @@ void rates() {
   }
 }
 
+/// A peg rocked into its hole with less and less time for a tick, on the clock.
+void deadline() {
+  Table table("deadline", "budget,t,lag,cut");
+  const Mesh hole = model("hole_20.obj"), peg = model("peg_0.99.obj");
+  for (const double budget : {0.8e-3, 0.1e-3, 0.05e-3}) {
+    Scene scene = scene_of(hole, peg, at(0, 30));
+    scene.contact.tick_budget = budget;
+    HapticLoop loop(scene);
+    for (int ms = 0; ms <= 450; ++ms) {
+      const double s = std::min(ms, 300) / 300.0;
+      const Pose pen = at(0.6 * std::sin(20 * s), 30 - 45 * s, 1.7 * std::sin(12 * s));
+      const TickReport& tick = loop.step(pen, 1e-3);
+      table.row({budget, 1e-3 * ms, (tick.proxy.X.p - pen.p).norm(), tick.cut ? 1.0 : 0.0});
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 3) return std::fprintf(stderr, "usage: doc_pictures MODELS OUT\n"), 2;
+  const bool on_the_clock = argc == 4 && std::strcmp(argv[3], "deadline") == 0;
+  if (argc != 3 && !on_the_clock) return std::fprintf(stderr, "usage: doc_pictures MODELS OUT [deadline]\n"), 2;
   models = argv[1];
   out = argv[2];
+  if (on_the_clock) return deadline(), 0;
   coupling();
   contacts();
   way();
