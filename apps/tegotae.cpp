@@ -22,8 +22,7 @@ constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or
 
 int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
                    const std::string& address) {
-  const std::string bundle =
-      view::replay_bundle(recording, load_scene(scene.empty() ? view::recorded_scene(recording) : scene));
+  const std::string bundle = view::replay_bundle(recording, scene);
   if (html.empty())
     view::serve_replay(bundle, view_address(address), catch_interrupts(),
                        [](const std::string& url) { announce_page(url); });

@@ -21,7 +21,8 @@ inline constexpr std::size_t kMostPairs = 128;
 
 /// What the page shows of one tick of the contact loop. Plain words, so that a ring can carry it.
 struct Frame {
-  enum Flag : std::uint32_t { touching = 1, cut = 2, overflow = 4, force_on = 8 };
+  /// `waiting`: what turned the force off is over, and it comes on again when it is small.
+  enum Flag : std::uint32_t { touching = 1, cut = 2, overflow = 4, force_on = 8, waiting = 16 };
 
   std::uint64_t tick = 0;
   double t = 0;              ///< s
@@ -34,7 +35,7 @@ struct Frame {
   std::uint32_t contacts = 0;
   std::uint32_t limits = 0;  ///< pairs there are, contacts included; `pair_count` of them are below
   std::uint32_t flags = 0;
-  std::uint32_t reason = 0;  ///< ForceOff: why the force is off
+  std::uint32_t reason = 0;  ///< ForceOff: why the force went off, never `engage`
   std::uint64_t pair_count = 0;
   std::array<FramePair, kMostPairs> pairs;  ///< what lies behind `pair_count` is not transported
 };

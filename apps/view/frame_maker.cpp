@@ -33,7 +33,21 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
     }
 }
 
-void FrameMaker::fill(const TickView& tick, Frame& frame) const {
+/// A reason that lasts for a tick of the servo may pass between two of this loop's, as when both were held up; the
+/// servo's count of it tells.
+void FrameMaker::look_for_reason(const TickView& tick) {
+  if (tick.pen.reason == ForceOff::none) force_off_ = tick.servo.force_off;
+  if (tick.pen.reason != ForceOff::engage) {
+    reason_ = tick.pen.reason;
+    return;
+  }
+  for (std::size_t i = 0; reason_ == ForceOff::none && i < force_off_.size(); ++i)
+    if (static_cast<ForceOff>(i) != ForceOff::engage && tick.servo.force_off[i] > force_off_[i])
+      reason_ = static_cast<ForceOff>(i);
+}
+
+void FrameMaker::fill(const TickView& tick, Frame& frame) {
+  look_for_reason(tick);
   add_loop(tick.loop, frame);
   frame.tick = tick.tick;
   frame.t = tick.t;
@@ -42,7 +56,8 @@ void FrameMaker::fill(const TickView& tick, Frame& frame) const {
   frame.tick_us = tick.tick_us;
   frame.servo_late_us = tick.servo_late_us;
   if (tick.pen.status == DeviceStatus::enabled) frame.flags |= Frame::force_on;
-  frame.reason = static_cast<std::uint32_t>(tick.pen.reason);
+  if (tick.pen.reason == ForceOff::engage) frame.flags |= Frame::waiting;
+  frame.reason = static_cast<std::uint32_t>(reason_);
 }
 
 }  // namespace tegotae::view

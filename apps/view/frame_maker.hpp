@@ -7,7 +7,7 @@
 
 namespace tegotae::view {
 
-/// Makes frames of ticks, without allocation.
+/// Makes frames of a run's ticks, without allocation.
 class FrameMaker {
  public:
   explicit FrameMaker(const Scene& scene);
@@ -15,10 +15,14 @@ class FrameMaker {
   /// Fills in what the loop knows: X, contacts, gap, pairs. Of more pairs than fit, those in contact come first.
   void add_loop(const HapticLoop& loop, Frame& frame) const;
   /// All of a running session's tick.
-  void fill(const TickView& tick, Frame& frame) const;
+  void fill(const TickView& tick, Frame& frame);
 
  private:
-  std::vector<std::uint32_t> fixed_;  // numbers of the fixed parts in the scene
+  void look_for_reason(const TickView& tick);
+
+  std::vector<std::uint32_t> fixed_;                  // numbers of the fixed parts in the scene
+  ForceOff reason_ = ForceOff::none;                  // why the force went off, also while it waits to come on again
+  decltype(ServoStatistics::force_off) force_off_{};  // as long as it was on
 };
 
 }  // namespace tegotae::view

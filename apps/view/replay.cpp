@@ -12,6 +12,7 @@
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recording.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/sim/scene_file.hpp"
 #include "view/bundle.hpp"
 #include "view/frame_maker.hpp"
 #include "view/server.hpp"
@@ -96,10 +97,7 @@ class ReplaySource final : public ViewSource {
   std::shared_ptr<const std::string> bundle_;
 };
 
-}  // namespace
-
-std::string recorded_scene(const std::string& path) {
-  const std::string scene = read_recording(path).info.scene;
+std::string named_scene(const std::string& path, const std::string& scene) {
   if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
   const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
   for (const std::filesystem::path& file : {std::filesystem::path(scene), beside})
@@ -107,10 +105,15 @@ std::string recorded_scene(const std::string& path) {
   throw Error(path + ": its scene " + scene + " is gone; add the scene file to the command");
 }
 
-std::string replay_bundle(const std::string& path, SceneFile file) {
+}  // namespace
+
+std::string replay_bundle(const std::string& path, const std::string& scene) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
+  SceneOptions how;
+  how.hold = recording.info.held;
+  SceneFile file = load_scene(scene.empty() ? named_scene(path, recording.info.scene) : scene, how);
   Follower follower(file.scene, path, rows.front().x);
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
   std::vector<float> frames, pairs;

@@ -55,6 +55,7 @@ struct Servo::Impl {
   LatencyHistogram late;
   std::atomic<std::int64_t> newest_late_ns{0};
   LatencyHistogram compute;
+  std::int64_t recent_late_ns = 0;  // the largest since it was published
 
   RealtimeReport realtime;
   std::atomic<bool> stopping{false};
@@ -74,6 +75,7 @@ struct Servo::Impl {
       s.rate_hz = 1e9 * static_cast<double>(s.ticks - 1) / static_cast<double>(last_ns - first_ns);
     s.late_us = summary(late);
     s.compute_us = summary(compute);
+    s.recent_late_us = 1e-3 * static_cast<double>(recent_late_ns);
     s.force_off = work.force_off();
     return s;
   }
@@ -87,6 +89,8 @@ struct Servo::Impl {
     out.rate_hz = s.rate_hz;
     store(s.late_us, out.late_us);
     store(s.compute_us, out.compute_us);
+    out.recent_late_us = s.recent_late_us;
+    recent_late_ns = 0;
     out.realtime = granted(realtime);
     out.cpu = realtime.cpu;
     std::copy(s.force_off.begin(), s.force_off.end(), out.force_off);
@@ -101,6 +105,7 @@ struct Servo::Impl {
       sleep_until(next);
       const std::int64_t begin = monotonic_ns();
       late.add(begin - next);
+      recent_late_ns = std::max(recent_late_ns, begin - next);
       newest_late_ns.store(begin - next, std::memory_order_relaxed);
       tick(begin);
       const std::int64_t end = monotonic_ns();
@@ -180,6 +185,7 @@ ServoStatistics servo_statistics(const ChannelReader& channel) noexcept {
   out.rate_hz = s.rate_hz;
   out.late_us = latencies(s.late_us);
   out.compute_us = latencies(s.compute_us);
+  out.recent_late_us = s.recent_late_us;
   std::copy(std::begin(s.force_off), std::end(s.force_off), out.force_off.begin());
   return out;
 }

@@ -88,7 +88,10 @@ class RemotePen final : public RunPen {
   bool connected() const noexcept override { return attachment_.connected(); }
   std::uint64_t losses() const noexcept override { return attachment_.losses(); }
   ServoStatistics statistics() const noexcept override { return attachment_.statistics(); }
-  double servo_late_us() const noexcept override { return std::numeric_limits<double>::quiet_NaN(); }
+  double servo_late_us() const noexcept override {
+    const ServoStatistics servo = attachment_.statistics();
+    return servo.ticks > 0 ? servo.recent_late_us : std::numeric_limits<double>::quiet_NaN();
+  }
   std::string missing_realtime() const override { return {}; }
   std::string stability() const override { return {}; }
 

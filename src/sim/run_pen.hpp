@@ -30,7 +30,7 @@ class RunPen {
   virtual bool connected() const noexcept = 0;
   virtual std::uint64_t losses() const noexcept = 0;
   virtual ServoStatistics statistics() const noexcept = 0;
-  /// How late the servo's newest tick began, µs; NaN in virtual time and where it is not known.
+  /// TickView::servo_late_us.
   virtual double servo_late_us() const noexcept = 0;
   /// RunSummary::missing_realtime and stability.
   virtual std::string missing_realtime() const = 0;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "sim/loop_priority.hpp"
 #include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
 #include "sim/run_pen.hpp"
@@ -22,6 +23,9 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;  // of the servo, and at most of the contact loop
 constexpr double kPeriod = 1e-9 * kPeriodNs;
+// A tick is followed by a rest of a tenth of it, or a period: the kernel stops a real-time thread that takes more than
+// 95 % of a second for 50 ms, longer than the servo waits for a heartbeat.
+constexpr std::int64_t kTickPerRest = 10;
 
 HapticLoop make_loop(const SceneFile& file, bool real_time) try {
   Scene scene = file.scene;
@@ -76,6 +80,7 @@ class Session {
     }
     summary_.servo = pen_->statistics();
     summary_.missing_realtime = pen_->missing_realtime();
+    if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
     summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
@@ -104,6 +109,8 @@ class Session {
   }
 
   void run_real_time() {
+    const LoopPriority priority;
+    missing_ = priority.missing();
     const std::int64_t start = monotonic_ns();
     std::int64_t last = start - kPeriodNs, next = start;
     while (!stopped()) {
@@ -113,8 +120,9 @@ class Session {
       if (summary_.seconds >= duration_) break;
       tick(summary_.seconds, 1e-9 * static_cast<double>(now - last), now);
       last = now;
-      // A tick that took longer than a period is followed at once, not by a burst that makes up for it.
-      next = std::max(next + kPeriodNs, monotonic_ns());
+      // A tick that took longer than a period is followed by the next, not by a burst that makes up for it.
+      const std::int64_t end = monotonic_ns();
+      next = std::max(next + kPeriodNs, end + std::min((end - now) / kTickPerRest, kPeriodNs));
     }
   }
 
@@ -136,8 +144,13 @@ class Session {
     for (const Pose& X : report.pieces) check_.add(X);
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (recorder_) record(number, t, pen, report, tick_us);
-    if (settings_.observer) settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us()});
+    if (settings_.observer) observe(number, t, pen, tick_us);
     if (settings_.progress) show(t, pen, report);
+  }
+
+  void observe(std::uint64_t number, double t, const PenSample& pen, double tick_us) {
+    const ServoStatistics servo = settings_.real_time ? pen_->statistics() : ServoStatistics();
+    settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us(), servo});
   }
 
   /// There is no pen to follow: the part stays, and the servo hears that this loop lives.
@@ -187,6 +200,7 @@ class Session {
   std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   PoseCheck check_;
   LatencyHistogram tick_times_;
+  std::string missing_;  // of real time, for the contact loop
   RunSummary summary_;
 };
 

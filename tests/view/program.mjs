@@ -17,7 +17,7 @@ export function launch() {
 const children = [];
 process.on("exit", () => children.forEach((child) => child.kill("SIGKILL")));
 
-// A running program: {url, stop()}.
+// A running program: {url, stop(), stall(ms)}.
 export async function serve(program, ...options) {
   const child = spawn(`${bin}/${program}`, options, { stdio: ["ignore", "pipe", "inherit"] });
   children.push(child);
@@ -27,7 +27,13 @@ export async function serve(program, ...options) {
     lines.on("line", (line) => line.match(/http:\S+/) && resolve(line.match(/http:\S+/)[0]));
     ended.then((code) => reject(new Error(`${program} ended with ${code}`)));
   });
-  return { url, stop: () => (child.kill("SIGINT"), ended) };
+  const stop = () => (child.kill("SIGINT"), ended);
+  // Stands still for so many ms, all threads of it.
+  const stall = (ms) => {
+    child.kill("SIGSTOP");
+    setTimeout(() => child.kill("SIGCONT"), ms);
+  };
+  return { url, stop, stall };
 }
 
 export async function run(program, ...options) {
@@ -36,14 +42,15 @@ export async function run(program, ...options) {
   if (code !== 0) throw new Error(`${program} ${options.join(" ")} ended with ${code}`);
 }
 
-// A page that notes every complaint in `page.complaints`.
-export async function open(browser, url, { dark = false, width = 1366, height = 680 } = {}) {
+// A page that notes every complaint in `page.complaints`. `play`: a run in virtual time goes on.
+export async function open(browser, url, { dark = false, width = 1366, height = 680, play = false } = {}) {
   const page = await browser.newPage({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
   page.setDefaultTimeout(patience);
   page.complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(String(error.stack)));
   await page.goto(url);
+  if (play) await page.click("#play");
   await until(page, (s) => s.frame);
   return page;
 }

@@ -43,6 +43,12 @@ void write_cubes(const TempFolder& folder) {
                "[device]\nscript = \"path.csv\"\n");
 }
 
+nlohmann::json about_of(const std::string& bundle) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, bundle.data(), 4);
+  return nlohmann::json::parse(bundle.substr(4, length));
+}
+
 }  // namespace
 
 TEST_CASE("a replay finds the contacts of the recorded poses") {
@@ -52,10 +58,10 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
   std::string text = kHeader;
   for (int i = 0; i <= 80; ++i) text += row(i, 0.018 - 1e-4 * i + (i == 80 ? 1e-5 : 0), 0.018 - 1.1e-4 * i);
   folder.write("r.csv", text);
-  const std::string bytes = replay_bundle(folder / "r.csv", load_scene(folder / "scene.toml"));
+  const std::string bytes = replay_bundle(folder / "r.csv", folder / "scene.toml");
+  const auto about = about_of(bytes);
   std::uint32_t length = 0;
   std::memcpy(&length, bytes.data(), 4);
-  const auto about = nlohmann::json::parse(bytes.substr(4, length));
   const auto floats = [&](const nlohmann::json& array) {
     std::vector<float> values(array.at("count").get<std::size_t>());
     std::memcpy(values.data(), bytes.data() + 4 + length + 4 * array.at("at").get<std::size_t>(), 4 * values.size());
@@ -82,24 +88,42 @@ TEST_CASE("a recording knows its scene") {
   const TempFolder folder;
   write_cubes(folder);
   folder.write("r.csv", kHeader + row(0, 0.018));
-  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("does not say which scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "r.csv"), Contains("does not say which scene"));
   folder.write("r.csv.info.json", R"({"scene": "scene.toml"})");
-  CHECK(recorded_scene(folder / "r.csv") == folder / "scene.toml");
+  CHECK_THAT(about_of(replay_bundle(folder / "r.csv")).at("parts").dump(), Contains("block"));
   folder.write("r.csv.info.json", R"({"scene": "gone.toml"})");
-  CHECK_THROWS_WITH(recorded_scene(folder / "r.csv"), Contains("gone.toml is gone"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "r.csv"), Contains("gone.toml is gone"));
+}
+
+TEST_CASE("the part in the hand is the recording's, whatever the scene file holds") {
+  const TempFolder folder;
+  write_cubes(folder);
+  for (const std::string name : {"r.csv", "r.mcap"}) {
+    CAPTURE(name);
+    // The script takes the hand, and with it the floor, up to the block.
+    const Output run = run_program("tegotae", "run " + (folder / "scene.toml") + " --hold floor --fast --seconds 0.5 " +
+                                                  "--record " + (folder / name));
+    INFO(run.err);
+    CHECK(run.code != 2);
+    const auto about = about_of(replay_bundle(folder / name));
+    CHECK(about.at("parts")[0].at("held") == true);
+    CHECK(about.at("parts")[1].at("held") == false);
+    CHECK(about.at("parts")[1].at("pose")[2] == 0.018);
+    CHECK(run_program("tegotae", "replay " + (folder / name) + " --html " + (folder / "r.html")).code == 0);
+  }
+  folder.write("r.csv.info.json", R"({"scene": "scene.toml", "held": "lid"})");
+  CHECK_THROWS_WITH(replay_bundle(folder / "r.csv"), Contains("no part is named lid"));
 }
 
 TEST_CASE("a recording of another scene is refused") {
   const TempFolder folder;
   write_cubes(folder);
   folder.write("inside.csv", kHeader + row(0, 0.005));
-  CHECK_THROWS_WITH(replay_bundle(folder / "inside.csv", load_scene(folder / "scene.toml")),
-                    Contains("does not fit this scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "inside.csv", folder / "scene.toml"), Contains("does not fit this scene"));
   std::string text = kHeader;
   for (int i = 0; i <= 200; ++i) text += row(i, std::max(0.0, 0.018 - 1e-3 * i));
   folder.write("through.csv", text);
-  CHECK_THROWS_WITH(replay_bundle(folder / "through.csv", load_scene(folder / "scene.toml")),
-                    Contains("does not fit this scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "through.csv", folder / "scene.toml"), Contains("does not fit this scene"));
 }
 
 TEST_CASE("the program writes a page that needs no server") {

@@ -1,87 +1,15 @@
 // Clients of every kind against a run in real time: who may not gets nothing, and whatever they do, the run goes on and
 // ends as it should. Nothing is timed; ticks are counted.
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
 #include "catch.hpp"
-#include "view/http_client.hpp"
+#include "view/watcher.hpp"
 
 using namespace tegotae::test;
 using Catch::Matchers::Contains;
 
 namespace {
-
-Request get(const Served& s, const std::string& path) {
-  return {"GET", path, s.token, s.host(), "", "", ""};
-}
-Request command(const Served& s, const std::string& body) {
-  return {"POST", "/command", s.token, s.host(), "http://" + s.host(), body, ""};
-}
-
-// A page that watches, and notes the numbers of the ticks that it sees.
-class Watcher {
- public:
-  // Waits for a place: pages that have gone are noticed with the next frame.
-  explicit Watcher(const Served& s) {
-    for (int i = 0; i < 100; ++i) {
-      connection_ = std::make_unique<Connection>(s.port);
-      connection_->send(text_of(get(s, "/stream")));
-      buffer_ = connection_->receive();
-      const std::size_t body = buffer_.find("\r\n\r\n");
-      if (buffer_.rfind("HTTP/1.1 200", 0) == 0 && body != buffer_.npos) {
-        buffer_.erase(0, body + 4);
-        return;
-      }
-      ::usleep(100'000);
-    }
-    throw std::runtime_error("no place to watch: " + buffer_);
-  }
-  // The tick of the next frame; -1 at the end.
-  long next() {
-    for (;;) {
-      while (buffer_.size() >= 8) {
-        std::uint32_t head[2];
-        std::memcpy(head, buffer_.data(), 8);
-        if (head[0] != 1 && head[0] != 2) throw std::runtime_error("no message");
-        if (buffer_.size() < 8 + head[1]) break;
-        float row[2];
-        std::memcpy(row, buffer_.data() + 8, 8);
-        buffer_.erase(0, 8 + head[1]);
-        if (head[0] == 1) return static_cast<long>(row[0]) * (1 << 20) + static_cast<long>(row[1]);
-      }
-      const std::string more = connection_->receive();
-      if (more.empty()) return -1;
-      buffer_ += more;
-    }
-  }
-
- private:
-  std::unique_ptr<Connection> connection_;
-  std::string buffer_;
-};
-
-// The run is alive: frames come, and their ticks go up.
-void check_going_on(const Served& s) {
-  Watcher watcher(s);
-  const long first = watcher.next();
-  CHECK(first >= 0);
-  long last = first;
-  for (int i = 0; i < 10; ++i) {
-    const long tick = watcher.next();
-    CHECK(tick > last);
-    last = tick;
-  }
-}
-
-void check_end(Served& s) {
-  s.interrupt();
-  CHECK(s.wait() == 0);
-  const auto summary = nlohmann::json::parse(s.out());
-  CHECK(summary.at("penetrating") == 0);
-  CHECK(summary.at("ticks").get<double>() > 0);
-}
 
 std::string garbage(std::mt19937& random, std::size_t most) {
   std::string bytes(random() % most + 1, '\0');

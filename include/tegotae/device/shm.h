@@ -40,7 +40,7 @@
 /** The bytes "TEGOTAE1" in little-endian order. */
 #define TEGOTAE_SHM_MAGIC UINT64_C(0x314541544F474554)
 /** Changes with every change of the layout or of a field's meaning. */
-#define TEGOTAE_SHM_VERSION UINT32_C(2)
+#define TEGOTAE_SHM_VERSION UINT32_C(3)
 
 /** Bytes of the object that are locked, by the device's process and by the application: the kernel ends a lock of an
  * open file description with the process that holds it, so the lock is the proof that it lives. */
@@ -190,6 +190,7 @@ struct tegotae_shm_statistics {
   uint32_t realtime;                       /**< TEGOTAE_SHM_REALTIME_..., added */
   int32_t cpu;                             /**< that the thread is bound to; -1: none */
   uint64_t force_off[TEGOTAE_SHM_REASONS]; /**< by reason: how often the force went off, or stayed off for it */
+  double recent_late_us;                   /**< the largest lateness since the statistics before these */
 };
 
 /** Words (8 bytes) of the payload struct `type`. */
@@ -230,7 +231,7 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, touching) == 32, "la
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, position) == 48, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, scale) == 208, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, plane_count) == 376, "layout of tegotae_shm_application");
-TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_statistics) == 296, "layout of tegotae_shm_statistics");
+TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_statistics) == 304, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_statistics, force_off) == 104, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, device_counter) == 64, "layout of tegotae_shm_segment");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, application_counter) == 448, "layout of tegotae_shm_segment");

@@ -31,6 +31,7 @@ struct ServoStatistics {
   double rate_hz = 0;         ///< achieved, mean; 0 before the second tick
   LatencySummary late_us;     ///< wake-up minus schedule
   LatencySummary compute_us;  ///< the servo's own work in a tick
+  double recent_late_us = 0;  ///< the largest lateness in the last tenth of a second
   /// How often the force went off, or stayed off for a new reason, by ForceOff.
   std::array<std::uint64_t, TEGOTAE_SHM_REASONS> force_off{};
 };

@@ -30,7 +30,9 @@ struct TickView {
   const PenSample& pen;    ///< the sample that the tick answered
   const HapticLoop& loop;  ///< its report() and limits() are of this tick
   double tick_us;          ///< time the tick took; 0 in virtual time
-  double servo_late_us;    ///< how late the servo's newest tick began; NaN in virtual time
+  double servo_late_us;    ///< how late the servo's newest tick began, or of another process's servo the worst in a
+                           ///< tenth of a second; NaN in virtual time and where nothing tells
+  const ServoStatistics& servo;  ///< what the servo last told of itself, ten times a second; zeros in virtual time
 };
 
 /// Looks on while a session runs. Called in the contact loop's thread.
@@ -75,7 +77,7 @@ struct RunSummary {
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;  ///< time a tick of the contact loop takes
   ServoStatistics servo;   ///< in virtual time only the number of ticks
-  std::string missing_realtime;  ///< what the system did not grant to the servo's thread; of this process's servo only
+  std::string missing_realtime;  ///< what the system did not grant to this process's servo, or else to the contact loop
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
   double force_max_n = 0;        ///< largest rendered force, N
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
@@ -87,8 +89,9 @@ struct RunSummary {
 inline constexpr double kSettleTime = 0.5;
 
 /// Runs the scene with its device, script, servo and contact loop. In real time the servo has its own thread at 1 kHz
-/// and the contact loop runs in the calling thread. In virtual time everything takes turns in the calling thread: the
-/// same scene, script and build give the same recording byte for byte.
+/// and the contact loop runs in the calling thread, both under SCHED_FIFO where the system grants it (the calling
+/// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
+/// script and build give the same recording byte for byte.
 ///
 /// Throws Error when the scene cannot be held (see HapticLoop) or the recording cannot be written.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);

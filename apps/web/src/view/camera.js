@@ -48,14 +48,29 @@ export class Viewpoint {
     if (box.isEmpty()) return;
     this.limits();
     const { camera } = this.stage;
-    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    const center = box.getCenter(new THREE.Vector3());
     const direction = i === null ? camera.position.clone().sub(this.controls.target) : new THREE.Vector3(...views[i][1]);
-    const half = Math.min(camera.fov, camera.fov * camera.aspect) / 2;
-    const distance = (margin * sphere.radius) / Math.sin((half * Math.PI) / 180);
-    this.controls.target.copy(sphere.center);
-    camera.position.copy(sphere.center).add(direction.setLength(distance));
+    this.controls.target.copy(center);
+    camera.position.copy(center).add(direction.normalize());
+    this.controls.update(); // turns the camera
+    camera.position.copy(center).addScaledVector(direction, this.distanceFor(box, center));
     this.controls.update();
     this.changed();
+  }
+
+  // How far from `center` the eye must be, looking as it does, so that all corners of `box` are in the picture.
+  distanceFor(box, center) {
+    const { fov, aspect } = this.stage.camera;
+    const up = Math.tan((fov * Math.PI) / 360) / margin;
+    const axes = [0, 1, 2].map((k) => this.axis(k));
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const of = (bit, axis) => (corner & bit ? box.max : box.min)[axis];
+      const arm = new THREE.Vector3(of(1, "x"), of(2, "y"), of(4, "z")).sub(center);
+      const [x, y, z] = axes.map((axis) => arm.dot(axis));
+      distance = Math.max(distance, z + Math.abs(x) / (up * aspect), z + Math.abs(y) / up);
+    }
+    return distance;
   }
 
   lookAtHeld() {

@@ -2,7 +2,7 @@
 export const frameFloats = 32;
 export const pairFloats = 8;
 
-const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8 };
+const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8, waiting: 16 };
 
 export function readFrame(row, pairs) {
   const numbers = (at, count) => Array.from(row.subarray(at, at + count));
@@ -37,3 +37,5 @@ export function readFrame(row, pairs) {
 }
 
 export const norm = (v) => Math.hypot(...v);
+// Between the origins of two poses.
+export const distance = (a, b) => norm([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);

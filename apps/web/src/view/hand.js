@@ -73,6 +73,11 @@ export class Hand {
     if (!this.keys) this.letGo();
   }
 
+  // Whether it carries the part now.
+  get leads() {
+    return this.goal !== null;
+  }
+
   // The hand comes to where the part is, and nothing presses any more.
   letGo() {
     this.keys = false;

@@ -3,7 +3,8 @@ import { cssColor, setDark, systemIsDark } from "../common/theme.js";
 import { embeddedBundle } from "./bundle.js";
 import { Viewpoint } from "./camera.js";
 import { addHelp, addViews, listenToKeys, Section, showLayers, showParts } from "./controls.js";
-import { norm } from "./frame.js";
+import { ForceNotice } from "./force.js";
+import { distance, norm } from "./frame.js";
 import { Hand } from "./hand.js";
 import { Live } from "./live.js";
 import { Numbers } from "./numbers.js";
@@ -23,6 +24,7 @@ const viewpoint = new Viewpoint(stage);
 const overlay = new Overlay(stage);
 const section = new Section(stage);
 const numbers = new Numbers($("numbers"));
+const force = new ForceNotice($("force"));
 const hand = new Hand(stage, viewpoint, { lead: (pose) => live.send({ do: "lead", pose }), changed: showHand });
 let plots, live = null, replay = null, about = null, frame = null, frames = 0, status = {};
 
@@ -46,6 +48,7 @@ function showFrame(next) {
   stage.showPoses(frame.x, frame.y);
   overlay.show(frame);
   numbers.show(frame, about.reasons);
+  force.show(frame, about.reasons, hand);
   $("clock").textContent = `${frame.t.toFixed(replay || about.virtual_time ? 3 : 1)} s`;
   if (replay) {
     plots.showTime(frame.t);
@@ -169,6 +172,14 @@ async function begin() {
   } else live.watch();
 }
 
+// Where a point of the world is on the screen.
+function project(point) {
+  stage.camera.updateMatrixWorld();
+  const rect = stage.canvas.getBoundingClientRect();
+  const p = stage.camera.position.clone().set(...point).project(stage.camera);
+  return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];
+}
+
 // What a test may ask the page.
 window.__tegotae = {
   get state() {
@@ -176,16 +187,17 @@ window.__tegotae = {
       mode: about?.mode, parts: stage.parts?.map(({ name, held, visible }) => ({ name, held, visible })), frame, frames,
       status, shown: overlay.shown, plots: plots?.state(), drawn: stage.drawn,
       arrows: { force: overlay.force.group.visible ? overlay.force.length : 0, torque: overlay.torque.group.visible ? overlay.torque.length : 0 },
-      force: frame ? norm(frame.force) : 0, camera: stage.camera.position.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
+      force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0, camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
     };
   },
-  // Where a point of the world is on the screen.
-  project(point) {
-    stage.camera.updateMatrixWorld();
-    const rect = stage.canvas.getBoundingClientRect();
-    const p = stage.camera.position.clone().set(...point).project(stage.camera);
-    return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];
+  project,
+  // Of all parts together, on the screen.
+  corners() {
+    const { min, max } = stage.measure();
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => project([i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z]));
   },
+  // Where the mouse holds the part.
+  grip: () => hand.grip && [hand.grip.x, hand.grip.y],
   center: () => overlay.center.clone().applyMatrix4(stage.held.group.matrixWorld).toArray(),
 };
 

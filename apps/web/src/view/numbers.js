@@ -1,11 +1,11 @@
 // The newest values as text, slower than frames come, so that one can read them.
 import { element } from "../common/dom.js";
-import { norm } from "./frame.js";
+import { forceState } from "./force.js";
+import { distance, norm } from "./frame.js";
 
 const periodMs = 120;
-const signed = (v, digits) => (v < 0 ? "−" : "\u2007") + Math.abs(v).toFixed(digits);
+const signed = (v, digits) => (Number(v.toFixed(digits)) < 0 ? "−" : "\u2007") + Math.abs(v).toFixed(digits);
 const triple = (v, scale, digits) => v.map((c) => signed(c * scale, digits)).join(" ");
-const distance = (a, b) => norm([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
 
 const rows = [
   ["force", "Force", "N", (f) => norm(f.force).toFixed(2), (f) => triple(f.force, 1, 2)],
@@ -46,9 +46,8 @@ export class Numbers {
         cells[0].textContent = value(this.frame);
         cells[2].textContent = detail(this.frame);
       }
-      const on = this.frame.forceOn;
-      this.state.textContent = reasons ? (on ? "Force is on" : `Force is off: ${reasons[this.frame.reason] ?? "unknown"}`) : "";
-      this.state.classList.toggle("off", !on);
+      this.state.textContent = reasons ? forceState(this.frame, reasons) : "";
+      this.state.classList.toggle("off", !this.frame.forceOn);
     }, Math.max(0, periodMs - (now - (this.last ?? 0))));
     this.last = now;
   }

@@ -80,10 +80,12 @@ export class Stage {
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...behind });
     part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...behind });
-    part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
+    part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55, depthWrite: false });
     part.mesh3d = new THREE.Mesh(surface, part.material);
-    // Inner sides in one flat color look like the cut that a section plane makes.
-    part.group.add(part.mesh3d, new THREE.Mesh(surface, part.inside), new THREE.LineSegments(edges, part.lines));
+    // Inner sides in one flat color look like the cut that a section plane makes, if they come after the lines on them.
+    const inside = new THREE.Mesh(surface, part.inside);
+    inside.renderOrder = 2;
+    part.group.add(part.mesh3d, inside, new THREE.LineSegments(edges, part.lines));
   }
 
   addGhost({ surface, edges }) {
@@ -101,7 +103,7 @@ export class Stage {
     for (const part of this.parts ?? []) {
       const color = new THREE.Color(cssColor(part.colorName));
       part.material.color.copy(color);
-      part.inside.color.copy(color).lerp(new THREE.Color(cssColor("--cut")), 0.5);
+      part.inside.color.copy(color).lerp(new THREE.Color(cssColor("--cut")), 0.3);
       part.lines.color.set(cssColor("--edge"));
     }
     this.ghostMaterial?.color.set(cssColor("--ghost"));
@@ -132,6 +134,7 @@ export class Stage {
     }
     this.renderer.localClippingEnabled = on;
     for (const part of this.parts) {
+      part.inside.transparent = on; // only such are drawn after the lines
       for (const material of [part.material, part.inside, part.lines]) {
         material.clippingPlanes = on ? [this.section] : null;
         material.needsUpdate = true;

@@ -1,0 +1,176 @@
+// Live runs in a real browser.
+import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { folder, scene, test } from "./cases.mjs";
+import { open, serve, state, until } from "./program.mjs";
+
+// A block of 10 mm held 3 mm over a wide floor (top at z = 0) by a hand that rests, or follows `script`.
+function writeFloor(script = "0,0,0,0.008,1,0,0,0\n") {
+  const box = (x, z0, z1) =>
+    [[-x, -x, z0], [x, -x, z0], [x, x, z0], [-x, x, z0], [-x, -x, z1], [x, -x, z1], [x, x, z1], [-x, x, z1]].map((v) => `v ${v.join(" ")}\n`).join("") +
+    ["1 4 3", "1 3 2", "5 6 7", "5 7 8", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"].map((f) => `f ${f}\n`).join("");
+  writeFileSync(join(folder, "floor.obj"), box(20, -5, 0));
+  writeFileSync(join(folder, "block.obj"), box(5, -5, 5));
+  writeFileSync(join(folder, "rest.csv"), "t,px,py,pz,qw,qx,qy,qz\n" + script);
+  writeFileSync(join(folder, "floor.toml"),
+    'unit = "mm"\n[[part]]\nname = "floor"\nmesh = "floor.obj"\n' +
+    '[[part]]\nname = "block <b>1</b>"\nmesh = "block.obj"\nheld = true\nposition = [0, 0, 0.008]\n[device]\nscript = "rest.csv"\n');
+  return join(folder, "floor.toml");
+}
+
+const pushesBack = (s) => s.frame.forceOn && s.frame.force[2] > 0.5 && s.shown.contacts >= 3 && s.arrows.force > 0;
+
+// Leads the part with the mouse, in the plane of the screen, to `below` m under where it is now.
+async function drag(page, below) {
+  const [from, to] = await page.evaluate((d) => {
+    const c = window.__tegotae.center();
+    return [c, [c[0], c[1], c[2] - d]].map((p) => window.__tegotae.project(p));
+  }, below);
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  for (let i = 1; i <= 12; ++i) {
+    await page.mouse.move(from[0], from[1] + ((to[1] - from[1]) * i) / 12);
+    await page.waitForTimeout(30);
+  }
+}
+
+async function lookFromFront(page) {
+  await page.keyboard.press("1"); // front: the screen is the plane of x and z
+  await until(page, (s) => Math.abs(s.camera[0]) < 1e-6);
+}
+
+// It rests a little over the floor and nothing presses any more. (It may hop first: the hand's spring lets go.)
+const restsOnFloor = (page) => until(page, (s) => s.frame.forceOn && s.force < 0.1 && s.frame.x[2] < 0.006 && s.lag < 2e-4);
+
+// In virtual time, at the pace of real time: servo and contact loop take turns, so that however busy the machine is, the
+// force does not go off for a loop that was held up.
+async function openPaced(browser) {
+  const program = await serve("tegotae", "run", writeFloor(), "--view", "--fast");
+  const page = await open(browser, program.url, { play: true });
+  return { program, page };
+}
+
+test("a live run: parts, arrows, plots that move", async (browser) => {
+  // Down to 2 mm into the floor and up again, for ten minutes.
+  const keys = Array.from({ length: 300 }, (_, i) => `${2 * i},0,0,${i % 2 ? 0.003 : 0.008},1,0,0,0\n`);
+  const program = await serve("tegotae", "run", writeFloor(keys.join("")), "--view");
+  const page = await open(browser, program.url);
+  const first = await until(page, (s) => s.plots[0].points > 5);
+  assert.deepEqual(first.parts, [{ name: "floor", held: false, visible: true }, { name: "block <b>1</b>", held: true, visible: true }]);
+  const touching = await until(page, (s) => s.arrows.force > 0 && s.shown.contacts > 0);
+  assert.ok(touching.frame.forceOn);
+  assert.ok(touching.frame.force[2] > 0, "the floor pushes up");
+  const higher = touching.plots[0].last[2] + 0.5; // mm
+  const away = await until(page, (s) => s.plots[0].last[2] > higher && s.arrows.force === 0 && s.shown.contacts === 0);
+  assert.ok(away.plots[1].last[2] < touching.plots[1].last[2], "that of the force down");
+  for (const plot of touching.plots) assert.ok(plot.last.every(Number.isFinite), plot.name);
+  assert.ok(touching.plots[4].last[0] > 0 && touching.plots[5].last[0] > 0, "a tick takes time, the servo wakes up late");
+  assert.match(await page.textContent("tr[data-id=force]"), /\d\.\d\d\s*N/);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("the mouse is the pen: dragged onto the floor, the part pushes back", async (browser) => {
+  const { program, page } = await openPaced(browser);
+  assert.equal(await page.textContent("#parts li:nth-child(2) .name"), "block <b>1</b>", "names are text");
+  await lookFromFront(page);
+  const before = await until(page, (s) => s.frame.forceOn);
+  assert.ok(before.force < 0.05, `a resting hand feels ${before.force} N`);
+  await drag(page, 0.008); // 3 mm to the floor and 5 mm more
+  const pressed = await until(page, pushesBack);
+  assert.ok(pressed.frame.force[2] > 5 * Math.abs(pressed.frame.force[0]), "the floor pushes up");
+  assert.ok(pressed.frame.force[2] < 8.5 + 1e-3, "no more than the pen's limit");
+  assert.ok(pressed.frame.x[2] >= 0.005, "the part stays over the floor");
+  assert.ok(pressed.frame.y[2] < pressed.frame.x[2] - 3e-4, "the pen is below it");
+  for (const pair of pressed.frame.pairs.filter((p) => p.touching)) assert.ok(pair.normal[2] > 0.99, "normals point up");
+  assert.equal(await page.textContent("#force"), "");
+  await page.mouse.up();
+  await restsOnFloor(page);
+
+  // The same by keys; Esc lets go.
+  await page.focus("#stage canvas");
+  await page.keyboard.press("h");
+  for (let i = 0; i < 30; ++i) await page.keyboard.press("ArrowDown");
+  await until(page, pushesBack);
+  await page.keyboard.press("Escape");
+  await restsOnFloor(page);
+
+  // Another part in the hand.
+  await page.click("#parts li:nth-child(1) button");
+  const other = await until(page, (s) => s.parts[0].held && s.status.generation === 2);
+  assert.equal(other.parts[1].held, false);
+  await page.click("#restart");
+  await until(page, (s) => s.parts[1].held && s.status.generation === 3);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("the same in real time; after a stall the page says why the force is off, and moving back brings it on again", async (browser) => {
+  const program = await serve("tegotae", "run", writeFloor(), "--view");
+  const page = await open(browser, program.url);
+  await lookFromFront(page);
+  // A machine too busy for the loops may turn the force off here too: then once more, from a small force.
+  for (let attempt = 1; ; ++attempt) {
+    await until(page, (s) => s.frame.forceOn);
+    await drag(page, 0.008);
+    if (pushesBack(await until(page, (s) => pushesBack(s) || !s.frame.forceOn))) break;
+    assert.ok(attempt < 10, "the force goes off whenever one presses");
+    await page.mouse.up();
+  }
+  // The program stands still for longer than the servo waits for the contact loop's heartbeat. Which of the two wakes up
+  // first is chance: until it was the servo.
+  for (let attempt = 1; (await state(page)).frame.forceOn; ++attempt) {
+    assert.ok(attempt < 100, "the force stays on");
+    program.stall(100);
+    await page.waitForTimeout(300);
+  }
+  await page.waitForTimeout(1000);
+  assert.equal((await state(page)).frame.forceOn, false, "it does not come on again while one presses");
+  assert.match(await page.textContent("#force"), /^The force went off: the (contact loop's heartbeat is too old|pen .*)\. Let go of the part, or move it back until it meets its ghost: then the force comes on again\.$/);
+  assert.equal(await page.textContent(".force-state"), "Force is off: waiting for a small force");
+  const grip = await page.evaluate(() => window.__tegotae.grip());
+  for (let i = 1; i <= 60 && !(await state(page)).frame.forceOn; ++i) {
+    await page.mouse.move(grip[0], grip[1] - 3 * i);
+    await page.waitForTimeout(60);
+  }
+  await until(page, (s) => s.frame.forceOn);
+  assert.equal(await page.textContent("#force"), "");
+  await page.mouse.up();
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("virtual time: stands, steps, goes on", async (browser) => {
+  const program = await serve("tegotae", "run", scene, "--view", "--fast");
+  const page = await browser.newPage({ viewport: { width: 1366, height: 680 } });
+  await page.goto(program.url);
+  await page.click("#step");
+  assert.equal((await until(page, (s) => s.frame)).frame.tick, 0);
+  await page.keyboard.press(".");
+  assert.equal((await until(page, (s) => s.frame?.tick > 0)).frame.tick, 1);
+  await page.selectOption("#speed", "null");
+  await page.click("#play");
+  await until(page, (s) => s.frame.t > 3 && !s.status.paused);
+  await page.click("#play");
+  await until(page, (s) => s.status.paused);
+  await page.waitForTimeout(500);
+  const stood = await state(page);
+  await page.waitForTimeout(500);
+  const still = await state(page);
+  assert.equal(still.frame.tick, stood.frame.tick);
+  assert.equal(still.drawn, stood.drawn, "nothing is drawn while nothing changes");
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("without the token there is no page", async (browser) => {
+  const program = await serve("peg_in_hole", "--view");
+  const page = await browser.newPage();
+  assert.equal((await page.goto(program.url.replace(/token=.*/, "token=0"))).status(), 403);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});

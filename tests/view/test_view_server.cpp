@@ -1,0 +1,82 @@
+// Where the server listens, what slow clients can do to the run, and what a page sees of another process's pen.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "catch.hpp"
+#include "spawn.hpp"
+#include "view/watcher.hpp"
+
+using namespace tegotae::test;
+
+namespace {
+
+/// The addresses (hexadecimal, as the kernel prints them) on which somebody listens on `port`.
+std::vector<std::string> listening(int port) {
+  std::vector<std::string> found;
+  char wanted[8];
+  std::snprintf(wanted, sizeof wanted, ":%04X", static_cast<unsigned>(port));
+  for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+    std::ifstream file(table);
+    std::string number, local, remote, state, rest;
+    while (file >> number >> local >> remote >> state && std::getline(file, rest)) {
+      const std::size_t colon = local.find(':');
+      if (state == "0A" && colon != local.npos && local.substr(colon) == wanted)
+        found.push_back(local.substr(0, colon));
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("it listens on the loopback alone, unless told otherwise") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  CHECK(listening(s.port) == std::vector<std::string>{"0100007F"});
+  Served everywhere({"peg_in_hole", "--view", "--view-address", "0.0.0.0", "--json"});
+  CHECK(listening(everywhere.port) == std::vector<std::string>{"00000000"});
+  CHECK(ask(everywhere.port, get(everywhere, "/scene")) == 200);
+  CHECK(ask(everywhere.port, {"GET", "/scene", "", everywhere.host(), "", "", ""}) == 403);
+  check_end(s);
+  check_end(everywhere);
+}
+
+TEST_CASE("clients that send a byte at a time") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  Watcher watcher(s);
+  const std::string requests[] = {text_of(get(s, "/scene")), text_of(command(s, std::string(1500, ' ')))};
+  // More than there are threads to serve them.
+  std::vector<std::unique_ptr<Connection>> slow;
+  for (int i = 0; i < 50; ++i) slow.push_back(std::make_unique<Connection>(s.port));
+  long last = watcher.next();
+  for (std::size_t at = 0; at < 60; ++at) {
+    for (std::size_t i = 0; i < slow.size(); ++i) slow[i]->send(requests[i % 2].substr(at, 1));
+    const long tick = watcher.next();
+    CHECK(tick > last);
+    last = tick;
+  }
+  slow.clear();
+  check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("a page sees the force, the tick times and the servo's lateness of another process's pen") {
+  const std::string name = "view-test-" + std::to_string(::getpid());
+  Program device({TEGOTAE_BIN_DIR "/tegotae-device", "--type", "simulated", "--name", name, "--script",
+                  TEGOTAE_MODELS_DIR "/insert_0.94.csv"});
+  device.line();
+  Served s(
+      {"tegotae", "run", TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml", "--device", "shm:" + name, "--view", "--json"});
+  Watcher watcher(s);
+  bool late = false, ticked = false;
+  // The servo tells ten times a second; a frame comes thirty times.
+  for (int i = 0; i < 300 && !(late && ticked); ++i) {
+    REQUIRE(watcher.next() >= 0);
+    ticked |= watcher.row()[25] > 0;
+    late |= std::isfinite(watcher.row()[26]) && watcher.row()[26] > 0;
+  }
+  CHECK(ticked);
+  CHECK(late);
+  check_end(s);
+  CHECK(device.end(SIGINT) == 0);
+}
