@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12, apt), configures and builds: setup.sh [--browser] [TARGET...] (everything without
-# targets). --browser adds what the browser test needs.
+# targets). --browser adds what the tests need that are not daily: a browser, doxygen.
 # Shared by apps/demo.sh and tests/run.sh; a second call only builds what changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,6 +14,7 @@ browser=false
 if [ "${1:-}" = --browser ]; then
   browser=true
   shift
+  packages+=(doxygen)
   # By command: Node may come from elsewhere, with npm in it.
   for command in node:nodejs npm:npm chromium:chromium; do
     command -v "${command%:*}" >/dev/null || packages+=("${command#*:}")

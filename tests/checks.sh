@@ -7,9 +7,10 @@
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
 #   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
 #   determinism   the recording of a run in virtual time, of builds with -O2 and -O3
+#   docs          every public name has a docstring (doxygen), links of the documents
 #   fuzz          every fuzz target for TEGOTAE_FUZZ_SECONDS (20) seconds
 # Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14
-# clang-22 libclang-rt-22-dev.
+# clang-22 libclang-rt-22-dev doxygen.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -49,8 +50,8 @@ check_tsan() {
   # shellcheck disable=SC2046
   configure -S . -B build/tsan $(new_tree build/tsan) -DCMAKE_BUILD_TYPE=RelWithDebInfo \
     -DCMAKE_CXX_FLAGS="-fsanitize=thread -O1 -g1" -DCMAKE_C_FLAGS="-fsanitize=thread -O1 -g1"
-  cmake --build build/tsan --parallel "$jobs" --target test_servo test_device test_record
-  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R '^(servo|device|record)$' --output-on-failure
+  cmake --build build/tsan --parallel "$jobs" --target test_servo test_device test_record test_change
+  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R '^(servo|device|record|change)$' --output-on-failure
 }
 
 check_rtsan() {
@@ -103,10 +104,16 @@ check_determinism() {
   [ "$(printf '%s\n' "${sums[@]}" | sort -u | wc -l)" = 1 ] || fail "the recordings differ"
 }
 
+check_docs() {
+  command -v doxygen >/dev/null || fail "doxygen is not installed"
+  bash tests/docs/doxygen.sh build/doxygen
+  python3 tests/docs/check_links.py
+}
+
 check_fuzz() { bash tests/fuzz/run.sh "${TEGOTAE_FUZZ_SECONDS:-20}"; }
 
-[ $# -gt 0 ] || fail "name a check: format asan tsan rtsan clang tidy determinism fuzz, or all"
-[ "$*" != all ] || set -- format tsan rtsan determinism clang tidy asan fuzz
+[ $# -gt 0 ] || fail "name a check: format asan tsan rtsan clang tidy determinism docs fuzz, or all"
+[ "$*" != all ] || set -- format docs tsan rtsan determinism clang tidy asan fuzz
 for name in "$@"; do
   declare -F "check_$name" >/dev/null || fail "unknown check $name"
   SECONDS=0

@@ -8,6 +8,7 @@
 #include "lp/least_distance.hpp"
 #include "models/shapes.hpp"
 #include "sim/contact_loop.hpp"
+#include "tegotae/core/clock.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
@@ -49,7 +50,7 @@ void compare(const char* name, Scene scene, int ticks, Pen pen) {
   const MassProperties mass = mass_properties(held, report(held).closed);
   ContactLoop loop(scene, scene.contact, mass);
   TickReport tick;
-  for (int i = 0; i < ticks; ++i) loop.step(pen(i), 0.001, tick);
+  for (int i = 0; i < ticks; ++i) loop.step(pen(i), 0.001, kNoDeadline, tick);
   const double radius = radius_about(held, mass.center);
   LowRankMatrix contacts(1024);
   std::vector<double> zero;

@@ -38,8 +38,6 @@ class Watcher {
   long next() { return next_row() ? static_cast<long>(row_[0]) * (1 << 20) + static_cast<long>(row_[1]) : -1; }
   /// The numbers of the newest frame (apps/view/wire.cpp), without its pairs.
   const std::vector<float>& row() const { return row_; }
-  /// The newest status that came along with the frames so far; empty before the first.
-  const std::string& status() const { return status_; }
 
   /// The newest status that came along with the frames so far; empty before the first.
   const std::string& status() const { return status_; }

@@ -7,8 +7,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Contact::age of a limit that is no contact: a plane between two triangles, of use for one motion alone. Its gap is not
-/// the distance of anything.
+/// Contact::age of a limit that is no contact: a plane between two triangles, of use for one motion alone. Its gap is
+/// not the distance of anything.
 inline constexpr int kCutAge = -1;
 
 /// A limit on the motion of the held part A: for a small displacement (dp, dr) of its center of mass the gap becomes

@@ -7,20 +7,21 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-using Vec3 = Eigen::Vector3d;
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat3 = Eigen::Matrix3d;
-using Quat = Eigen::Quaterniond;
+using Vec3 = Eigen::Vector3d;              ///< x, y, z
+using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< linear part first, then angular
+using Mat3 = Eigen::Matrix3d;              ///< rows and columns x, y, z
+using Quat = Eigen::Quaterniond;           ///< written w, x, y, z; of unit length wherever it is a rotation
 
 /// Rigid pose X_WB: maps coordinates in frame B to frame W, p_W = q * p_B + p. Lengths in m, `q` a unit quaternion.
 struct Pose {
-  Quat q = Quat::Identity();
-  Vec3 p = Vec3::Zero();
+  Quat q = Quat::Identity();  ///< R_WB
+  Vec3 p = Vec3::Zero();      ///< p_WB: where B's origin is in W, m
 
   /// The point `p_B` (m, frame B) expressed in W.
   Vec3 operator*(const Vec3& p_B) const { return q * p_B + p; }
   /// X_WC = X_WB * X_BC.
   Pose operator*(const Pose& X_BC) const { return {(q * X_BC.q).normalized(), q * X_BC.p + p}; }
+  /// X_BW.
   Pose inverse() const {
     const Quat qi = q.conjugate();
     return {qi, -(qi * p)};
@@ -29,20 +30,20 @@ struct Pose {
 
 /// Velocity of a body: `v` (m/s) of a stated point of it, `w` angular (rad/s); both expressed in the world.
 struct Twist {
-  Vec3 v = Vec3::Zero();
-  Vec3 w = Vec3::Zero();
+  Vec3 v = Vec3::Zero();  ///< m/s
+  Vec3 w = Vec3::Zero();  ///< rad/s
 };
 
 /// Force (N) and torque (N·m) about a stated point; both expressed in the world.
 struct Wrench {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 torque = Vec3::Zero();  ///< N·m
 };
 
 /// A small rigid displacement: `dp` (m) of a stated center, `dr` the rotation vector (rad) about that center, in W.
 struct Displacement {
-  Vec3 dp = Vec3::Zero();
-  Vec3 dr = Vec3::Zero();
+  Vec3 dp = Vec3::Zero();  ///< m
+  Vec3 dr = Vec3::Zero();  ///< rad
 };
 
 /// Rotation vector (rad, angle in [0, π]) of `q`.

@@ -17,10 +17,10 @@ struct ContactPlane {
 /// What the contact loop knows about the held part's next millimeter, for a servo that is faster: the limits that held
 /// it in its last tick, and after them the nearest others. A free body needs no more than six.
 struct ContactPlanes {
-  static constexpr int kMost = 6;
-  std::array<ContactPlane, kMost> planes;
-  int count = 0;  ///< 0: nothing is known, X stays where it is until the next tick
-  Pose pen;       ///< Y that the tick answered
+  static constexpr int kMost = 6;          ///< degrees of freedom of a free body
+  std::array<ContactPlane, kMost> planes;  ///< the first `count` of them hold
+  int count = 0;                           ///< 0: nothing is known, X stays where it is until the next tick
+  Pose pen;                                ///< Y that the tick answered
 };
 
 }  // namespace tegotae

@@ -16,8 +16,8 @@ struct CouplingSettings {
 
 /// What the coupling needs of the held part: its pose `X` and the velocity of its center of mass, in the world.
 struct ProxyState {
-  Pose X;
-  Twist velocity;
+  Pose X;                 ///< X_WF of its file frame
+  Twist velocity;         ///< `v` of its center of mass
   bool touching = false;  ///< at least one contact; without one the wrench is zero
 };
 

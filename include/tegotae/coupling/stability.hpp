@@ -15,7 +15,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// 2005). A hand that holds the pen adds damping: couplings above the limit can be stable in a hand, none below it is
 /// unstable.
 struct StabilityReport {
-  double rate_hz = 0;
+  double rate_hz = 0;                    ///< of the servo
   CouplingSettings coupling;             ///< what is asked for
   double sampling_limit = 0;             ///< N/m, 2 (b - |B|) / T; NaN when b is not known
   double quantization_limit = 0;         ///< N/m, 2 f_c / Δ; infinite without quantization

@@ -19,22 +19,22 @@ class ChannelReader {
   static ChannelReader open(const std::string& name);
 
   ~ChannelReader();
-  ChannelReader(ChannelReader&&) noexcept;
-  ChannelReader& operator=(ChannelReader&&) noexcept;
+  ChannelReader(ChannelReader&&) noexcept;             ///< the other one may then only be destroyed or assigned to
+  ChannelReader& operator=(ChannelReader&&) noexcept;  ///< as the constructor; leaves its own segment
 
   const std::string& name() const noexcept;  ///< with the slash
   std::uint64_t owner_pid() const noexcept;  ///< process id of the device
   std::int64_t created_ns() const noexcept;  ///< when it was created, monotonic clock; tells one from its successor
 
-  // A read gives one whole write, or false (and an untouched argument) when nothing was written yet or the writer is
-  // stuck in a write. None of them waits, allocates or throws.
+  /// The newest whole write of the device; false, and `payload` untouched, when nothing was written yet or the writer
+  /// is stuck in a write. Never waits, allocates or throws.
   bool read(tegotae_shm_device& payload) const noexcept;
-  bool read(tegotae_shm_application& payload) const noexcept;
-  bool read(tegotae_shm_statistics& payload) const noexcept;
+  bool read(tegotae_shm_application& payload) const noexcept;  ///< the same, of the application
+  bool read(tegotae_shm_statistics& payload) const noexcept;   ///< the same, of the servo about itself
 
  protected:
-  explicit ChannelReader(std::unique_ptr<Segment> segment);
-  std::unique_ptr<Segment> segment_;
+  explicit ChannelReader(std::unique_ptr<Segment> segment);  ///< takes a mapped segment
+  std::unique_ptr<Segment> segment_;                         ///< the mapping; null in what was moved from
 };
 
 /// One end of a segment. The device's side creates it, the application attaches to it.
@@ -48,10 +48,10 @@ class Channel : public ChannelReader {
   /// application is attached.
   static Channel attach(const std::string& name);
 
-  // Each slot has one writer. None of them waits, allocates or throws.
+  /// Writes the slot whose only writer is the device's servo. Never waits, allocates or throws.
   void write(const tegotae_shm_device& payload) noexcept;
-  void write(const tegotae_shm_application& payload) noexcept;
-  void write(const tegotae_shm_statistics& payload) noexcept;
+  void write(const tegotae_shm_application& payload) noexcept;  ///< the same; the writer is the application
+  void write(const tegotae_shm_statistics& payload) noexcept;   ///< the same; the writer is the servo
 
  private:
   using ChannelReader::ChannelReader;

@@ -32,6 +32,7 @@ struct DeviceState {
   std::uint64_t sequence = 0;  ///< number of the sample
 };
 
+/// What a device can do now.
 enum class DeviceStatus : std::uint32_t {
   uninitialized = TEGOTAE_SHM_STATUS_UNINITIALIZED,  ///< not started: no pose, no force
   ready = TEGOTAE_SHM_STATUS_READY,                  ///< the pose is good, the force is off
@@ -40,28 +41,28 @@ enum class DeviceStatus : std::uint32_t {
 
 /// Why the force is off.
 enum class ForceOff : std::uint32_t {
-  none = TEGOTAE_SHM_REASON_NONE,  ///< it is on
-  button = TEGOTAE_SHM_REASON_BUTTON,
-  velocity = TEGOTAE_SHM_REASON_VELOCITY,
-  watchdog = TEGOTAE_SHM_REASON_WATCHDOG,
-  software = TEGOTAE_SHM_REASON_SOFTWARE,
-  disconnected = TEGOTAE_SHM_REASON_DISCONNECTED,
-  dead_man = TEGOTAE_SHM_REASON_DEAD_MAN,
-  not_finite = TEGOTAE_SHM_REASON_NOT_FINITE,
-  workspace = TEGOTAE_SHM_REASON_WORKSPACE,
-  energy = TEGOTAE_SHM_REASON_ENERGY,
-  thermal = TEGOTAE_SHM_REASON_THERMAL,
-  engage = TEGOTAE_SHM_REASON_ENGAGE,
-  clutched = TEGOTAE_SHM_REASON_CLUTCHED,
-  silent = TEGOTAE_SHM_REASON_SILENT,
-  device_fault = TEGOTAE_SHM_REASON_DEVICE_FAULT,
-  force_exceeded = TEGOTAE_SHM_REASON_FORCE_EXCEEDED,
-  no_force = TEGOTAE_SHM_REASON_NO_FORCE,
+  none = TEGOTAE_SHM_REASON_NONE,                      ///< it is on
+  button = TEGOTAE_SHM_REASON_BUTTON,                  ///< the device's force button is off
+  velocity = TEGOTAE_SHM_REASON_VELOCITY,              ///< the pen moved too fast
+  watchdog = TEGOTAE_SHM_REASON_WATCHDOG,              ///< the application's heartbeat is too old
+  software = TEGOTAE_SHM_REASON_SOFTWARE,              ///< no application asks for force
+  disconnected = TEGOTAE_SHM_REASON_DISCONNECTED,      ///< the device does not answer
+  dead_man = TEGOTAE_SHM_REASON_DEAD_MAN,              ///< the dead-man switch is released
+  not_finite = TEGOTAE_SHM_REASON_NOT_FINITE,          ///< a pose, velocity or setting is not finite
+  workspace = TEGOTAE_SHM_REASON_WORKSPACE,            ///< the pen left its workspace
+  energy = TEGOTAE_SHM_REASON_ENERGY,                  ///< the coupling gave the hand more energy than it may
+  thermal = TEGOTAE_SHM_REASON_THERMAL,                ///< the motors are too warm
+  engage = TEGOTAE_SHM_REASON_ENGAGE,                  ///< waits until the wanted force is small, then ramps in
+  clutched = TEGOTAE_SHM_REASON_CLUTCHED,              ///< the pen moves without the part
+  silent = TEGOTAE_SHM_REASON_SILENT,                  ///< the pen has had no new sample for too long
+  device_fault = TEGOTAE_SHM_REASON_DEVICE_FAULT,      ///< the device reports a fault
+  force_exceeded = TEGOTAE_SHM_REASON_FORCE_EXCEEDED,  ///< more was asked of the device than it may render
+  no_force = TEGOTAE_SHM_REASON_NO_FORCE,              ///< the device is an input only
 };
 
 /// For people, e.g. "the contact loop's heartbeat is too old".
 const char* to_string(DeviceStatus status) noexcept;
-const char* to_string(ForceOff reason) noexcept;
+const char* to_string(ForceOff reason) noexcept;  ///< the same
 
 /// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. Called from one
 /// thread, the servo's, but for info().
@@ -82,15 +83,15 @@ class Device {
   /// Renders `wrench` (on the pen, at the held part's center of mass, world) until the next call.
   virtual void write(const Wrench& wrench) noexcept = 0;
 
-  virtual DeviceStatus status() const noexcept = 0;
-  virtual ForceOff reason() const noexcept = 0;
+  virtual DeviceStatus status() const noexcept = 0;  ///< now
+  virtual ForceOff reason() const noexcept = 0;      ///< why it renders no force; ForceOff::none when it does
 
   /// The point of the pen, in its frame, m, of which DeviceState::velocity tells the velocity and at which wrenches
   /// act: it carries the held part's center of mass. The servo proposes that center in the part's file frame, which
   /// suits a pen that has the part for a body; a device whose wrench acts at a fixed point, such as a stylus tip,
   /// overrides set_center() to keep its own.
   const Vec3& center() const noexcept { return center_; }
-  virtual void set_center(const Vec3& center) noexcept { center_ = center; }
+  virtual void set_center(const Vec3& center) noexcept { center_ = center; }  ///< `center` in m, file frame
 
   /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
   /// read() while an application is attached; an input that is integrated stays near the part by it.

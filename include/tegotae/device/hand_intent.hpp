@@ -20,8 +20,8 @@ class HandIntent {
   virtual double begin() const noexcept = 0;
   /// Where the hand is then, at rest.
   virtual Pose start() const noexcept = 0;
-  /// What the hand wants at `t` (s). `pen` is where the pen is, the file frame's pose: what the hand itself feels of it.
-  /// Asked with times that never decrease. Never allocates or throws.
+  /// What the hand wants at `t` (s). `pen` is where the pen is, the file frame's pose: what the hand itself feels of
+  /// it. Asked with times that never decrease. Never allocates or throws.
   virtual HandTarget target(double t, const Pose& pen) noexcept = 0;
 };
 

@@ -11,6 +11,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// The device's axes (right, up, toward the user) as those of a world whose z points up and y away from the user.
 Quat desktop_axes();
 
+/// Which device of the vendor, and how it stands.
 struct OpenHapticsSettings {
   std::string library = "libHD.so";  ///< of the vendor's runtime; loaded by start()
   std::string device;                ///< its name in the vendor's set-up; empty: the default device
@@ -24,6 +25,7 @@ struct OpenHapticsSettings {
 /// A command that is older than 20 ms is not rendered, and after an error of the device nothing is for half a second.
 class OpenHapticsDevice final : public Device {
  public:
+  /// Nothing is loaded or connected before start().
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings = {});
   ~OpenHapticsDevice() override;  ///< stops
 
@@ -36,7 +38,7 @@ class OpenHapticsDevice final : public Device {
   void write(const Wrench& wrench) noexcept override;
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
-  void set_center(const Vec3&) noexcept override {}  // the gimbal point stays
+  void set_center(const Vec3&) noexcept override {}  ///< no effect: the gimbal point stays
 
  private:
   struct Impl;

@@ -11,9 +11,10 @@ namespace tegotae TEGOTAE_EXPORT {
 /// Where the operator's hand wants the held part's file frame to be, over time.
 class StylusScript {
  public:
+  /// A pose at a time.
   struct Key {
-    double t;  ///< s
-    Pose pose;
+    double t;   ///< s
+    Pose pose;  ///< X_WF of the held part's file frame, in the world
   };
 
   /// Throws Error when `keys` is empty, a value is not finite, a quaternion is zero, the times do not increase, or the

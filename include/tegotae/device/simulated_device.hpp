@@ -26,7 +26,7 @@ struct HandSettings {
 /// A PHANTOM Premium 1.5/6DOF-like pen. Apparent mass, friction, force limits and position resolution are the vendor's;
 /// the rotational inertia and resolution and the velocity filter are assumed.
 struct SimulatedDeviceSettings {
-  HandSettings hand;
+  HandSettings hand;                            ///< that holds it
   double mass = 0.075;                          ///< apparent, kg
   Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
   double friction = 0.04;                       ///< Coulomb, N
@@ -69,7 +69,7 @@ class SimulatedDevice final : public Device {
   double script_time() const noexcept;
   /// The exact pose and velocity (v of the center of mass), before resolution and filter.
   Pose true_pose() const noexcept;
-  Twist true_velocity() const noexcept;
+  Twist true_velocity() const noexcept;  ///< m/s and rad/s, world
 
  private:
   struct Impl;

@@ -23,13 +23,13 @@ struct AssemblyPart {
   std::vector<std::string> path;  ///< the groups that it is in, the outermost first
   std::size_t shape = 0;          ///< index into Assembly::shapes
   Pose pose;                      ///< X_WF of the shape's frame
-  std::optional<Color> color;
+  std::optional<Color> color;     ///< as the file has it; none: it has none
 };
 
 /// What a file of parts holds.
 struct Assembly {
   std::vector<std::shared_ptr<const TriangleMesh>> shapes;  ///< distinct; named for people, welded, m, own frame
-  std::vector<AssemblyPart> parts;
+  std::vector<AssemblyPart> parts;                          ///< leaves of the tree, in the order of the file
   std::string unit;                ///< of the file, or the one its lengths were read in: "m", "mm", ...
   std::vector<std::string> notes;  ///< what is not as the file says, a line each
 };

@@ -9,8 +9,8 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// What a surface is like, counted after welding (see load.hpp).
 struct MeshReport {
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
+  std::size_t vertices = 0;            ///< all; weld() drops those that no triangle uses
+  std::size_t triangles = 0;           ///< all, degenerate and duplicate ones too
   std::size_t components = 0;          ///< sets of triangles joined over shared edges, collapsed ones left out
   std::size_t boundary_edges = 0;      ///< edges of one face
   std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two that turn against each other
@@ -18,9 +18,10 @@ struct MeshReport {
   std::size_t duplicate_faces = 0;     ///< the same three vertices as an earlier face, in any order; none collapsed
   bool closed = false;                 ///< every edge joins exactly two faces that turn the same way
   Vec3 box_min = Vec3::Zero();         ///< m, file frame
-  Vec3 box_max = Vec3::Zero();
+  Vec3 box_max = Vec3::Zero();         ///< m, file frame
 };
 
+/// Looks at `mesh` as it is: weld it first (load_mesh does), or every edge is a boundary.
 MeshReport report(const TriangleMesh& mesh);
 
 }  // namespace tegotae

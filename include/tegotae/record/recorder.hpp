@@ -10,6 +10,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
+/// Who writes a recording.
 enum class RecordMode {
   threaded,     ///< push() only copies into a ring, a thread writes: for the wall clock
   synchronous,  ///< push() writes (buffered): for virtual time; never drops a frame

@@ -11,15 +11,15 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// One row of a recording: one certified piece of a tick of the contact loop.
 struct RecordFrame {
-  std::uint64_t tick = 0;
+  std::uint64_t tick = 0;     ///< number of the contact loop's tick
   std::uint32_t substep = 0;  ///< number of the piece in its tick, from 0
   double t = 0;               ///< s
   Pose y;                     ///< where the pen wants the held part's file frame
   Pose x;                     ///< the held part's file frame, in the world
   Wrench wrench;              ///< on the pen, at the held part's center of mass, N and N·m
-  int contacts = 0;
-  double gap = 0;      ///< smallest known gap, m; +inf when nothing is near
-  double tick_us = 0;  ///< time that the tick took; 0 in virtual time
+  int contacts = 0;           ///< TickReport::contacts
+  double gap = 0;             ///< smallest known gap, m; +inf when nothing is near
+  double tick_us = 0;         ///< time that the tick took; 0 in virtual time
 };
 
 /// What a recording says of itself, so that it can be shown with its parts. Unknown texts are empty.
@@ -33,9 +33,9 @@ struct RecordingInfo {
 
 /// A recording in memory.
 struct Recording {
-  RecordingInfo info;
-  std::vector<RecordFrame> frames;
-  std::string damage;  ///< what is wrong with its end ("the last row is cut"); empty when it is whole
+  RecordingInfo info;               ///< what it is of
+  std::vector<RecordFrame> frames;  ///< rows, in the order of the file
+  std::string damage;               ///< what is wrong with its end ("the last row is cut"); empty when it is whole
 };
 
 /// Reads a recording of Recorder: MCAP when the file begins like one, otherwise CSV, with the columns by name and in

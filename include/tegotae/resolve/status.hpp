@@ -9,7 +9,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// How the resolver's programme of a tick ended.
 enum class ResolveStatus : std::uint8_t {
   not_needed,  ///< nothing limited the motion
-  solved,
+  solved,      ///< within the solver's tolerances
   infeasible,  ///< no motion keeps all gaps; the part stays where it is
   stalled      ///< the solver gave up for numerical reasons; the part stays where it is
 };

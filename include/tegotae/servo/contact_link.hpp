@@ -20,13 +20,13 @@ struct PenSample {
   ForceOff reason = ForceOff::software;               ///< why it was not
   std::uint32_t flags = 0;                            ///< TEGOTAE_SHM_FLAG_...: what was done to the wrench
   double scale = 1;                                   ///< meters of the world for a meter of the pen
-  Clutch clutch = Clutch::none;
-  double thermal_load = 0;         ///< running RMS of the force over the continuous figure
-  double energy = 0;               ///< J, of the passivity observer; below zero: generated
-  std::int64_t heartbeat_ns = 0;   ///< time of the servo's tick
-  std::uint64_t tick = 0;          ///< number of the servo's tick
-  std::int64_t session = 0;        ///< of the application that the servo listens to
-  std::uint32_t home_counter = 0;  ///< of the last home command that it obeyed
+  Clutch clutch = Clutch::none;                       ///< by the application or by a button
+  double thermal_load = 0;                            ///< running RMS of the force over the continuous figure
+  double energy = 0;                                  ///< J, of the passivity observer; below zero: generated
+  std::int64_t heartbeat_ns = 0;                      ///< time of the servo's tick
+  std::uint64_t tick = 0;                             ///< number of the servo's tick
+  std::int64_t session = 0;                           ///< of the application that the servo listens to
+  std::uint32_t home_counter = 0;                     ///< of the last home command that it obeyed
 };
 
 /// The contact loop's end of a channel: pen in, proxy out.
@@ -49,6 +49,7 @@ class ContactLink {
   void ask_for_force(bool on) noexcept { enable_ = on; }  ///< on from the beginning
   /// Meters of the world for a meter of the pen. Throws Error outside of kLeastScale to kMostScale.
   void set_scale(double scale);
+  /// What of the pen's motion the part does not follow from now on.
   void set_clutch(Clutch clutch) noexcept { clutch_ = clutch; }
   /// From now on the pen, where it is, means the held part at `X` (file frame).
   void home(const Pose& X) noexcept;

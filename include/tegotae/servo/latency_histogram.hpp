@@ -12,8 +12,8 @@ class LatencyHistogram {
  public:
   /// A negative duration counts as 0.
   void add(std::int64_t ns) noexcept;
-  std::uint64_t count() const noexcept { return count_; }
-  std::int64_t max_ns() const noexcept { return max_; }  ///< exact; 0 when empty
+  std::uint64_t count() const noexcept { return count_; }  ///< durations added
+  std::int64_t max_ns() const noexcept { return max_; }    ///< exact; 0 when empty
   /// The smallest duration that at least the part `p` (in [0, 1]) of all does not exceed, in ns: exact or up to 1/32
   /// too large, never above max_ns(); 0 when empty.
   std::int64_t percentile_ns(double p) const noexcept;
@@ -26,13 +26,14 @@ class LatencyHistogram {
   std::int64_t max_ = 0;
 };
 
-/// In microseconds.
+/// Of many durations, in microseconds; zeros when there are none.
 struct LatencySummary {
-  double p50 = 0;
-  double p99 = 0;
-  double p999 = 0;
-  double max = 0;
+  double p50 = 0;   ///< median
+  double p99 = 0;   ///< 99 of 100 are not longer
+  double p999 = 0;  ///< 999 of 1000 are not longer
+  double max = 0;   ///< the longest
 };
+/// The figures of `histogram`, each as its percentile_ns() and max_ns().
 LatencySummary summary(const LatencyHistogram& histogram) noexcept;
 
 }  // namespace tegotae

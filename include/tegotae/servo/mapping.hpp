@@ -21,7 +21,9 @@ struct MappingSettings {
   Clutch clutch_by_button = Clutch::all;  ///< what of it
 };
 
-/// Meters of the world for a meter of the pen that an application may ask for.
-inline constexpr double kLeastScale = 0.01, kMostScale = 100;
+/// The least that an application may ask for: meters of the world for a meter of the pen.
+inline constexpr double kLeastScale = 0.01;
+/// The most that an application may ask for.
+inline constexpr double kMostScale = 100;
 
 }  // namespace tegotae

@@ -36,6 +36,7 @@ struct SafetySettings {
   /// The box, in the device's space, m, in which the pen renders its full force; the force fades over
   /// workspace_margin beyond it.
   Vec3 workspace_center = Vec3::Zero();
+  /// Half the box's sides, m; infinite: no border.
   Vec3 workspace_half = Vec3::Constant(std::numeric_limits<double>::infinity());
   double workspace_margin = 0.02;  ///< m
 

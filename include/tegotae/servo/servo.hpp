@@ -14,18 +14,19 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
+/// How a servo runs.
 struct ServoSettings {
-  double rate_hz = 1000.0;  ///< up to 4000
-  RealtimeConfig realtime = RealtimeConfig::ignore;
-  int cpu = -1;  ///< that the thread is bound to; negative: wherever the system puts it
-  SafetySettings safety;
-  MappingSettings mapping;
+  double rate_hz = 1000.0;                           ///< up to 4000
+  RealtimeConfig realtime = RealtimeConfig::ignore;  ///< what start() does without real time
+  int cpu = -1;             ///< that the thread is bound to; negative: wherever the system puts it
+  SafetySettings safety;    ///< of the chain that every wrench passes
+  MappingSettings mapping;  ///< buttons
   bool local_model = true;  ///< bring the proxy up to date on the contact planes between two ticks of the contact loop
 };
 
 /// What the servo has done since it was made.
 struct ServoStatistics {
-  std::uint64_t ticks = 0;
+  std::uint64_t ticks = 0;    ///< made
   std::uint64_t missed = 0;   ///< periods of the schedule that had no tick
   double rate_hz = 0;         ///< achieved, mean; 0 before the second tick
   LatencySummary late_us;     ///< wake-up minus schedule

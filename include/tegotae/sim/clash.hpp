@@ -10,6 +10,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
+/// How two parts stand to each other.
 enum class ClashKind : std::uint8_t {
   overlap,  ///< deeper than the tolerance, or crossing surfaces of which none is closed
   touch,    ///< apart or overlapping by the tolerance at most
@@ -18,9 +19,10 @@ enum class ClashKind : std::uint8_t {
 
 /// Two parts that touch, overlap or are near.
 struct Clash {
-  std::size_t a = 0, b = 0;  ///< indices into Scene::parts, a < b
-  ClashKind kind = ClashKind::near;
-  double gap = 0;  ///< m: distance of the surfaces; 0 when they intersect
+  std::size_t a = 0;                 ///< index into Scene::parts, the smaller one
+  std::size_t b = 0;                 ///< index into Scene::parts, the larger one
+  ClashKind kind = ClashKind::near;  ///< by ClashOptions::tolerance
+  double gap = 0;                    ///< m: distance of the surfaces; 0 when they intersect
   /// m: how far the deepest point found of one part lies inside the other, measured to the nearest point of its
   /// surface; 0 when they are apart, NaN when none of the two is closed. Looked at are all vertices and, of the edges
   /// that cross the other surface, the middles of the pieces between crossings: a lower bound of the depth of the
@@ -30,6 +32,7 @@ struct Clash {
   std::size_t triangle_pairs = 0;  ///< that intersect; triangles that touch count
 };
 
+/// What find_clashes() looks for.
 struct ClashOptions {
   double tolerance = 10e-6;                                           ///< m: what counts as touching
   double within = 0;                                                  ///< m: pairs apart by up to this are listed too

@@ -27,9 +27,9 @@ struct TickReport {
   int candidate_parts = 0;   ///< fixed parts that passed the broad phase
   int resolves = 0;          ///< programmes solved (penalty: Newton steps)
   int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
-  ResolveStatus status = ResolveStatus::not_needed;
-  double fraction = 1;    ///< part of the wanted motion made, in [0, 1]
-  bool cut = false;       ///< time or work ran out before the wanted motion was decided
+  ResolveStatus status = ResolveStatus::not_needed;  ///< of the last programme or step of the tick
+  double fraction = 1;                               ///< part of the wanted motion made, in [0, 1]
+  bool cut = false;                                  ///< time or work ran out before the wanted motion was decided
   int suspended = 0;      ///< pairs that overlapped at the start and have not come free: nothing keeps them apart
   int relieved = 0;       ///< pairs that touched at the start and have not come free (StartPair::relief)
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
@@ -70,14 +70,15 @@ class HapticLoop {
   /// Where the held part was after the last tick; from any thread, to draw it and for change().
   Pose latest() const noexcept;
 
+  /// Of the last step(); before the first one, of the start.
   const TickReport& report() const;
   /// What the held part touched or overlapped at the start, and what has become of it by the last tick.
   const StartReport& start() const;
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;
-  Mat3 gyration() const;                   ///< its inertia over its mass about the center, m², file axes
   const Vec3& center() const;              ///< center of mass of the held part, m, file frame
+  Mat3 gyration() const;                   ///< its inertia over its mass about that center, m², file axes
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
 
  private:

@@ -17,7 +17,7 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// One rigid part. Parts may share a mesh.
 struct Part {
-  std::string name;
+  std::string name;                          ///< unique in the scene
   std::shared_ptr<const TriangleMesh> mesh;  ///< welded (load_mesh does it), file frame, m
   Pose pose;                                 ///< X_WF of the file frame in the world; of the held part, where it starts
   bool held = false;                         ///< exactly one part of a scene is held
@@ -58,16 +58,16 @@ struct ContactSettings {
   /// is suspended (nothing keeps the two apart) until it has once come free.
   std::string initial_overlap = "refuse";
   double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation, and its mass
-  ImpulseSettings impulse;
-  PenaltySettings penalty;
-  ContactSettings();
+  ImpulseSettings impulse;  ///< for the resolver "impulse" alone
+  PenaltySettings penalty;  ///< for the resolver "penalty" alone
+  ContactSettings();        ///< lengths from the scene (NaN), the rest as above
 };
 
 /// The parts of a mock-up and the settings of its loops.
 struct Scene {
-  std::vector<Part> parts;
-  ContactSettings contact;
-  CouplingSettings coupling;
+  std::vector<Part> parts;    ///< exactly one of them held
+  ContactSettings contact;    ///< of the contact loop
+  CouplingSettings coupling;  ///< of the spring and damper between part and pen
 };
 
 }  // namespace tegotae

@@ -14,12 +14,12 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// What a scene file says: the scene, the pen, and what moves it.
 struct SceneFile {
-  std::string path;
-  Scene scene;
-  SimulatedDeviceSettings device;
-  StylusScript script;      ///< what the operator's hand does
-  SafetySettings safety{};  ///< of the servo in this process; a device in another one has its own
-  double scale = 1;         ///< meters that the held part moves for a meter of the pen
+  std::string path;                ///< of the file
+  Scene scene;                     ///< parts, contact loop and coupling
+  SimulatedDeviceSettings device;  ///< the pen without hardware, and its hand
+  StylusScript script;             ///< what the operator's hand does
+  SafetySettings safety{};         ///< of the servo in this process; a device in another one has its own
+  double scale = 1;                ///< meters that the held part moves for a meter of the pen
 };
 
 /// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.
@@ -27,8 +27,8 @@ using MeshLoader = std::function<TriangleMesh(const std::string& path, double un
 
 /// How a scene file is read.
 struct SceneOptions {
-  std::string hold;          ///< name of the part to hold, instead of the file's; empty: the file's
-  bool held_needed = true;   ///< false: a file that holds no part is read too
+  std::string hold;         ///< name of the part to hold, instead of the file's; empty: the file's
+  bool held_needed = true;  ///< false: a file that holds no part is read too
   /// Called before each mesh is read: how many are, of how many.
   std::function<void(std::size_t done, std::size_t total)> progress;
   MeshLoader load = load_mesh;  ///< reads the meshes

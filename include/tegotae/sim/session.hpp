@@ -20,16 +20,16 @@ struct RunProgress {
   std::atomic<double> t{0};         ///< s since the start
   std::atomic<double> duration{0};  ///< s the run will take; infinite: until it is ended
   std::atomic<double> depth{0};     ///< m, as RunSummary::depth_m
-  std::atomic<int> contacts{0};
-  std::atomic<double> force{0};    ///< N
-  std::atomic<bool> device{true};  ///< the device is there
+  std::atomic<int> contacts{0};     ///< TickReport::contacts of the newest tick
+  std::atomic<double> force{0};     ///< N
+  std::atomic<bool> device{true};   ///< the device is there
 };
 
 /// A tick of the contact loop, for whoever looks on.
 struct TickView {
-  std::uint64_t tick;
-  double t;  ///< s since the start
-  const PenSample& pen;
+  std::uint64_t tick;      ///< number of the contact loop's tick, from 0
+  double t;                ///< s since the start
+  const PenSample& pen;    ///< the sample that the tick answered
   const HapticLoop& loop;  ///< its report() and limits() are of this tick
   double tick_us;          ///< time the tick took; 0 in virtual time
   double servo_late_us;    ///< how late the servo's newest tick began, or of another process's servo the worst in a
@@ -47,6 +47,7 @@ class RunObserver {
   virtual void after_tick(const TickView& tick) noexcept = 0;
 };
 
+/// How run_session() runs a scene.
 struct RunSettings {
   /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
   /// in a thread of this process. Only in real time.
@@ -55,8 +56,8 @@ struct RunSettings {
   double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
   std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;  ///< name and version, for the recording's info
-  RunProgress* progress = nullptr;
-  RunObserver* observer = nullptr;
+  RunProgress* progress = nullptr;                   ///< written to while it runs; null: nobody looks
+  RunObserver* observer = nullptr;                   ///< asked around every tick; null: nobody looks
   HandIntent* hand = nullptr;                        ///< moves the simulated pen instead of the script
   const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
   std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
@@ -73,7 +74,7 @@ struct RunSummary {
   bool completed = false;
   /// How far (m) the held part's center has gone along the straight line from where the script starts to where it ends.
   double depth_m = 0;
-  int contacts_max = 0;
+  int contacts_max = 0;  ///< most TickReport::contacts of a tick
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked. Pairs that `start` names do not count until they have come free.
   std::int64_t penetrating = 0;
@@ -83,8 +84,8 @@ struct RunSummary {
   ServoStatistics servo;   ///< in virtual time only the number of ticks
   std::string missing_realtime;  ///< what the system did not grant to this process's servo, or else to the contact loop
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
-  double force_max_n = 0;        ///< largest rendered force
-  double torque_max_nm = 0;
+  double force_max_n = 0;        ///< largest rendered force, N
+  double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
   std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
 };

@@ -1,0 +1,16 @@
+// Pieces of code that the documents show and that are no whole program, as they compile; check_code.py compares.
+#include "tegotae/core/clock.hpp"
+#include "tegotae/servo/attachment.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+
+using namespace tegotae;
+
+/// docs/device-protocol.md: a contact loop of one's own.
+void own_contact_loop(const Scene& scene, HapticLoop& loop, double dt, std::uint64_t ticks) {
+  Attachment pen("shm:tegotae-pen", scene.coupling, loop.center(), loop.gyration());
+  for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+    PenSample sample;
+    if (pen.read(sample, monotonic_ns())) loop.step(sample.state.pose, dt);  // otherwise the part stays
+    pen.publish(loop.report().proxy, tick, sample.state.sequence, monotonic_ns(), loop.report().planes);
+  }
+}
