@@ -38,7 +38,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
     throw Error(path + ": does not fit this scene: the part would stand in another one for " +
                 std::to_string(r.scan.astray) + " of " + std::to_string(rows.size()) + " rows");
   if (progress) progress("asking for intersections", 0, 0);
-  r.findings = find(r.file, rows, r.scan, r.center);
+  r.findings = find(r.file, rows, r.scan, r.center, r.recording.info.suspended);
   const Pose& end = r.file.script.pose(r.file.script.end());
   const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);

@@ -22,6 +22,7 @@ class Judge {
     decide();
     if (f_.goal) tell_goal();
     tell_intersections();
+    tell_suspended();
     tell_clearance();
     tell_loads();
     tell_contacts();
@@ -78,9 +79,17 @@ class Judge {
 
   void tell_intersections() {
     if (f_.intersecting == 0)
-      good("No pose intersects another part, by their triangles and asked independently of the run.");
+      good(std::string("No pose intersects another part") + (f_.suspended.empty() ? "" : " that was not suspended") +
+           ", by their triangles and asked independently of the run.");
     else
       bad(format("%lld poses intersect another part.", static_cast<long long>(f_.intersecting)));
+  }
+
+  void tell_suspended() {
+    if (f_.suspended.empty()) return;
+    bad("Suspended at the start, because the part began in them: " + f_.suspended +
+        ". Nothing kept the part out of them until it had come free; " +
+        format("%lld poses intersect them.", static_cast<long long>(f_.in_suspended)));
   }
 
   void tell_clearance() {

@@ -1,4 +1,5 @@
 // What a recording says, on recordings whose answers are known in closed form.
+#include <algorithm>
 #include <cmath>
 
 #include "bodies.hpp"
@@ -142,6 +143,15 @@ TEST_CASE("poses inside of a part are counted, and are no way") {
   CHECK(f.intersecting == 7);
   CHECK(f.clearances[0].distance == 0);
   CHECK(judge(f, scene, true, scan, "").outcome == review::Outcome::does_not_go);
+
+  // Those in a part that was suspended are told apart.
+  const Findings s = find(file, rows, scan, Vec3::Zero(), "no such part, floor");
+  CHECK(s.intersecting == 0);
+  CHECK(s.in_suspended == 7);
+  const Verdict v = judge(s, scene, true, scan, "");
+  CHECK(std::count_if(v.evidence.begin(), v.evidence.end(), [](const review::Evidence& e) {
+          return e.text.find("floor") != std::string::npos && e.text.find("7 poses") != std::string::npos;
+        }) == 1);
 }
 
 TEST_CASE("held from two sides") {

@@ -60,7 +60,7 @@ TEST_CASE("a custom resolver that answers nonsense cannot make parts intersect",
   HapticLoop loop(scene);
   const FclOracle oracle(scene);
   int touching = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 800; ++i) {
     const double t = 1e-3 * i;
     const Pose Y{rotation(0.5 * Vec3(std::sin(5 * t), std::sin(4 * t), 0)),
                  Vec3(0.03 * std::sin(3 * t), 0.005 * std::sin(7 * t), 0.03 - 0.04 * std::sin(2 * t))};
