@@ -3,11 +3,13 @@
 #   format        clang-format, nothing is changed
 #   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
 #   tsan          servo, shared memory, device and recorder with ThreadSanitizer
+#   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer; exit code 77 without)
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
 #   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
 #   determinism   the recording of a run in virtual time, of builds with -O2 and -O3
 #   fuzz          every fuzz target for TEGOTAE_FUZZ_SECONDS (20) seconds
-# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14.
+# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14
+# clang-22 libclang-rt-22-dev.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -51,6 +53,22 @@ check_tsan() {
   TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R '^(servo|device|record)$' --output-on-failure
 }
 
+check_rtsan() {
+  local clang="" n
+  for n in $(seq 30 -1 20); do
+    if command -v "clang++-$n" >/dev/null; then clang=clang-$n; break; fi
+  done
+  if [ -z "$clang" ]; then
+    echo "checks: rtsan is skipped: it needs clang 20 or newer with its runtime (clang-22 libclang-rt-22-dev)" >&2
+    exit 77
+  fi
+  # shellcheck disable=SC2046
+  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) \
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS="-fsanitize=realtime -O1 -g1"
+  cmake --build build/rtsan --parallel "$jobs" --target test_servo test_device
+  ctest --test-dir build/rtsan -R '^(servo|device)$' --output-on-failure
+}
+
 configure_clang() {
   local clang
   clang=$(first_of clang-14 clang)
@@ -87,8 +105,8 @@ check_determinism() {
 
 check_fuzz() { bash tests/fuzz/run.sh "${TEGOTAE_FUZZ_SECONDS:-20}"; }
 
-[ $# -gt 0 ] || fail "name a check: format asan tsan clang tidy determinism fuzz, or all"
-[ "$*" != all ] || set -- format tsan determinism clang tidy asan fuzz
+[ $# -gt 0 ] || fail "name a check: format asan tsan rtsan clang tidy determinism fuzz, or all"
+[ "$*" != all ] || set -- format tsan rtsan determinism clang tidy asan fuzz
 for name in "$@"; do
   declare -F "check_$name" >/dev/null || fail "unknown check $name"
   SECONDS=0

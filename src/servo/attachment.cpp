@@ -27,8 +27,8 @@ bool fresh(std::int64_t heartbeat_ns, std::int64_t now_ns) {
 }  // namespace
 
 Attachment::Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center,
-                       const Mat3& gyration)
-    : name_(segment_of(device)), coupling_(coupling), center_(center), gyration_(gyration) {
+                       const Mat3& gyration, double scale)
+    : name_(segment_of(device)), coupling_(coupling), center_(center), gyration_(gyration), scale_(scale) {
   attach();
 }
 
@@ -37,6 +37,7 @@ void Attachment::attach() {
   link_.reset();
   channel_.emplace(std::move(channel));
   link_.emplace(*channel_, coupling_, center_, gyration_);
+  link_->set_scale(scale_);
   homed_ = false;
 }
 

@@ -80,7 +80,7 @@ struct Servo::Impl {
     return s;
   }
 
-  void publish_statistics() noexcept {
+  void publish_statistics() noexcept TEGOTAE_NONBLOCKING {
     const ServoStatistics s = statistics();
     tegotae_shm_statistics out{};
     out.ticks = s.ticks;

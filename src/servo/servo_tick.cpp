@@ -103,7 +103,7 @@ Wrench ServoTick::coupling(double& stored) noexcept {
   return coupling_wrench(felt, x, mapping_.Y(), mapping_.velocity(), command_.center);
 }
 
-void ServoTick::run(std::int64_t now_ns) noexcept {
+void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
   SafetyInput in;
   in.now_ns = now_ns;
   in.dt = ticks_ == 0 ? 1.0 / settings_.rate_hz : 1e-9 * static_cast<double>(now_ns - last_ns_);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/nonblocking.hpp"
 #include "coupling/local_model.hpp"
 #include "coupling/passivity.hpp"
 #include "servo/pen_mapping.hpp"
@@ -19,7 +20,7 @@ class ServoTick {
   /// Keeps references. Throws Error for a setting out of range.
   ServoTick(Device& device, Channel& channel, const ServoSettings& settings);
   /// Never allocates, waits, locks or throws.
-  void run(std::int64_t now_ns) noexcept;
+  void run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING;
 
   std::uint64_t ticks() const noexcept { return ticks_; }
   const std::array<std::uint64_t, TEGOTAE_SHM_REASONS>& force_off() const noexcept { return force_off_; }
@@ -28,7 +29,6 @@ class ServoTick {
   void read_application() noexcept;
   /// Tells the device how far it is ahead of the part while an application is there.
   void tell_lead(std::int64_t now_ns) noexcept;
-  ProxyState proxy() const noexcept;
   /// Wrench on the pen that the coupling asks for; sets what its springs store.
   Wrench coupling(double& stored) noexcept;
   void follow_pen(const DeviceState& pen, SafetyInput& in) noexcept;

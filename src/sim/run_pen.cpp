@@ -72,7 +72,7 @@ class LocalPen final : public RunPen {
 class RemotePen final : public RunPen {
  public:
   RemotePen(const std::string& device, const SceneFile& file, const HapticLoop& loop)
-      : attachment_(device, file.scene.coupling, loop.center(), loop.gyration()) {}
+      : attachment_(device, file.scene.coupling, loop.center(), loop.gyration(), file.scale) {}
 
   void start() override {}
   void stop() override {}

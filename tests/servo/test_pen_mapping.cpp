@@ -1,9 +1,13 @@
+#include <unistd.h>
+
+#include <optional>
 #include <random>
 
 #include "catch.hpp"
 #include "puppet_device.hpp"
 #include "servo/pen_mapping.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/servo/attachment.hpp"
 
 using namespace tegotae;
 using test::engage;
@@ -212,4 +216,34 @@ TEST_CASE("a scale out of range is refused", "[servo]") {
   ContactLink link(channel, {}, Vec3::Zero());
   CHECK_THROWS_WITH(link.set_scale(0), Catch::Contains("scale"));
   CHECK_THROWS_WITH(link.set_scale(1e9), Catch::Contains("scale"));
+}
+
+TEST_CASE("an attachment keeps its scale over devices", "[servo]") {
+  const std::string name = "tegotae-scale-" + std::to_string(getpid());
+  PuppetDevice device;
+  std::optional<Attachment> pen;
+  std::int64_t now = 0;
+  for (int life = 0; life < 2; ++life) {
+    Channel channel = Channel::create(name);
+    Servo servo(device, channel, {});
+    device.state.pose = {};
+    if (!pen) pen.emplace("shm:" + name, CouplingSettings{}, Vec3::Zero(), Mat3::Zero(), 5);
+    ProxyState x;
+    x.X.p = Vec3(0.1, 0, 0);
+    PenSample sample;
+    const auto turn = [&] {
+      now += 200 * kMs;  // long enough for the next look for a device
+      servo.tick(now);
+      const bool there = pen->read(sample, now);
+      pen->publish(x, 0, 0, now);
+      return there;
+    };
+    bool there = false;
+    for (int i = 0; i < 5 && !there; ++i) there = turn();
+    REQUIRE(there);
+    device.state.pose.p = Vec3(0.001, 0, 0);
+    turn();
+    CHECK(turn());
+    CHECK(sample.state.pose.p.x() == Approx(0.1 + 5 * 0.001).epsilon(1e-12));
+  }
 }

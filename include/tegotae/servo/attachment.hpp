@@ -19,9 +19,9 @@ namespace tegotae TEGOTAE_EXPORT {
 class Attachment {
  public:
   /// `device` is "shm:NAME", the name of the segment; the others as ContactLink has them. Throws Error when there is no
-  /// such device, or another application has it.
+  /// such device, or another application has it, and when `scale` is out of range (see ContactLink::set_scale).
   Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center,
-             const Mat3& gyration = Mat3::Zero());
+             const Mat3& gyration = Mat3::Zero(), double scale = 1);
 
   /// The newest sample of the pen. False, and `pen` untouched, when there is none to follow: the device's heartbeat is
   /// older than 20 ms or its process gone (then it is looked for ten times a second, the only time that a call may take
@@ -46,6 +46,7 @@ class Attachment {
   CouplingSettings coupling_;
   Vec3 center_;
   Mat3 gyration_;
+  double scale_;
   std::optional<Channel> channel_;
   std::optional<ContactLink> link_;  // of channel_
   bool homed_ = false;               // the home command has been given to this device
