@@ -2,7 +2,7 @@
 # The checks beside the tests, by name: tests/checks.sh NAME... (or `all`). Each builds in build/NAME.
 #   format        clang-format, nothing is changed
 #   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
-#   tsan          servo, shared memory, device and recorder with ThreadSanitizer
+#   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
 #   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer; without, exit code 77 at the end)
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
 #   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
@@ -46,11 +46,12 @@ check_asan() {
 }
 
 check_tsan() {
+  local tests=(servo device record view)
   # shellcheck disable=SC2046
-  configure -S . -B build/tsan $(new_tree build/tsan) -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_CXX_FLAGS="-fsanitize=thread -O1 -g1" -DCMAKE_C_FLAGS="-fsanitize=thread -O1 -g1"
-  cmake --build build/tsan --parallel "$jobs" --target test_servo test_device test_record
-  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R '^(servo|device|record)$' --output-on-failure
+  configure -S . -B build/tsan $(new_tree build/tsan) -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG="-fsanitize=thread -O1 -g1" -DCMAKE_C_FLAGS_DEBUG="-fsanitize=thread -O1 -g1"
+  cmake --build build/tsan --parallel "$jobs" --target "${tests[@]/#/test_}"
+  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R "^($(IFS='|'; echo "${tests[*]}"))\$" --output-on-failure
 }
 
 check_rtsan() {
@@ -64,7 +65,7 @@ check_rtsan() {
   fi
   # shellcheck disable=SC2046
   CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS="-fsanitize=realtime -O1 -g1"
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-fsanitize=realtime -O1 -g1"
   cmake --build build/rtsan --parallel "$jobs" --target test_servo test_device
   ctest --test-dir build/rtsan -R '^(servo|device)$' --output-on-failure
 }
@@ -107,7 +108,7 @@ check_determinism() {
           build/$build/bin/tegotae run models/peg_in_hole_$ratio.toml --resolver $resolver --fast \
             --record build/o2/run.csv >/dev/null
           [ "$run" = alone ] || { kill "${busy[@]}"; wait "${busy[@]}" 2>/dev/null || true; }
-          sums+=("$(sha256sum <build/o2/run.csv)")
+          sums+=("$(sha256sum <build/o2/run.csv | cut -d ' ' -f 1)")
         done
       done
       echo "$ratio, $resolver: ${sums[0]}"
