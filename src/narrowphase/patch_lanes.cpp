@@ -1,6 +1,7 @@
 #include "narrowphase/patch_lanes.hpp"
 
-#if defined(__x86_64__) && defined(__ELF__)
+// Not with ThreadSanitizer: the function that chooses the clone runs, instrumented, before its runtime is there.
+#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_THREAD__)
 #define TEGOTAE_WIDE __attribute__((target_clones("default", "avx2", "avx512f")))
 #else
 #define TEGOTAE_WIDE
