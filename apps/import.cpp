@@ -93,7 +93,8 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
       ->type_name("DIR");
   import->add_option("--hold", options.hold, "Name of the part to hold")->type_name("NAME");
   import->add_flag("--split", options.assembly.split, "Make a part of every connected piece of a surface");
-  import->add_option("--unit", options.assembly.unit, "Unit of a file that does not tell it: m (default), cm, mm, um, in")
+  import
+      ->add_option("--unit", options.assembly.unit, "Unit of a file that does not tell it: m (default), cm, mm, um, in")
       ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
       ->type_name("UNIT");
   add_length_option(*import, "--chord", options.assembly.chord,

@@ -47,7 +47,7 @@ check_asan() {
 }
 
 check_tsan() {
-  local tests=(servo device record view)
+  local tests=(servo device record view change)
   # shellcheck disable=SC2046
   configure -S . -B build/tsan $(new_tree build/tsan) -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG="-fsanitize=thread -O1 -g1" -DCMAKE_C_FLAGS_DEBUG="-fsanitize=thread -O1 -g1"

@@ -6,11 +6,11 @@
 namespace tegotae::experiments {
 
 struct Options {
-  std::string name;           ///< one of names()
+  std::string name;                 ///< one of names()
   std::string out = "experiments";  ///< folder that the files are written to
-  int seeds = 0;              ///< runs of each kind that differ by their seed; 0: each experiment's own number
-  int threads = 0;            ///< 0: as many as the machine has
-  bool quick = false;         ///< fewer cases, for tests
+  int seeds = 0;                    ///< runs of each kind that differ by their seed; 0: each experiment's own number
+  int threads = 0;                  ///< 0: as many as the machine has
+  bool quick = false;               ///< fewer cases, for tests
 };
 
 /// "wall", "insertion", ..., "all".

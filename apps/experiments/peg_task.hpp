@@ -20,7 +20,7 @@ class PegTask {
   Scene scene_at(const Pose& start) const;
   /// What an operator is to do: begin 40 mm aside and over the hole, push to the bottom.
   InsertionTask task() const;
-  Vec3 tip() const;  ///< of the peg, m, its file frame
+  Vec3 tip() const;      ///< of the peg, m, its file frame
   double depth() const;  ///< of the hole, m
 
   /// How deep the peg in the pose X and the block are in each other, m: the deepest vertex of one in the other. Closed
@@ -43,13 +43,13 @@ class PegTask {
 
 /// One operator's attempt.
 struct Attempt {
-  bool reached = false;    ///< the center of mass came down to the surface
-  bool completed = false;  ///< the tip came to the bottom (0.5 mm)
-  double time = 0;         ///< from the tip's to the center of mass's reaching the surface, s; NaN when it did not
-  double time_to_bottom = 0;  ///< from the tip's reaching the surface to the bottom, s; NaN when it did not
-  double vibration = 0;    ///< RMS above 30 Hz of the center of mass since the tip's reaching the surface, m
+  bool reached = false;        ///< the center of mass came down to the surface
+  bool completed = false;      ///< the tip came to the bottom (0.5 mm)
+  double time = 0;             ///< from the tip's to the center of mass's reaching the surface, s; NaN when it did not
+  double time_to_bottom = 0;   ///< from the tip's reaching the surface to the bottom, s; NaN when it did not
+  double vibration = 0;        ///< RMS above 30 Hz of the center of mass since the tip's reaching the surface, m
   double force_vibration = 0;  ///< the same of the force, N
-  double penetration = 0;  ///< deepest, m
+  double penetration = 0;      ///< deepest, m
   std::int64_t intersecting = 0;  ///< of the poses asked of FCL
   std::vector<Sample> samples{};
 };

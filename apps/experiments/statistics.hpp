@@ -13,8 +13,9 @@ struct Spread {
 /// NaN throughout for no value.
 Spread spread(const std::vector<double>& values);
 
-/// Root mean square of what changes faster than `hz` in values taken every `dt` seconds: the straight line is taken off,
-/// a Hann window keeps the ends from counting, and the spectrum above `hz` is summed (Parseval). 0 below eight values.
+/// Root mean square of what changes faster than `hz` in values taken every `dt` seconds: the straight line is taken
+/// off, a Hann window keeps the ends from counting, and the spectrum above `hz` is summed (Parseval). 0 below eight
+/// values.
 double rms_above(const std::vector<double>& values, double dt, double hz);
 /// The same of the length of a vector: root of the sum of the squares of its coordinates.
 double rms_above(const std::vector<Vec3>& values, double dt, double hz);

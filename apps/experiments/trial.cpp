@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "tegotae/resolve/resolver.hpp"
 #include "sim/pose_check.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"

@@ -20,8 +20,9 @@ struct Sample {
   int contacts = 0;
 };
 
-/// Runs the scene in virtual time with servo, safety chain and simulated pen, 1 kHz, as `tegotae run` does, but with any
-/// hand. `op` is shown the held part in every tick when it is not null. Ends after `seconds` or when `done` says so.
+/// Runs the scene in virtual time with servo, safety chain and simulated pen, 1 kHz, as `tegotae run` does, but with
+/// any hand. `op` is shown the held part in every tick when it is not null. Ends after `seconds` or when `done` says
+/// so.
 std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen, HandIntent& hand, Operator* op,
                               double seconds, const std::function<bool(const Sample&)>& done);
 

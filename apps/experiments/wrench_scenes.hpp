@@ -22,8 +22,8 @@ struct WrenchScene {
   std::vector<Probe> probes;
 };
 
-/// A sphere in spherical and cylindrical sockets, a cone on a block, a pin in a slot, a square shaft in its socket, pushed
-/// and turned by the pen in about `probes` ways each.
+/// A sphere in spherical and cylindrical sockets, a cone on a block, a pin in a slot, a square shaft in its socket,
+/// pushed and turned by the pen in about `probes` ways each.
 std::vector<WrenchScene> wrench_scenes(int probes);
 
 }  // namespace tegotae::experiments

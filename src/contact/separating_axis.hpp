@@ -15,8 +15,8 @@ struct AxisLimit {
 };
 
 /// Among the axes that separate triangle `a` from `b` by at least `clearance` (m; their normals, the cross products of
-/// their edges, the direction of their closest points) the one on which A keeps most of its gap when its corners move by
-/// `motion`.
+/// their edges, the direction of their closest points) the one on which A keeps most of its gap when its corners move
+/// by `motion`.
 AxisLimit least_limiting_axis(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                               const std::array<Vec3, 3>& motion, double clearance);
 

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
 
-// How often the hand compares what it means to do with what it feels, s; reflexes through the spinal cord take 30 to 50.
+// How often the hand compares what it means to do with what it feels, s; reflexes through the spinal cord take 30
+// to 50.
 constexpr double kFeelPeriod = 0.05;
 // Every so many of them it looks and aims again.
 constexpr int kLookEvery = 4;
@@ -26,8 +27,9 @@ constexpr double kEyeGain = 0.3;
 constexpr double kYield = 0.15;
 // Offset (m) and tilt (rad) with which a person goes down on a hole without aiming again: the rim will guide the tip.
 constexpr double kAcceptedOffset = 2e-3, kAcceptedTilt = 0.12;
-// Where the hand wants tip and part never leads what it feels by more than its push takes on the grip's springs, sideways
-// as far as into the hole, turning with this lever (m): one who cannot turn a part does not turn the hand ever further.
+// Where the hand wants tip and part never leads what it feels by more than its push takes on the grip's springs,
+// sideways as far as into the hole, turning with this lever (m): one who cannot turn a part does not turn the hand ever
+// further.
 constexpr double kLever = 0.04;
 // Looks in the air after which it goes down anyhow.
 constexpr int kMostLooks = 6;
@@ -172,8 +174,8 @@ struct Operator::Impl {
       hold_near(felt.aim, kTilt, profile.press * kLever / profile.hand.torsional_stiffness, target);
     }
     double& wiggle = target[kWiggle];
-    wiggle = stuck ? std::clamp(kWiggleGrowth * wiggle, profile.wiggle, kMostWiggle * profile.wiggle)
-                   : kWiggleFade * wiggle;
+    wiggle =
+        stuck ? std::clamp(kWiggleGrowth * wiggle, profile.wiggle, kMostWiggle * profile.wiggle) : kWiggleFade * wiggle;
     aim_plan = Aim(now, target, t, kShortestPiece);
   }
 

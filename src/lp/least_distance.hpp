@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "tegotae/lp/low_rank_matrix.hpp"
 #include "lp/row_workspace.hpp"
 #include "lp/solution.hpp"
 #include "lp/span_basis.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 
 namespace tegotae {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "tegotae/lp/low_rank_matrix.hpp"
 #include "lp/pricing.hpp"
+#include "tegotae/lp/low_rank_matrix.hpp"
 
 namespace tegotae {
 

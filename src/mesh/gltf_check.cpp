@@ -114,14 +114,29 @@ class GltfCheck {
   std::uint64_t element_bytes(const json& accessor, const std::string& self) const {
     std::uint64_t scalar = 0, n = 0;
     switch (accessor.at("componentType").get<int>()) {
-      case 5120: case 5121: scalar = 1; break;
-      case 5122: case 5123: scalar = 2; break;
-      case 5125: case 5126: scalar = 4; break;
-      default: refuse("damaged: " + self + " has an unknown componentType");
+      case 5120:
+      case 5121:
+        scalar = 1;
+        break;
+      case 5122:
+      case 5123:
+        scalar = 2;
+        break;
+      case 5125:
+      case 5126:
+        scalar = 4;
+        break;
+      default:
+        refuse("damaged: " + self + " has an unknown componentType");
     }
     const auto type = accessor.at("type").get<std::string>();
-    for (const auto& [name, numbers] : {std::pair<const char*, int>{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3},
-                                        {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}})
+    for (const auto& [name, numbers] : {std::pair<const char*, int>{"SCALAR", 1},
+                                        {"VEC2", 2},
+                                        {"VEC3", 3},
+                                        {"VEC4", 4},
+                                        {"MAT2", 4},
+                                        {"MAT3", 9},
+                                        {"MAT4", 16}})
       if (type == name) n = static_cast<std::uint64_t>(numbers);
     if (n == 0) refuse("damaged: " + self + " has an unknown type " + type);
     return scalar * n;

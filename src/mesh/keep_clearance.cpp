@@ -96,9 +96,8 @@ class Mover {
   /// Half of the widest angle that an edge of a facet spans, seen from the axis.
   double widest_half_angle(const Cylinder& c) const {
     double widest = 0;
-    for_edges(c, [&](const Vec3& a, const Vec3& b) {
-      widest = std::max(widest, std::atan2(a.cross(b).norm(), a.dot(b)));
-    });
+    for_edges(
+        c, [&](const Vec3& a, const Vec3& b) { widest = std::max(widest, std::atan2(a.cross(b).norm(), a.dot(b))); });
     return std::min(0.5 * widest, 1.5);
   }
 
@@ -182,7 +181,8 @@ class Mover {
         for (const std::uint32_t i : v)
           report.bent = std::max(report.bent, std::abs(faces_[f].axis.dot(mesh_.vertices[i] - before[i])));
         const Vec3 was = (before[v[1]] - before[v[0]]).cross(before[v[2]] - before[v[0]]);
-        const Vec3 is = (mesh_.vertices[v[1]] - mesh_.vertices[v[0]]).cross(mesh_.vertices[v[2]] - mesh_.vertices[v[0]]);
+        const Vec3 is =
+            (mesh_.vertices[v[1]] - mesh_.vertices[v[0]]).cross(mesh_.vertices[v[2]] - mesh_.vertices[v[0]]);
         report.turned += was.dot(is) < 0;
       }
     }

@@ -41,8 +41,7 @@ bool mate(const Placed& a, const Placed& b) {
   if (a.cad->hole == b.cad->hole) return false;
   const double room = kLength + kShare * std::max(a.cad->radius, b.cad->radius);
   const Vec3 between = b.point - a.point;
-  if (a.cad->kind == FaceKind::sphere)
-    return between.norm() < room && std::abs(a.cad->radius - b.cad->radius) < room;
+  if (a.cad->kind == FaceKind::sphere) return between.norm() < room && std::abs(a.cad->radius - b.cad->radius) < room;
   if (a.axis.cross(b.axis).norm() > kAngle) return false;
   if (a.cad->kind == FaceKind::torus && between.norm() > room) return false;
   if ((between - a.axis * a.axis.dot(between)).norm() > room) return false;
@@ -54,9 +53,7 @@ bool mate(const Placed& a, const Placed& b) {
 std::vector<FacePairing> mating_faces(const std::vector<std::vector<CadFace>>& faces,
                                       const std::vector<AssemblyPart>& parts) {
   std::vector<Placed> all = placed_faces(faces, parts);
-  std::sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) {
-    return a.box.min().x() < b.box.min().x();
-  });
+  std::sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) { return a.box.min().x() < b.box.min().x(); });
   std::vector<FacePairing> pairs;
   for (std::size_t i = 0; i < all.size(); ++i) {
     Eigen::AlignedBox3d reach = all[i].box;

@@ -40,8 +40,8 @@ struct TessellatedShape {
 /// What keep_clearance could not do.
 struct ClearanceReport {
   double into_clearance = 0;  ///< m: how far a facet of a cylinder still reaches past the true surface
-  double bent = 0;            ///< m: how far a corner of a plane was moved off it (where a hole runs into it tangentially)
-  std::size_t turned = 0;     ///< triangles of planes that a moved corner turned over
+  double bent = 0;         ///< m: how far a corner of a plane was moved off it (where a hole runs into it tangentially)
+  std::size_t turned = 0;  ///< triangles of planes that a moved corner turned over
 };
 
 /// Moves the corners of round holes outwards along the radius until their facets touch the cylinder from outside, and

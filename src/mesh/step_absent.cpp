@@ -8,7 +8,8 @@ bool reads_step() {
 }
 
 Assembly read_step(const std::string& path, const AssemblyOptions&) {
-  throw Error(path + ": this build reads no STEP files: install OpenCASCADE (libocct-data-exchange-dev) and build again");
+  throw Error(path +
+              ": this build reads no STEP files: install OpenCASCADE (libocct-data-exchange-dev) and build again");
 }
 
 }  // namespace tegotae

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::string_view kMagic = "ISO-10303-21";
 // Beginnings of the schema names of AP203, AP214 and AP242 in all their editions.
-constexpr std::array<std::string_view, 6> kSchemas = {"CONFIG_CONTROL_DESIGN", "AP203", "CCD_CLA", "AUTOMOTIVE_DESIGN",
-                                                      "AP214",                 "AP242"};
+constexpr std::array<std::string_view, 6> kSchemas = {"CONFIG_CONTROL_DESIGN", "AP203", "CCD_CLA",
+                                                      "AUTOMOTIVE_DESIGN",     "AP214", "AP242"};
 
 bool known_schema(std::string_view name) {
   return std::any_of(kSchemas.begin(), kSchemas.end(),

@@ -373,8 +373,8 @@ class StepReader {
       BRepGProp::SurfaceProperties(sub, area);
       areas[*color] += area.Mass();
     }
-    const auto largest = std::max_element(areas.begin(), areas.end(),
-                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto largest =
+        std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     return largest == areas.end() || shape.IsNull() ? std::nullopt : std::optional<Color>(largest->first);
   }
 
@@ -400,10 +400,14 @@ class StepReader {
 
   static std::string names(FaceKind kind) {
     switch (kind) {
-      case FaceKind::cone: return "cones";
-      case FaceKind::sphere: return "spheres";
-      case FaceKind::torus: return "tori";
-      default: return "free-form faces";
+      case FaceKind::cone:
+        return "cones";
+      case FaceKind::sphere:
+        return "spheres";
+      case FaceKind::torus:
+        return "tori";
+      default:
+        return "free-form faces";
     }
   }
 
@@ -429,11 +433,11 @@ class StepReader {
   }
 
   void note(const std::string& self, const ClearanceReport& kept) {
-    const auto micrometers = [](double m) { 
+    const auto micrometers = [](double m) {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g um", 1e6 * m);
       return std::string(text);
-     };
+    };
     if (kept.into_clearance > 0)
       assembly_.notes.push_back(self + ": facets of a cylinder reach " + micrometers(kept.into_clearance) +
                                 " into a clearance");

@@ -28,8 +28,7 @@ void append(std::string& bytes, T value) {
 void write_ply(const TriangleMesh& mesh, const std::string& path, double unit_in_m) {
   std::string bytes = "ply\nformat binary_big_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(mesh.triangles.size()) +
-                      "\nproperty list uchar int vertex_indices\nend_header\n";
+                      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
   for (const Vec3& p : mesh.vertices) {
     for (int k = 0; k < 3; ++k) {

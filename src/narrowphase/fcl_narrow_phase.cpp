@@ -23,8 +23,8 @@ struct FclNarrowPhase::State {
     request.num_max_contacts = static_cast<std::size_t>(most);
     request.enable_contact = false;
     result.clear();
-    return static_cast<int>(
-        fcl::collide(held.get(), fcl_transform(X_BA), fixed[part].get(), fcl::Transform3d::Identity(), request, result));
+    return static_cast<int>(fcl::collide(held.get(), fcl_transform(X_BA), fixed[part].get(),
+                                         fcl::Transform3d::Identity(), request, result));
   }
 };
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "resolve/metric.hpp"
-#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/core/clock.hpp"
+#include "tegotae/resolve/resolver.hpp"
 
 namespace tegotae {
 namespace {

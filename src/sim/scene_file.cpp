@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "tegotae/resolve/resolver.hpp"
 #include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/servo/mapping.hpp"
 
 namespace tegotae {

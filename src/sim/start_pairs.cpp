@@ -12,8 +12,8 @@
 namespace tegotae {
 namespace {
 
-// Beyond kGapFloor (m): the certificate's fast checks are rounded by 0.05 um in a part of 100 mm, and pairs without that
-// to spare are searched one by one, all of a seat in every tick.
+// Beyond kGapFloor (m): the certificate's fast checks are rounded by 0.05 um in a part of 100 mm, and pairs without
+// that to spare are searched one by one, all of a seat in every tick.
 constexpr double kRoom = 2e-7;
 // Of a gap below kGapFloor, what motions must leave.
 constexpr double kKeepShare = 0.5;

@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the order in which they build on each other.
-const std::vector<std::string> kParts = {"core",    "mesh",    "device",   "record", "narrowphase",
-                                         "contact", "lp", "resolve", "coupling", "servo",  "sim"};
+const std::vector<std::string> kParts = {"core", "mesh",    "device",   "record", "narrowphase", "contact",
+                                         "lp",   "resolve", "coupling", "servo",  "sim"};
 
 bool starts_with(const std::string& s, const std::string& prefix) {
   return s.rfind(prefix, 0) == 0;

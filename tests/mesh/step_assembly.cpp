@@ -42,8 +42,7 @@ TopoDS_Shape plate(const StepSizes& s) {
 }
 
 TopoDS_Shape bushing(const StepSizes& s) {
-  return cut(cylinder(0, 0, s.bushing_outer, s.bushing_length),
-             cylinder(0, -1, s.bushing_inner, s.bushing_length + 2));
+  return cut(cylinder(0, 0, s.bushing_outer, s.bushing_length), cylinder(0, -1, s.bushing_inner, s.bushing_length + 2));
 }
 
 /// Lies on the plate; with two wide windows for the shafts and holes for the dowels.

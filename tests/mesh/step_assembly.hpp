@@ -8,16 +8,16 @@ namespace tegotae::test {
 /// Sizes in mm: fits of 20 mm H7/g6 (hole +0..+21 µm, shaft -7..-20 µm) and 6 mm H7/m6-like dowels, at the tightest.
 struct StepSizes {
   double plate_x = 110, plate_y = 60, plate_z = 15;
-  double bore = 26;             ///< of the plate, for the bushings
+  double bore = 26;              ///< of the plate, for the bushings
   double bushing_outer = 25.98;  ///< with a clearance, so that everything starts free
-  double bushing_inner = 20.0;  ///< H7 at its least
+  double bushing_inner = 20.0;   ///< H7 at its least
   double bushing_length = 15;
-  double shaft = 19.993;        ///< g6 at its most
+  double shaft = 19.993;  ///< g6 at its most
   double shaft_length = 60;
-  double window = 31;           ///< of the cover, around bushing and shaft
+  double window = 31;  ///< of the cover, around bushing and shaft
   double dowel_hole = 6.0, dowel = 5.996, dowel_length = 14;
   double cover_z = 5;
-  double bore_at = 20;          ///< x of the two bores, on both sides of the middle
+  double bore_at = 20;  ///< x of the two bores, on both sides of the middle
   double dowel_at = 42;
 };
 

@@ -82,8 +82,7 @@ std::string glb(const std::string& nodes) {
 
 double volume(const TriangleMesh& mesh) {
   double v = 0;
-  for (const auto& t : mesh.triangles)
-    v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
   return v;
 }
 

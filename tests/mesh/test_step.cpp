@@ -31,8 +31,7 @@ const TriangleMesh& mesh_of(const Assembly& assembly, const std::string& name) {
 
 double volume(const TriangleMesh& mesh) {
   double v = 0;
-  for (const auto& t : mesh.triangles)
-    v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
   return v;
 }
 
@@ -91,8 +90,8 @@ TEST_CASE("a STEP assembly keeps names, tree, instances, places and colors in ev
     CHECK(a.shapes.size() == 5);
     std::vector<std::string> names;
     for (const AssemblyPart& p : a.parts) names.push_back(p.name);
-    CHECK(names == std::vector<std::string>{"Grundplatte", "Buchse links", "Buchse rechts", "Blech", "Stift",
-                                            "Stift_2", "Welle"});
+    CHECK(names == std::vector<std::string>{"Grundplatte", "Buchse links", "Buchse rechts", "Blech", "Stift", "Stift_2",
+                                            "Welle"});
     CHECK(part(a, "Buchse links").path == std::vector<std::string>{"Baugruppe", "Träger"});
     CHECK(part(a, "Stift_2").path == std::vector<std::string>{"Baugruppe", "Deckel"});
     CHECK(part(a, "Welle").path == std::vector<std::string>{"Baugruppe"});
@@ -160,10 +159,10 @@ TEST_CASE("tessellation never closes a nominal clearance, also after rounding to
       double x, radius;  // mm
       bool hole;
     };
-    const Case cases[] = {{"Grundplatte", -20, 13, true},      {"Grundplatte", 20, 13, true},
-                          {"Grundplatte", 42, 3, true},        {"Blech", -42, 3, true},
-                          {"Buchse links", 0, 10, true},       {"Buchse links", 0, 12.99, false},
-                          {"Welle", 0, 9.9965, false},         {"Stift", 0, 2.998, false}};
+    const Case cases[] = {{"Grundplatte", -20, 13, true}, {"Grundplatte", 20, 13, true},
+                          {"Grundplatte", 42, 3, true},   {"Blech", -42, 3, true},
+                          {"Buchse links", 0, 10, true},  {"Buchse links", 0, 12.99, false},
+                          {"Welle", 0, 9.9965, false},    {"Stift", 0, 2.998, false}};
     for (const Case& c : cases) {
       INFO(c.name << " " << c.radius << " chord " << chord);
       const TriangleMesh mesh = from_file(c.name);

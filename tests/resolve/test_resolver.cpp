@@ -1,8 +1,8 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "resolve/metric.hpp"
-#include "tegotae/resolve/resolver.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/resolve/resolver.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -21,6 +21,13 @@ using Catch::Matchers::Contains;
 
 namespace {
 
+// Instrumented code is too slow for any budget.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 const auto kBlock = shared(box(Vec3(0.02, 0.02, 0.02)));
 const auto kBoard = shared(box(Vec3(0.2, 0.2, 0.01)));
 
@@ -250,5 +257,5 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   CHECK(changes == kChanges);
   CHECK(intersecting == 0);
   CHECK(allocations == 0);
-  CHECK(1000 * late <= ticks);
+  if (!kSanitized) CHECK(1000 * late <= ticks);
 }
