@@ -65,10 +65,14 @@ check_rtsan() {
     return
   fi
   # shellcheck disable=SC2046
-  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) \
+  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) -DTEGOTAE_STEP=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=OFF \
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-fsanitize=realtime -O1 -g1"
   cmake --build build/rtsan --parallel "$jobs" --target test_servo test_device
-  ctest --test-dir build/rtsan -R '^(servo|device)$' --output-on-failure
+  build/rtsan/bin/test_device
+  build/rtsan/bin/test_servo '~*system call*'
+  # That one makes the servo call the system on purpose; the sanitizer must see it.
+  build/rtsan/bin/test_servo '*system call*' >build/rtsan/caught 2>&1 || true
+  grep -q 'RealtimeSanitizer: unsafe-library-call' build/rtsan/caught || fail "the sanitizer saw nothing"
 }
 
 configure_clang() {

@@ -12,6 +12,15 @@
 #include <cerrno>
 #include <cstddef>
 
+// The runtimes of these make system calls in every thread.
+#if defined(__SANITIZE_THREAD__)
+#define TEGOTAE_SANITIZER_CALLS 1
+#elif defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
+#define TEGOTAE_SANITIZER_CALLS 1
+#endif
+#endif
+
 namespace tegotae::test {
 
 namespace {
@@ -32,8 +41,8 @@ void on_refused(int, siginfo_t* info, void* context) {
 }  // namespace
 
 bool guard_system_calls() {
-#if defined(__SANITIZE_THREAD__)
-  return false;  // its runtime makes system calls in every thread
+#if defined(TEGOTAE_SANITIZER_CALLS)
+  return false;
 #endif
   struct sigaction action {};
   action.sa_sigaction = on_refused;

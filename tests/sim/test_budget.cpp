@@ -18,7 +18,8 @@ TEST_CASE("within any budget X stays free, and ticks that ran out of it say so",
   CAPTURE(sum.first_intersecting);
   CHECK(sum.intersecting == 0);
   CHECK(sum.infeasible == 0);
-  // An interrupt after the last look at the clock counts as the thread's time: one tick in ten thousand, never two here.
+  // An interrupt after the last look at the clock counts as the thread's time: one tick in ten thousand, never two
+  // here.
   CHECK(sum.late_unreported <= 1 + sum.ticks / 1000);
   // No machine searches a peg in its hole within a microsecond.
   if (options.budget == 1e-6 && name != "knots") CHECK(sum.cut > 0);
