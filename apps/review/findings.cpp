@@ -7,7 +7,6 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "review/spans.hpp"
-#include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
 
 namespace tegotae::review {
@@ -19,25 +18,10 @@ constexpr double kLeastTwoSided = 5e-3;  // s
 // A stall: slower than this over the window while the pen is ahead by so much, for so long.
 constexpr double kStallSpeed = 1e-3, kWindow = 0.05, kAhead = 0.5e-3, kLeastStall = 0.2;
 
-/// Takes the fixed parts whose names are in the list `names` out of `others`, and all other fixed parts out of
-/// `listed`.
-void split_off(const std::string& names, Scene& others, Scene& listed) {
-  const std::string list = ", " + names + ", ";
-  const auto is_listed = [&list](const Part& p) {
-    return !p.held && list.find(", " + p.name + ", ") != std::string::npos;
-  };
-  auto& o = others.parts;
-  o.erase(std::remove_if(o.begin(), o.end(), is_listed), o.end());
-  auto& l = listed.parts;
-  l.erase(std::remove_if(l.begin(), l.end(), [&](const Part& p) { return !p.held && !is_listed(p); }), l.end());
-}
-
 class Finder {
  public:
-  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-         const std::string& suspended)
-      : suspended_(suspended),
-        file_(file),
+  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center)
+      : file_(file),
         rows_(rows),
         scan_(scan),
         center_(center),
@@ -53,13 +37,7 @@ class Finder {
       out.turn += d.dr.norm();
     }
     if (has_goal()) out.goal = goal();
-    PoseCheck check;
-    for (const RecordFrame& row : rows_) check.add(row.x);
-    Scene kept_out = file_.scene, suspended = file_.scene;
-    split_off(suspended_, kept_out, suspended);
-    out.intersecting = check.count_intersecting(kept_out);
-    out.suspended = suspended_;
-    if (suspended.parts.size() > 1) out.in_suspended = check.count_intersecting(suspended);
+    out.start = find_start(file_.scene, rows_, scan_);
     out.clearances = clearances();
     out.contacts = contacts();
     out.two_sided = two_sided();
@@ -242,7 +220,6 @@ class Finder {
     return out;
   }
 
-  std::string suspended_;
   const SceneFile& file_;
   const std::vector<RecordFrame>& rows_;
   const Scan& scan_;
@@ -253,9 +230,8 @@ class Finder {
 
 }  // namespace
 
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-              const std::string& suspended) {
-  return Finder(file, rows, scan, center, suspended).all();
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center) {
+  return Finder(file, rows, scan, center).all();
 }
 
 }  // namespace tegotae::review

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "review/path_scan.hpp"
+#include "review/start_findings.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
 namespace tegotae::review {
@@ -76,9 +77,7 @@ struct Findings {
   double seconds = 0;
   double way = 0, turn = 0;  ///< that the center of mass went and the part turned, m, rad
   std::optional<GoalFindings> goal;
-  std::int64_t intersecting = 0;          ///< poses that intersect another part, by FCL; suspended ones left out
-  std::string suspended;                  ///< names of the parts that were suspended at the start
-  std::int64_t in_suspended = 0;          ///< poses that intersect one of these
+  StartFindings start;                    ///< what it touched or overlapped at the start, and poses that intersect
   std::vector<PartClearance> clearances;  ///< the closest first
   std::vector<ContactEpisode> contacts;
   std::vector<TwoSidedEpisode> two_sided;
@@ -87,8 +86,6 @@ struct Findings {
 };
 
 /// `file`: the scene with the held part where the recording begins, and as script where it was to go.
-/// `suspended`: RecordingInfo::suspended.
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-              const std::string& suspended = {});
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center);
 
 }  // namespace tegotae::review

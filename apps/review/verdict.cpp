@@ -22,7 +22,7 @@ class Judge {
     decide();
     if (f_.goal) tell_goal();
     tell_intersections();
-    tell_suspended();
+    tell_start();
     tell_clearance();
     tell_loads();
     tell_contacts();
@@ -39,9 +39,14 @@ class Judge {
   void decide() {
     const char* goes = inwards_ ? "goes in" : "comes out";
     const char* go = inwards_ ? "go in" : "come out";
-    if (f_.intersecting > 0) {
+    const auto deeper = std::find_if(f_.start.pairs.begin(), f_.start.pairs.end(), is_too_deep);
+    if (f_.start.intersecting > 0) {
       v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(f_.intersecting) + " poses intersect other parts: no way for a rigid part";
+      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: no way for a rigid part";
+    } else if (deeper != f_.start.pairs.end()) {
+      v_.outcome = Outcome::does_not_go;
+      v_.headline = std::to_string(deeper->deeper) + " poses reach deeper into " + name(*deeper) +
+                    " than at the start: no way for a rigid part";
     } else if (!f_.goal) {
       v_.headline = "A way of " + length_text(f_.way) + " without a goal";
     } else if (f_.goal->reached) {
@@ -77,19 +82,38 @@ class Judge {
     add(g.reached ? Evidence::Kind::good : Evidence::Kind::bad, text);
   }
 
+  const std::string& name(const StartFinding& f) const { return scene_.parts[f.pair.part].name; }
+  static bool is_too_deep(const StartFinding& f) { return f.pair.state == PairState::relieved && f.deeper > 0; }
+  static bool was_active(const StartFinding& f) { return f.pair.state == PairState::active; }
+
   void tell_intersections() {
-    if (f_.intersecting == 0)
-      good(std::string("No pose intersects another part") + (f_.suspended.empty() ? "" : " that was not suspended") +
+    const auto& pairs = f_.start.pairs;
+    if (f_.start.intersecting == 0)
+      good(std::string("No pose intersects another part") +
+           (std::all_of(pairs.begin(), pairs.end(), was_active) ? "" : " that was free of it") +
            ", by their triangles and asked independently of the run.");
     else
-      bad(format("%lld poses intersect another part.", static_cast<long long>(f_.intersecting)));
+      bad(format("%lld poses intersect another part.", static_cast<long long>(f_.start.intersecting)));
   }
 
-  void tell_suspended() {
-    if (f_.suspended.empty()) return;
-    bad("Suspended at the start, because the part began in them: " + f_.suspended +
-        ". Nothing kept the part out of them until it had come free; " +
-        format("%lld poses intersect them.", static_cast<long long>(f_.in_suspended)));
+  void tell_start() {
+    std::vector<std::size_t> touching;
+    for (const StartFinding& f : f_.start.pairs)
+      if (was_active(f)) touching.push_back(f.pair.part);
+    if (!touching.empty())
+      plain("Touching at the start: " + names_text(touching, scene_) +
+            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " off." : "."));
+    for (const StartFinding& f : f_.start.pairs) {
+      const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
+      const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
+      if (f.pair.state == PairState::suspended)
+        bad("Suspended" + until + ", because the part began in it: " + name(f) + ". Nothing kept the part out of it; " +
+            poses + " intersect it.");
+      if (f.pair.state == PairState::relieved)
+        add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
+            "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +
+                (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
+    }
   }
 
   void tell_clearance() {

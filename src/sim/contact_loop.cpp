@@ -31,6 +31,10 @@ constexpr int kMostResolves = 6;
 constexpr int kMostHalvings = 4;
 // Share of the kept gap by which one that is too small recovers in a piece.
 constexpr double kRecovery = 0.4;
+// Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
+// room no motion may keep all gaps to the last bit. Where there is none, gaps may be lost by this share of the wanted
+// motion.
+constexpr double kNormalNoise = 1e-9;
 // To recover gaps a part goes no farther away from the pen than this many kept gaps.
 constexpr double kMostRecovery = 30;
 // Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
@@ -268,14 +272,15 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   const auto& limits = at_.contacts->limits();
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
-  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
-  // an answer, because standing still is one.
-  for (const double recovery : {kRecovery * keep_, 0.0}) {
+  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it has an
+  // answer, because standing still is one, but for rounding.
+  for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
+    const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
-      const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] =
-          limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap : std::min(keep_, gap + lost) - gap;
+      const double lost = gap < kRecoverBelow * keep_ && limits[i].age != kCutAge ? recovery : 0;
+      const double keep = limits[i].age == kCutAge ? kCutMargin * kGapFloor : keep_;
+      bounds_[i] = std::min(keep, gap + lost) - gap - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
