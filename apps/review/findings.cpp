@@ -187,7 +187,6 @@ class Finder {
   Loads loads() const {
     Loads out;
     const SafetySettings& safety = file_.safety;
-    const auto& coupling = file_.scene.coupling;
     out.limit_force = std::min(safety.limits.force, file_.device.limits.force);
     out.limit_torque = std::min(safety.limits.torque, file_.device.limits.torque);
     const double a = safety.continuous_force, b = file_.device.continuous_force;
@@ -207,11 +206,9 @@ class Finder {
       };
       larger(r.wrench.force.norm(), out.force, &out.force_at);
       larger(r.wrench.torque.norm(), out.torque, &out.torque_at);
-      const Displacement lead = displacement(r.x, r.y, center_);
-      if (r.contacts > 0) {  // the coupling is off while nothing touches
-        larger(coupling.stiffness * lead.dp.norm(), out.asked_force, nullptr);
-        larger(coupling.torsional_stiffness * lead.dr.norm(), out.asked_torque, nullptr);
-      }
+      const Wrench asked = asked_wrench(r, file_.scene.coupling, center_);
+      larger(asked.force.norm(), out.asked_force, nullptr);
+      larger(asked.torque.norm(), out.asked_torque, nullptr);
       if (i == 0) continue;
       squares += share(i);
       while (r.t - rows_[oldest].t > out.thermal_time) squares -= share(oldest++);
@@ -229,6 +226,14 @@ class Finder {
 };
 
 }  // namespace
+
+Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, const Vec3& center) {
+  if (row.contacts == 0) return row.wrench;  // the coupling is off while nothing touches
+  const Displacement lead = displacement(row.x, row.y, center);
+  const Wrench springs{coupling.stiffness * lead.dp, coupling.torsional_stiffness * lead.dr};
+  return {springs.force.norm() > row.wrench.force.norm() ? springs.force : row.wrench.force,
+          springs.torque.norm() > row.wrench.torque.norm() ? springs.torque : row.wrench.torque};
+}
 
 Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center) {
   return Finder(file, rows, scan, center).all();

@@ -55,7 +55,7 @@ struct PartClearance {
 struct Loads {
   double force = 0, torque = 0;              ///< largest rendered
   double force_at = 0, torque_at = 0;        ///< s
-  double asked_force = 0, asked_torque = 0;  ///< largest of the coupling's springs, before any limit
+  double asked_force = 0, asked_torque = 0;  ///< largest of asked_wrench()
   double running_rms = 0;                    ///< largest RMS of the force over thermal_time (30 s) before each row
   double limit_force = 0, limit_torque = 0, continuous = 0,
          thermal_time = 0;  ///< what holds; continuous 0: not limited
@@ -84,6 +84,10 @@ struct Findings {
   std::vector<Stall> stalls;
   Loads loads;
 };
+
+/// What the coupling's springs asked for at a row before any limit, or what was rendered where that is more: the
+/// damper's share is not in a recording.
+Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, const Vec3& center);
 
 /// `file`: the scene with the held part where the recording begins, and as script where it was to go.
 Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center);

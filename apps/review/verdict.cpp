@@ -11,6 +11,10 @@ using apps::format;
 
 namespace {
 
+std::string times(std::size_t n) {
+  return n == 1 ? "once" : format("%zu times", n);
+}
+
 constexpr double kDegree = 0.017453292519943295;
 
 class Judge {
@@ -141,17 +145,17 @@ class Judge {
     if (!f_.two_sided.empty()) {
       double total = 0;
       for (const TwoSidedEpisode& e : f_.two_sided) total += e.span.length();
-      plain(format("Held from two sides %zu times, %.2f s together: it wedges when it is pressed.", f_.two_sided.size(),
-                   total));
+      plain("Held from two sides " + times(f_.two_sided.size()) +
+            format(", %.2f s together: it wedges when it is pressed.", total));
     }
     if (f_.stalls.empty()) return plain("It never stalled.");
     const auto longest = std::max_element(f_.stalls.begin(), f_.stalls.end(), [](const Stall& a, const Stall& b) {
       return a.span.length() < b.span.length();
     });
     const std::string by = longest->parts.empty() ? "" : " by " + names_text(longest->parts, scene_);
-    plain(format("Stalled %zu times, longest for %.2f s after %.2f s", f_.stalls.size(), longest->span.length(),
-                 longest->span.begin) +
-          by + " at " + place_text(longest->place_W) + ".");
+    plain("Stalled " + times(f_.stalls.size()) +
+          format(", longest for %.2f s after %.2f s", longest->span.length(), longest->span.begin) + by + " at " +
+          place_text(longest->place_W) + ".");
   }
 
   const Findings& f_;
@@ -170,7 +174,9 @@ std::string length_text(double meters) {
 }
 
 std::string place_text(const Vec3& p) {
-  return format("(%.2f, %.2f, %.2f) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
+  // Rounded first, so that there is no "-0.00".
+  const auto mm = [](double m) { return 0.01 * std::round(1e5 * m) + 0.0; };
+  return format("(%.2f, %.2f, %.2f) mm", mm(p.x()), mm(p.y()), mm(p.z()));
 }
 
 std::string seconds_text(double seconds) {

@@ -159,7 +159,7 @@ TEST_CASE("a block that presses on the floor does not go, and the script presses
   const Output o = run_program("tegotae", "review " + csv + " --script " + folder / "s.csv --out " + folder / "x.html");
   CHECK(o.code == 1);
   CHECK_THAT(o.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
-  CHECK_THAT(o.out, Contains("Stalled 1 times"));
+  CHECK_THAT(o.out, Contains("Stalled once"));
   CHECK_THAT(o.out, Contains("report: " + folder / "x.html"));
   const Output again = run_program(
       "tegotae", "run --fast --script " + folder / "s.csv --record " + folder / "again.csv " + folder / "scene.toml");
