@@ -8,6 +8,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "review/spans.hpp"
 #include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 
 namespace tegotae::review {
 namespace {

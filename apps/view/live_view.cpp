@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -26,13 +27,8 @@ constexpr int kMostSteps = 10'000;
 // A pen farther from the world's origin (m) is a mistake.
 constexpr double kFarthest = 100;
 
-std::size_t held_number(const Scene& scene) {
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-  return static_cast<std::size_t>(held - scene.parts.begin());
-}
-
 Vec3 center_of(const Scene& scene) {
-  const TriangleMesh& mesh = *scene.parts[held_number(scene)].mesh;
+  const TriangleMesh& mesh = *held_part(scene).mesh;
   return mass_properties(mesh, report(mesh).closed, scene.contact.density).center;
 }
 

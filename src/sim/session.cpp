@@ -12,6 +12,7 @@
 #include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
 #include "sim/run_pen.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recorder.hpp"
@@ -69,7 +70,8 @@ class Session {
       recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
     if (settings.progress) settings.progress->duration = duration_;
     waiting_ = loop_.report().suspended + loop_.report().relieved;
-    if (settings.on_start) settings.on_start(loop_.start());
+    summary_.stability = pen_->stability();
+    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability});
   }
 
   RunSummary run() {
@@ -83,7 +85,6 @@ class Session {
     summary_.servo = pen_->statistics();
     summary_.missing_realtime = pen_->missing_realtime();
     if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
-    summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
     const Pose& X = loop_.report().proxy.X;
@@ -91,7 +92,8 @@ class Session {
     summary_.depth_m = goal_.depth(X);
     summary_.completed = script_over && goal_.reached(X);
     summary_.start = loop_.start();
-    summary_.penetrating = check_.count_intersecting(file_.scene, summary_.start);
+    summary_.penetrating = check_.count_intersecting(file_.scene, summary_.start,
+                                                     settings_.progress ? &settings_.progress->checked : nullptr);
     return summary_;
   }
 
