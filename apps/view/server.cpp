@@ -110,6 +110,8 @@ struct Server::Impl {
       serve_page(connection);
     } else if (method == "GET" && uri == "/scene") {
       respond(connection, 200, "OK", "application/octet-stream", *source.scene());
+    } else if (method == "GET" && uri == "/parts" && source.frames()) {
+      respond(connection, 200, "OK", "application/json", source.parts());
     } else if (method == "GET" && uri == "/stream" && source.frames()) {
       serve_stream(connection);
     } else if (method == "GET" && uri == "/review") {
