@@ -237,7 +237,7 @@ void LiveView::edit(const json& command) {
       by_number_[number % kSlots].store(stretch.get(), std::memory_order_release);
       changing_ = true;
     }));
-  } catch (const Error& e) {
+  } catch (const std::exception& e) {
     changing_ = false;
     throw Error(std::string("Nothing was changed: ") + e.what());
   }

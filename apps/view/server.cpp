@@ -163,6 +163,8 @@ struct Server::Impl {
       respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
     } catch (const nlohmann::json::exception&) {
       respond(connection, 400, "Bad Request", text, "this is no command\n");
+    } catch (const std::exception& e) {
+      respond(connection, 500, "Internal Server Error", text, std::string(e.what()) + "\n");
     }
   }
 

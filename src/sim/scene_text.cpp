@@ -25,7 +25,7 @@ const Part* find(const Scene& scene, const std::string& name) {
 /// Makes the path under `key` one that is seen from `to` and not from `from`.
 void move_path(toml::table& t, const char* key, const fs::path& from, const fs::path& to) {
   const auto path = t[key].value<std::string>();
-  if (path) t.insert_or_assign(key, fs::proximate(fs::absolute(from / *path), fs::absolute(to)).generic_string());
+  if (path) t.insert_or_assign(key, fs::proximate(fs::absolute(from / *path), fs::absolute(to / ".")).generic_string());
 }
 
 void set_pose(toml::table& t, const Pose& X) {
