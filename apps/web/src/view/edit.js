@@ -63,6 +63,10 @@ export class Parts {
   }
 
   select(i) {
+    if (i !== this.selected && !this.busy) {
+      $("move").reset();
+      this.tell("");
+    }
     this.selected = i;
     this.stage.highlight(i);
     this.show();
@@ -90,11 +94,17 @@ export class Parts {
     this.setBusy(true);
     try {
       await this.edit(command);
-      this.onMessage("");
+      this.tell("");
     } catch (error) {
-      this.onMessage(error.message);
+      this.tell(error.message);
     }
     this.setBusy(false);
+  }
+
+  // "" takes back what this has told, and nothing else.
+  tell(text) {
+    if (text || this.told) this.onMessage(text);
+    this.told = text !== "";
   }
 
   setBusy(on) {
