@@ -98,6 +98,9 @@ void RunStretches::record(RunStretch& stretch, const StartReport& start) {
     stretch.recording = numbered(first, stretch.number + 1, first.extension()).string();
     stretch.scene_file = numbered(first, stretch.number + 1, ".toml").string();
     info.scene = fs::path(stretch.scene_file).filename().string();
+    std::error_code absent;
+    if (fs::equivalent(stretch.scene_file, file_.path, absent))
+      throw Error(stretch.scene_file + ": is the scene that runs, and would be replaced; record under another name");
     info.follows = fs::path(stretches_.back()->recording).filename().string();
     write_text(stretch.scene_file, scene_text(file_, stretch.scene, folder.string()));
   }
@@ -105,7 +108,7 @@ void RunStretches::record(RunStretch& stretch, const StartReport& start) {
     stretch.recorder.emplace(stretch.recording, settings_.real_time ? RecordMode::threaded : RecordMode::synchronous,
                              info);
   } catch (const Error&) {
-    if (stretch.number > 0) remove_files(stretch);
+    if (stretch.number > 0) fs::remove(stretch.scene_file);
     throw;
   }
 }
