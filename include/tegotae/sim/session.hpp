@@ -63,7 +63,7 @@ class RunEdits {
   RunEdits(const RunEdits&) = delete;
   RunEdits& operator=(const RunEdits&) = delete;
 
-  /// Goes on with `parts`, of which the one that is held now is taken to be where it is, and settings as they are. From
+  /// Goes on with `parts`, of which the one that is held now is put where it is now, and settings as they are. From
   /// any thread but the session's; returns the parts as they are when they are in force. `ready` is told the number
   /// that TickView::stretch will have then, before it has. Throws Error, and the run goes on as it was, when there is
   /// none, the parts cannot be held (see HapticLoop), their recording cannot be written, or what is new stands for a
