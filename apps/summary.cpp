@@ -79,7 +79,6 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   }
   if (!options.fast && !s.missing_realtime.empty())
     text += format("  %-12s ", "real time") + "not granted: " + s.missing_realtime + "\n";
-  if (!s.stability.empty()) text += format("  %-12s ", "stability") + s.stability + "\n";
   text += force_off_lines(s.servo);
   if (s.device_losses > 0)
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",

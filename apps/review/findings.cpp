@@ -9,6 +9,7 @@
 #include "review/spans.hpp"
 #include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 
 namespace tegotae::review {
 namespace {

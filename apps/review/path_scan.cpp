@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "view/follower.hpp"
 
 namespace tegotae::review {

@@ -1,7 +1,6 @@
 #include "review/review.hpp"
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/run_goal.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "view/follower.hpp"

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
@@ -26,12 +27,6 @@ namespace {
 // Frames that a page gets: more than pixels in a plot, and a file of some megabytes.
 constexpr std::size_t kMostFrames = 12'000;
 constexpr auto kPoll = std::chrono::milliseconds(50);
-
-Part& held_part(Scene& scene) {
-  for (Part& part : scene.parts)
-    if (part.held) return part;
-  throw Error("no part is held");
-}
 
 /// The frame of a row: recorded values, with the contacts found.
 void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& maker, Frame& frame) {

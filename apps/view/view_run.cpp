@@ -19,8 +19,8 @@ RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address
   announce(server.url());
   if (settings.seconds == 0) settings.seconds = kForever;
   settings.observer = &live;
-  settings.on_start = [&live, told = settings.on_start](const StartReport& start) {
-    live.started(start);
+  settings.on_start = [&live, told = settings.on_start](const RunStart& start) {
+    live.started(start.parts);
     if (told) told(start);
   };
   for (;;) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -84,7 +84,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
   least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
   X_ = at_.X;
-  last_Y_ = SceneParts(scene).held->pose;
+  last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMostBlocking);
   near_.reserve(at_.spheres.size());
 }
@@ -140,7 +140,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (report.pieces.empty()) report.pieces.push_back(X_);
     if (!late()) track();
   }
-  gather(report);
+  at_.tell(keep_ / kKeepShare, report);
   // Out of time, the limits may be those of an earlier pose.
   report.planes.count = 0;
   if (tracked_) {
@@ -316,21 +316,6 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
   return made > kStiction * still_ticks_ * error.squaredNorm();
-}
-
-void ContactLoop::gather(TickReport& report) const {
-  report.contacts = 0;
-  report.contact_gap = keep_ / kKeepShare;
-  report.gap = std::numeric_limits<double>::infinity();
-  for (const Contact& c : at_.contacts->limits()) {
-    if (c.age == kCutAge) continue;
-    report.contacts += c.gap <= report.contact_gap ? 1 : 0;
-    report.gap = std::min(report.gap, c.gap);
-  }
-  report.limits = static_cast<int>(at_.contacts->limits().size());
-  report.suspended = at_.start.suspended();
-  report.relieved = at_.start.relieved();
-  report.overflow = at_.contacts->overflow() > 0 || at_.check->overflow();
 }
 
 }  // namespace tegotae

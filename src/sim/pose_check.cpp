@@ -20,7 +20,8 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   poses_.push_back({X, freed});
 }
 
-std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start) const {
+std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start,
+                                           std::atomic<double>* share) const {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
   std::vector<const TriangleMesh*> meshes;
@@ -42,8 +43,9 @@ std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport
   FclNarrowPhase narrow(*held->mesh, meshes);
   const Sphere ball = bounding_sphere(*held->mesh);
   std::vector<std::uint32_t> near;
-  std::int64_t count = 0;
+  std::int64_t count = 0, asked = 0;
   for (const auto& [X, came_free] : poses_) {
+    if (share) share->store(static_cast<double>(asked++) / static_cast<double>(poses_.size()));
     spheres.query(X * ball.center, ball.radius, 0.0, near);
     for (const std::uint32_t i : near) {
       if (freed[i] > came_free || !narrow.intersects(i, fixed[i]->pose.inverse() * X)) continue;

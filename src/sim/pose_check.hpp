@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,9 @@ class PoseCheck {
   /// No pose comes any more.
   void shrink() { poses_.shrink_to_fit(); }
   /// How many of the kept poses intersect a fixed part of `scene`, pairs left out that had not come free by then.
-  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {}) const;
+  /// `share` (may be null) is told how far that is, from 0 to 1.
+  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {},
+                                  std::atomic<double>* share = nullptr) const;
 
  private:
   struct Kept {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "sim/scene_text.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -184,9 +184,9 @@ void RunStretches::end() {
   if (!failure_.empty()) throw Error(failure_);
 }
 
-std::int64_t RunStretches::penetrating() const {
+std::int64_t RunStretches::penetrating(std::atomic<double>* share) const {
   std::int64_t count = 0;
-  for (const auto& s : stretches_) count += s->check.count_intersecting(s->scene, s->start);
+  for (const auto& s : stretches_) count += s->check.count_intersecting(s->scene, s->start, share);
   return count;
 }
 

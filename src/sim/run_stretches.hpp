@@ -58,7 +58,8 @@ class RunStretches {
 
   // After end().
   const StartReport& start() const { return stretches_.front()->start; }  ///< of the run
-  std::int64_t penetrating() const;
+  /// `share`: see PoseCheck; from 0 to 1 for each stretch.
+  std::int64_t penetrating(std::atomic<double>* share) const;
   std::uint64_t dropped() const;
   std::vector<std::string> recordings() const;
 

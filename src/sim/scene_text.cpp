@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 

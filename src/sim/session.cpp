@@ -12,6 +12,7 @@
 #include "sim/run_goal.hpp"
 #include "sim/run_pen.hpp"
 #include "sim/run_stretches.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -63,7 +64,8 @@ class Session {
         duration_(duration(file, settings)),
         stretches_(file, settings, loop_) {
     if (settings.progress) settings.progress->duration = duration_;
-    if (settings.on_start) settings.on_start(loop_.start());
+    summary_.stability = pen_->stability();
+    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability});
   }
 
   RunSummary run() {
@@ -76,14 +78,13 @@ class Session {
     summary_.servo = pen_->statistics();
     summary_.missing_realtime = pen_->missing_realtime();
     if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
-    summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
     const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
     summary_.depth_m = goal_.depth(X_);
     summary_.completed = script_over && holds_first_ && goal_.reached(X_);
     summary_.start = stretches_.start();
-    summary_.penetrating = stretches_.penetrating();
+    summary_.penetrating = stretches_.penetrating(settings_.progress ? &settings_.progress->checked : nullptr);
     return summary_;
   }
 

@@ -25,6 +25,7 @@ struct RunProgress {
   std::atomic<int> contacts{0};     ///< TickReport::contacts of the newest tick
   std::atomic<double> force{0};     ///< N
   std::atomic<bool> device{true};   ///< the device is there
+  std::atomic<double> checked{-1};  ///< after the last tick: share of the poses that FCL was asked about; before: < 0
 };
 
 /// A tick of the contact loop, for whoever looks on.
@@ -77,6 +78,12 @@ class RunEdits {
   std::unique_ptr<State> state_;
 };
 
+/// What is known of a run before its first tick.
+struct RunStart {
+  const StartReport& parts;      ///< what the held part touches or overlaps
+  const std::string& stability;  ///< as RunSummary::stability
+};
+
 /// How run_session() runs a scene.
 struct RunSettings {
   /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
@@ -86,13 +93,13 @@ struct RunSettings {
   double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
   std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;  ///< name and version, for the recording's info
-  RunProgress* progress = nullptr;                   ///< written to while it runs; null: nobody looks
-  RunObserver* observer = nullptr;                   ///< asked around every tick; null: nobody looks
-  RunEdits* edits = nullptr;                         ///< changes the scene while it runs; null: it stays
-  HandIntent* hand = nullptr;                        ///< moves the simulated pen instead of the script
-  const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
-  std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
-  const std::atomic<bool>* stop = nullptr;           ///< set it to end the run early; the recording is kept
+  RunProgress* progress = nullptr;                ///< written to while it runs; null: nobody looks
+  RunObserver* observer = nullptr;                ///< asked around every tick; null: nobody looks
+  RunEdits* edits = nullptr;                      ///< changes the scene while it runs; null: it stays
+  HandIntent* hand = nullptr;                     ///< moves the simulated pen instead of the script
+  const HandGuide* guide = nullptr;               ///< leads the simulated hand away from the script
+  std::function<void(const RunStart&)> on_start;  ///< told before the first tick
+  const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording is kept
 };
 
 /// How a run went.
