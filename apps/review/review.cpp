@@ -4,6 +4,7 @@
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "view/follower.hpp"
+#include "view/replay.hpp"
 
 namespace tegotae::review {
 namespace {
@@ -13,6 +14,15 @@ double clearance_at(const Scene& scene, const Pose& X) {
   std::vector<Clearance> out;
   probe.at(X, 0, out);
   return out.empty() ? 0 : out.front().distance;
+}
+
+/// The recording may be a part of a run only.
+void tell_scene_changes(const RecordingInfo& info, Review& r) {
+  if (r.verdict.outcome == Outcome::does_not_go && r.findings.intersecting == 0 && !info.goes_on.empty()) {
+    r.verdict.outcome = Outcome::open;
+    r.verdict.headline = "It had not got there when the scene was changed";
+  }
+  for (const std::string& text : view::scene_changes(info)) r.verdict.evidence.push_back({Evidence::Kind::plain, text});
 }
 
 }  // namespace
@@ -41,6 +51,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   const Pose& end = r.file.script.pose(r.file.script.end());
   const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
+  tell_scene_changes(r.recording.info, r);
   return r;
 }
 

@@ -65,12 +65,14 @@ ContactSettings::ContactSettings()
 
 RunningScene::RunningScene(const Scene& scene)
     : held(held_part(checked(scene)).name),
+      held_mesh(held_part(scene).mesh),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
       loop(make_proxy_loop(scene, settings, mass)) {
   std::vector<Obstacle> list;
   for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});
   obstacles = std::make_shared<const std::vector<Obstacle>>(std::move(list));
+  keeps_out = settings.narrowphase == "patch" && (settings.custom_resolver || settings.resolver != "penalty");
 }
 
 void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_number) {
