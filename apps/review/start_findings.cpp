@@ -6,7 +6,7 @@
 #include "sim/inset.hpp"
 #include "sim/inside_look.hpp"
 #include "sim/pose_check.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "sim/start_pairs.hpp"
 
 namespace tegotae::review {
