@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/whole_number.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -167,7 +168,7 @@ void LiveView::command(const json& command) {
   if (what == "lead") return lead(command);
   if (what == "hold") return hold(command);
   if (what == "restart") return request(0, false);
-  if (!virtual_time_) throw Error("\"" + what + "\" needs virtual time (--fast)");
+  if (!virtual_time_) throw Error(json(what).dump() + " needs virtual time (--fast)");
   if (what == "pause") {
     paused_ = true;
   } else if (what == "play") {
@@ -175,12 +176,13 @@ void LiveView::command(const json& command) {
     paused_ = false;
   } else if (what == "step") {
     paused_ = true;
-    steps_ = std::min<std::int64_t>(steps_ + std::clamp(command.at("ticks").get<int>(), 1, kMostSteps), kMostSteps);
+    steps_ =
+        std::min<std::int64_t>(steps_ + std::clamp(whole_number<int>(command.at("ticks")), 1, kMostSteps), kMostSteps);
   } else if (what == "speed") {
     const json& factor = command.at("factor");
     speed_ = factor.is_null() ? std::numeric_limits<double>::infinity() : std::clamp(factor.get<double>(), 0.01, 10.0);
   } else {
-    throw Error("unknown command \"" + what + "\"");
+    throw Error("unknown command " + json(what).dump());
   }
 }
 
@@ -199,7 +201,7 @@ void LiveView::lead(const json& command) {
 }
 
 void LiveView::hold(const json& command) {
-  const auto part = command.at("part").get<std::int64_t>();
+  const auto part = whole_number<std::int64_t>(command.at("part"));
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (part < 0 || static_cast<std::size_t>(part) >= run_->parts) throw Error("there is no such part");

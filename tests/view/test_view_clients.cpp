@@ -53,11 +53,27 @@ TEST_CASE("commands are bounded and checked") {
   Served s({"peg_in_hole", "--view", "--fast", "--json"});
   CHECK(ask(s.port, command(s, R"({"do":"step","ticks":5})")) == 200);
   CHECK(ask(s.port, command(s, R"({"do":"lead","pose":[0,0,0.045,1,0,0,0]})")) == 200);
-  for (const char* bad : {"", "{", "[]", "null", "7", R"({"do":7})", R"({"do":"fly"})", R"({"do":"lead"})",
-                          R"({"do":"lead","pose":[1,2]})", R"({"do":"lead","pose":[1,2,3,0,0,0,0]})",
-                          R"({"do":"lead","pose":[1e300,2,3,1,0,0,0]})", R"({"do":"lead","pose":["a",2,3,1,0,0,0]})",
-                          R"({"do":"hold","part":99})", R"({"do":"hold","part":-1})", R"({"do":"step"})",
-                          R"({"do":"speed","factor":"x"})", R"([[[[[[1]]]]]])", "{\"do\":\"\xff\xfe\"}"}) {
+  for (const char* bad : {"",
+                          "{",
+                          "[]",
+                          "null",
+                          "7",
+                          R"({"do":7})",
+                          R"({"do":"fly"})",
+                          R"({"do":"lead"})",
+                          R"({"do":"lead","pose":[1,2]})",
+                          R"({"do":"lead","pose":[1,2,3,0,0,0,0]})",
+                          R"({"do":"lead","pose":[1e300,2,3,1,0,0,0]})",
+                          R"({"do":"lead","pose":["a",2,3,1,0,0,0]})",
+                          R"({"do":"hold","part":99})",
+                          R"({"do":"hold","part":-1})",
+                          R"({"do":"step"})",
+                          R"({"do":"step","ticks":1e300})",
+                          R"({"do":"hold","part":0.5})",
+                          R"({"do":"a\nb"})",
+                          R"({"do":"speed","factor":"x"})",
+                          R"([[[[[[1]]]]]])",
+                          "{\"do\":\"\xff\xfe\"}"}) {
     INFO(bad);
     CHECK(ask(s.port, command(s, bad)) == 400);
   }
