@@ -104,7 +104,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string input(reinterpret_cast<const char*>(data), size);
   const int before = source.asked;
   const std::string text = answer(port, replaced(replaced(input, "$T", token), "$H", host));
-  require(text.empty() || text.rfind("HTTP/", 0) == 0, "the answer is one of HTTP");
   if (input.find("$T") == std::string::npos) {
     require(source.asked == before, "nobody gets through without the token");
     require(text.find(token) == std::string::npos, "the token is not told");

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #include "puppet_device.hpp"
 #include "syscall_guard.hpp"
 #include "tegotae/core/clock.hpp"
@@ -18,7 +19,7 @@ using test::PuppetDevice;
 namespace {
 
 // Sanitizers make every memory access a call, and take mlockall to themselves without doing it.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(TEGOTAE_SANITIZED)
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
