@@ -6,10 +6,10 @@
 #   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
 #   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer)
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
-#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/; --quick: the 24 sources changed last
+#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/; --quick: the 12 sources changed last
 #   determinism   recordings of runs in virtual time: of builds with -O2 and -O3, idle and busy, the same bytes
 #   docs          every public name has a docstring (doxygen), links of the documents
-#   fuzz          every fuzz target for 20 seconds; --quick: 5
+#   fuzz          every fuzz target for 20 seconds; --quick: 3
 # A check whose tool is not installed is skipped: it says so, and the exit code at the end is 77. The tools (Debian 12)
 # are those of `.ci/setup.sh --checks`, and clang-22 libclang-rt-22-dev for rtsan.
 set -euo pipefail
@@ -21,8 +21,8 @@ if command -v ninja >/dev/null; then generator=(-G Ninja); fi
 fail() { echo "checks: $*" >&2; exit 1; }
 configure() { cmake --log-level=WARNING "$@" >/dev/null; }
 new_tree() { if [ -e "$1/CMakeCache.txt" ]; then echo; else echo "${generator[@]}"; fi; }
-# needs PACKAGE COMMAND...: false, with the reason in $skipped, when none of the commands is there; else the first that is, in
-# $tool.
+# needs PACKAGE COMMAND...: puts the first of the commands that is there into $tool; false, with the reason in $skipped,
+# when none is.
 needs() {
   local package=$1
   shift
@@ -51,9 +51,8 @@ check_format() {
   own_files cpp hpp h c | xargs "$tool" --dry-run --Werror
 }
 
-# Of the library's parts those that read what others wrote, walk over meshes by index, or share memory.
-asan_quick=(core mesh assembly step isolated_load lp device device_fault_garbage record recording patch patch_cache
-            feature contact resolve coupling broadphase servo scene_file change view)
+# What reads files, walks over meshes by index, or shares memory; the fuzz targets of the same tree do the rest.
+asan_quick=(core mesh assembly isolated_load step device record recording patch feature servo scene_file)
 check_asan() {
   local select=(--label-exclude '^(long|browser)$') targets=()
   needs_clang || return 0
@@ -128,7 +127,7 @@ check_tidy() {
   needs clang-14 clang-14 clang || return 0
   configure_clang
   needs clang-tidy-14 clang-tidy-14 clang-tidy || return 0
-  if $quick; then most=24; fi
+  if $quick; then most=12; fi
   sources_by_change | awk -v most=$most 'NR <= most' | xargs -P "$jobs" -n 4 "$tool" --quiet -p build/clang
 }
 
@@ -169,7 +168,7 @@ check_docs() {
 
 check_fuzz() {
   needs_clang || return 0
-  bash tests/fuzz/run.sh "$(if $quick; then echo 5; else echo 20; fi)"
+  bash tests/fuzz/run.sh "$(if $quick; then echo 3; else echo 20; fi)"
 }
 
 quick=false

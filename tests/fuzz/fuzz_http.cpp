@@ -103,8 +103,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const std::string token = server.url().substr(server.url().find('=') + 1);
   const std::string input(reinterpret_cast<const char*>(data), size);
   const int before = source.asked;
-  const std::string text = answer(port, replaced(replaced(input, "$T", token), "$H", host));
-  if (input.find("$T") == std::string::npos) {
+  const std::string sent = replaced(replaced(input, "$T", token), "$H", host);
+  const std::string text = answer(port, sent);
+  // A fuzzer that sees comparisons learns the token all the same, and an error may repeat what was sent.
+  if (sent.find(token) == std::string::npos) {
     require(source.asked == before, "nobody gets through without the token");
     require(text.find(token) == std::string::npos, "the token is not told");
   }

@@ -83,7 +83,7 @@ TEST_CASE("the servo's loop makes no system call but the clock's", "[servo]") {
   servo.start();
   run_contact(link, 1.0);
   if (device.guarded == 0) {
-    std::cout << "SKIPPED: no seccomp filter here, or ThreadSanitizer\n";
+    std::cout << "SKIPPED: no seccomp filter here, or a sanitizer\n";
     return;
   }
   // Before stop(): a thread that ends returns its stack to the system.
