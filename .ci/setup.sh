@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12, apt), configures and builds: setup.sh [--browser] [TARGET...] (everything without
-# targets). --browser adds what the tests need that are not daily: a browser, doxygen.
+# Installs what is missing (Debian 12, apt), configures and builds: setup.sh [--browser] [--checks] [TARGET...]
+# (everything without targets). --browser adds what the tests need that are not daily: a browser, doxygen. --checks adds
+# the tools of tests/checks.sh; without them its checks are skipped, so that one that cannot be had is no error.
 # Shared by apps/demo.sh and tests/run.sh; a second call only builds what changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,20 +12,28 @@ packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-de
           libspnav-dev libsdl2-dev libocct-data-exchange-dev pkg-config dpkg-dev file)
 
 browser=false
-if [ "${1:-}" = --browser ]; then
-  browser=true
-  shift
-  packages+=(doxygen)
-  # By command: Node may come from elsewhere, with npm in it.
-  for command in node:nodejs npm:npm chromium:chromium; do
-    command -v "${command%:*}" >/dev/null || packages+=("${command#*:}")
-  done
-fi
+tools=()
+for _ in 1 2; do
+  case ${1:-} in
+    --browser)
+      browser=true
+      packages+=(doxygen)
+      # By command: Node may come from elsewhere, with npm in it.
+      for command in node:nodejs npm:npm chromium:chromium; do
+        command -v "${command%:*}" >/dev/null || packages+=("${command#*:}")
+      done
+      shift ;;
+    --checks)
+      tools=(clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14 doxygen)
+      shift ;;
+  esac
+done
 
 fail() { echo "setup: $*" >&2; exit 1; }
 
-missing_packages() {
-  for p in "${packages[@]}"; do
+# missing_of PACKAGE...: those that are not installed.
+missing_of() {
+  for p in "$@"; do
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$p" 2>/dev/null)" = installed ] || echo "$p"
   done
 }
@@ -36,26 +45,34 @@ as_root() {
   fi
 }
 
-install_packages() {
+apt_install() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
     -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 "$@" </dev/null
 }
 
-if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
-  mapfile -t missing < <(missing_packages)
-  if [ "${#missing[@]}" -gt 0 ]; then
-    [ "$(id -u)" = 0 ] || command -v sudo >/dev/null ||
-      fail "run me as root, or install sudo: these packages are missing: ${missing[*]}"
-    echo "setup: installing ${missing[*]}"
-    log=$(mktemp)
-    trap 'rm -f "$log"' EXIT
-    # Package lists may be absent or out of date: refresh them only when the first try fails.
-    if ! install_packages "${missing[@]}" >"$log" 2>&1; then
-      as_root apt-get update -qq -o DPkg::Lock::Timeout=300 </dev/null || fail "apt-get update failed"
-      install_packages "${missing[@]}" >"$log" 2>&1 ||
-        { tail -n 20 "$log" >&2; fail "apt could not install ${missing[*]}"; }
-    fi
+# provide PACKAGE...: installs those that are missing; what apt says is in $log. Package lists may be absent or out of
+# date: they are refreshed only when the first try fails.
+provide() {
+  local missing
+  mapfile -t missing < <(missing_of "$@")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
+    echo "run me as root, or install sudo" >"$log"
+    return 1
   fi
+  echo "setup: installing ${missing[*]}"
+  apt_install "${missing[@]}" >"$log" 2>&1 && return
+  as_root apt-get update -qq -o DPkg::Lock::Timeout=300 </dev/null >"$log" 2>&1 || return
+  apt_install "${missing[@]}" >"$log" 2>&1
+}
+
+if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
+  log=$(mktemp)
+  trap 'rm -f "$log"' EXIT
+  provide "${packages[@]}" ||
+    { tail -n 20 "$log" >&2; fail "these packages are missing: $(missing_of "${packages[@]}" | xargs)"; }
+  provide "${tools[@]}" ||
+    echo "setup: no $(missing_of "${tools[@]}" | xargs): $(tail -n 1 "$log"); checks that need them are skipped" >&2
 else
   echo "setup: no apt here; going on with what is installed (needed: ${packages[*]})" >&2
 fi

@@ -4,14 +4,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TEGOTAE_SANITIZED_HEAP 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TEGOTAE_SANITIZED_HEAP 1
-#endif
+#include "core/sanitizers.hpp"
 
 namespace {
 
@@ -40,7 +33,7 @@ std::uint64_t AllocGuard::count() const noexcept {
 
 }  // namespace tegotae::test
 
-#ifdef TEGOTAE_SANITIZED_HEAP
+#ifdef TEGOTAE_SANITIZED
 
 // A sanitizer has its own malloc, which offers hooks.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),

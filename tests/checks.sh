@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# The checks beside the tests, by name: tests/checks.sh NAME... (or `all`). Each builds in build/NAME.
+# The checks beside the tests, by name: tests/checks.sh [--quick] NAME... (or `all`). Each builds in a folder of build/.
 #   format        clang-format, nothing is changed
-#   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
+#   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer, built by clang with
+#                 warnings as errors; --quick: the tests of what reads bytes and indexes memory
 #   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
-#   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer; without, exit code 77 at the end)
+#   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer)
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
-#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
+#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/; --quick: the 12 sources changed last
 #   determinism   recordings of runs in virtual time: of builds with -O2 and -O3, idle and busy, the same bytes
 #   docs          every public name has a docstring (doxygen), links of the documents
-#   fuzz          every fuzz target for TEGOTAE_FUZZ_SECONDS (20) seconds
-# Packages beside those of .ci/setup.sh (Debian 12): clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14
-# clang-22 libclang-rt-22-dev doxygen.
+#   fuzz          every fuzz target for 20 seconds; --quick: 3
+# A check whose tool is not installed is skipped: it says so, and the exit code at the end is 77. The tools (Debian 12)
+# are those of `.ci/setup.sh --checks`, and clang-22 libclang-rt-22-dev for rtsan.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,12 +21,23 @@ if command -v ninja >/dev/null; then generator=(-G Ninja); fi
 fail() { echo "checks: $*" >&2; exit 1; }
 configure() { cmake --log-level=WARNING "$@" >/dev/null; }
 new_tree() { if [ -e "$1/CMakeCache.txt" ]; then echo; else echo "${generator[@]}"; fi; }
-first_of() {
-  local name
-  for name in "$@"; do
-    if command -v "$name" >/dev/null; then echo "$name"; return; fi
+# needs PACKAGE COMMAND...: puts the first of the commands that is there into $tool; false, with the reason in $skipped,
+# when none is.
+needs() {
+  local package=$1
+  shift
+  for tool in "$@"; do
+    if command -v "$tool" >/dev/null; then return; fi
   done
-  fail "none of these is installed: $*"
+  skipped="it needs $package"
+  return 1
+}
+# The same for clang with its run-time libraries.
+needs_clang() {
+  needs clang-14 clang-14 clang || return
+  echo 'int main() {}' | "${tool/clang/clang++}" -fsanitize=address,undefined -x c++ - -o /dev/null 2>/dev/null && return
+  skipped="it needs libclang-rt-14-dev"
+  return 1
 }
 # own_files SUFFIX... : tracked and new sources of this project.
 own_files() {
@@ -35,15 +47,26 @@ own_files() {
 }
 
 check_format() {
-  own_files cpp hpp h c | xargs "$(first_of clang-format-14 clang-format)" --dry-run --Werror
+  needs clang-format-14 clang-format-14 clang-format || return 0
+  own_files cpp hpp h c | xargs "$tool" --dry-run --Werror
 }
 
+# What reads files, walks over meshes by index, or shares memory; the fuzz targets of the same tree do the rest.
+asan_quick=(core mesh assembly isolated_load step device record recording patch feature servo scene_file)
 check_asan() {
+  local select=(--label-exclude '^(long|browser)$') targets=()
+  needs_clang || return 0
+  if $quick; then
+    select+=(-R "^($(IFS='|'; echo "${asan_quick[*]}"))\$")
+    targets=(--target "${asan_quick[@]/#/test_}")
+  fi
+  # The tree of the fuzz targets: both want the same library.
   # shellcheck disable=SC2046
-  configure --preset debug $(new_tree build/debug)
-  cmake --build --preset debug --parallel "$jobs"
+  CC=$tool CXX=${tool/clang/clang++} configure --preset fuzz $(new_tree build/fuzz)
+  cmake --build --preset fuzz --parallel "$jobs" "${targets[@]}"
   ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 \
-    ctest --preset debug --parallel "$jobs" --label-exclude '^long$' "$@"
+    LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 \
+    ctest --test-dir build/fuzz --parallel "$jobs" --output-on-failure "${select[@]}"
 }
 
 check_tsan() {
@@ -61,7 +84,7 @@ check_rtsan() {
     if command -v "clang++-$n" >/dev/null; then clang=clang-$n; break; fi
   done
   if [ -z "$clang" ]; then
-    skipped="it needs clang 20 or newer with its runtime (clang-22 libclang-rt-22-dev)"
+    skipped="it needs clang 20 or newer (clang-22 libclang-rt-22-dev)"
     return
   fi
   # shellcheck disable=SC2046
@@ -75,22 +98,37 @@ check_rtsan() {
   grep -q 'RealtimeSanitizer: unsafe-library-call' build/rtsan/caught || fail "the sanitizer saw nothing"
 }
 
+# In $tool: clang.
 configure_clang() {
-  local clang
-  clang=$(first_of clang-14 clang)
   # shellcheck disable=SC2046
-  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/clang $(new_tree build/clang) -DCMAKE_BUILD_TYPE=Debug \
+  CC=$tool CXX=${tool/clang/clang++} configure -S . -B build/clang $(new_tree build/clang) -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 }
 
 check_clang() {
+  needs clang-14 clang-14 clang || return 0
   configure_clang
   cmake --build build/clang --parallel "$jobs"
 }
 
+# The sources of the library and the programs, those changed last first.
+sources_by_change() {
+  {
+    git diff --name-only HEAD
+    git log --format= --name-only
+    own_files cpp
+  } | grep -E '^(src|apps)/.*\.cpp$' | awk '!seen[$0]++' | while read -r file; do
+    if [ -e "$file" ]; then echo "$file"; fi
+  done
+}
+
 check_tidy() {
+  local most=100000
+  needs clang-14 clang-14 clang || return 0
   configure_clang
-  own_files cpp | grep -E '^(src|apps)/' | xargs -P "$jobs" -n 4 "$(first_of clang-tidy-14 clang-tidy)" --quiet -p build/clang
+  needs clang-tidy-14 clang-tidy-14 clang-tidy || return 0
+  if $quick; then most=12; fi
+  sources_by_change | awk -v most=$most 'NR <= most' | xargs -P "$jobs" -n 4 "$tool" --quiet -p build/clang
 }
 
 # Twice of each build, the second time with the machine busy.
@@ -98,11 +136,11 @@ check_determinism() {
   local ratio resolver build run busy sums=()
   # shellcheck disable=SC2046
   configure --preset release $(new_tree build/release)
-  cmake --build --preset release --parallel "$jobs" --target tegotae_cli
+  cmake --build --preset release --parallel "$jobs" --target peg_in_hole
   # shellcheck disable=SC2046
   configure -S . -B build/o2 $(new_tree build/o2) -DCMAKE_BUILD_TYPE=Release -DTEGOTAE_BUILD_TESTS=OFF \
     -DCMAKE_CXX_FLAGS_RELEASE="-O2 -DNDEBUG"
-  cmake --build build/o2 --parallel "$jobs" --target tegotae_cli
+  cmake --build build/o2 --parallel "$jobs" --target peg_in_hole
   for ratio in 0.94 0.99; do
     for resolver in qp lp; do
       sums=()
@@ -110,8 +148,7 @@ check_determinism() {
         for run in alone busy; do
           busy=()
           [ "$run" = alone ] || for _ in $(seq "$jobs"); do timeout 300 sha256sum /dev/zero & busy+=($!); done
-          build/$build/bin/tegotae run models/peg_in_hole_$ratio.toml --resolver $resolver --fast \
-            --record build/o2/run.csv >/dev/null
+          build/$build/bin/peg_in_hole --ratio $ratio --resolver $resolver --fast --record build/o2/run.csv >/dev/null
           [ "$run" = alone ] || { kill "${busy[@]}"; wait "${busy[@]}" 2>/dev/null || true; }
           sums+=("$(sha256sum <build/o2/run.csv | cut -d ' ' -f 1)")
         done
@@ -124,13 +161,21 @@ check_determinism() {
 }
 
 check_docs() {
-  command -v doxygen >/dev/null || fail "doxygen is not installed"
-  bash tests/docs/doxygen.sh build/doxygen
   python3 tests/docs/check_links.py
+  needs doxygen doxygen || return 0
+  bash tests/docs/doxygen.sh build/doxygen
 }
 
-check_fuzz() { bash tests/fuzz/run.sh "${TEGOTAE_FUZZ_SECONDS:-20}"; }
+check_fuzz() {
+  needs_clang || return 0
+  bash tests/fuzz/run.sh "$(if $quick; then echo 3; else echo 20; fi)"
+}
 
+quick=false
+if [ "${1:-}" = --quick ]; then
+  quick=true
+  shift
+fi
 [ $# -gt 0 ] || fail "name a check: format asan tsan rtsan clang tidy determinism docs fuzz, or all"
 code=0
 [ "$*" != all ] || set -- format docs tsan rtsan determinism clang tidy asan fuzz

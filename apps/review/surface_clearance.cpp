@@ -75,7 +75,7 @@ class PathClearance {
  public:
   PathClearance(const Scene& scene, const std::vector<RecordFrame>& rows, const std::vector<std::size_t>& numbers,
                 double reach)
-      : scene_(scene), reach_(reach) {
+      : reach_(reach) {
     const TriangleMesh& held = *held_part(scene).mesh;
     const Sphere ball = bounding_sphere(held);
     center_ = ball.center;
@@ -139,7 +139,6 @@ class PathClearance {
     double way = 0, turn = 0;  ///< gone so far, m and rad
     std::vector<std::uint32_t> near;
   };
-  const Scene& scene_;
   double reach_;
   Vec3 center_;
   std::vector<Other> others_;

@@ -61,13 +61,14 @@ std::vector<std::string> cells(const std::string& line) {
 template <typename Number>
 bool read_number(const std::string& text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(static_cast<double>(value));
 }
 
 bool read_row(const std::string& line, Result& r) {
   const std::vector<std::string> c = cells(line);
   int reached = 0;
-  if (c.empty() || !read_number(c[0], r.number) || !read_number(c[5], reached) || !read_number(c[11], r.intersecting))
+  if (c.empty() || !read_number(c[0], r.number) || !read_number(c[5], reached) || !read_number(c[11], r.intersecting) ||
+      r.number < 0)
     return false;
   r.who = c[1];
   r.route = c[2];

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/whole_number.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -181,7 +182,7 @@ void LiveView::command(const json& command) {
   if (what == "lead") return lead(command);
   if (what == "restart") return restart();
   if (what == "hold" || what == "remove" || what == "add" || what == "move") return edit(command);
-  if (!virtual_time_) throw Error("\"" + what + "\" needs virtual time (--fast)");
+  if (!virtual_time_) throw Error(json(what).dump() + " needs virtual time (--fast)");
   if (what == "pause") {
     paused_ = true;
   } else if (what == "play") {
@@ -189,12 +190,13 @@ void LiveView::command(const json& command) {
     paused_ = false;
   } else if (what == "step") {
     paused_ = true;
-    steps_ = std::min<std::int64_t>(steps_ + std::clamp(command.at("ticks").get<int>(), 1, kMostSteps), kMostSteps);
+    steps_ =
+        std::min<std::int64_t>(steps_ + std::clamp(whole_number<int>(command.at("ticks")), 1, kMostSteps), kMostSteps);
   } else if (what == "speed") {
     const json& factor = command.at("factor");
     speed_ = factor.is_null() ? std::numeric_limits<double>::infinity() : std::clamp(factor.get<double>(), 0.01, 10.0);
   } else {
-    throw Error("unknown command \"" + what + "\"");
+    throw Error("unknown command " + json(what).dump());
   }
 }
 

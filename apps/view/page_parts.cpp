@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/whole_number.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::view {
@@ -42,7 +43,7 @@ std::size_t PageParts::held() const {
 
 void PageParts::edit(const nlohmann::json& command) {
   const std::string what = command.at("do");
-  const auto number = command.at("part").get<std::int64_t>();
+  const auto number = whole_number<std::int64_t>(command.at("part"));
   if (number < 0 || static_cast<std::size_t>(number) >= parts_.size()) throw Error("there is no such part");
   const auto i = static_cast<std::size_t>(number);
   Part& part = parts_[i];

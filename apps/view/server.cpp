@@ -27,9 +27,8 @@ const std::string kThreads = std::to_string(kMostWatchers + 12);
 // CivetWeb gives up on a client that it waits for so long (ms) without a byte going either way.
 constexpr const char* kTimeout = "10000";
 constexpr std::size_t kMostHeader = 8192;
-// A command is a few numbers in two levels; a second has so many of them (a drag sends one a frame).
 constexpr std::size_t kMostCommand = 2048;
-constexpr int kMostDepth = 3;
+// A drag sends one a frame.
 constexpr double kCommandsPerSecond = 200;
 constexpr auto kFramePeriod = std::chrono::milliseconds(33);
 constexpr std::int64_t kStatusNs = 500'000'000;
@@ -70,14 +69,6 @@ class Rate {
   double left_ = kCommandsPerSecond;
   std::int64_t last_ = monotonic_ns();
 };
-
-nlohmann::json parse_command(const std::string& body) {
-  const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    if (depth > kMostDepth) throw Error("a command is too deep");
-    return true;
-  };
-  return nlohmann::json::parse(body, shallow);
-}
 
 }  // namespace
 

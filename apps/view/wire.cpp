@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tegotae/core/error.hpp"
 
 namespace tegotae::view {
 namespace {
 
 // Whole numbers above 2^24 are no floats any more, and neither are milliseconds of a long run: two floats each.
 constexpr std::uint64_t kTickSplit = 1u << 20;
+constexpr int kMostDepth = 3;
 
 void append(std::vector<float>& out, double value) {
   out.push_back(static_cast<float>(value));
@@ -63,6 +67,14 @@ std::string frame_message(const Frame& frame) {
 
 std::string status_message(std::string_view json) {
   return message(Message::status, json.data(), json.size());
+}
+
+nlohmann::json parse_command(std::string_view text) {
+  const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    if (depth > kMostDepth) throw Error("a command is too deep");
+    return true;
+  };
+  return nlohmann::json::parse(text, shallow);
 }
 
 }  // namespace tegotae::view

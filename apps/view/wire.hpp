@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,5 +24,9 @@ enum class Message : std::uint32_t { frame = 1, status = 2 };
 
 std::string frame_message(const Frame& frame);
 std::string status_message(std::string_view json);
+
+/// What a page sends: a JSON object of a few numbers in two levels, for ViewSource::command. Throws Error when it is
+/// deeper, json::exception when it is no JSON.
+nlohmann::json parse_command(std::string_view text);
 
 }  // namespace tegotae::view

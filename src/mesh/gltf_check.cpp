@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/whole_number.hpp"
 #include "mesh/file_check.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -15,6 +16,8 @@ using nlohmann::json;
 
 // Far deeper than any assembly, and far from the end of the stack for those who walk the tree.
 constexpr std::size_t kDeepest = 1000;
+// assimp's JSON reader goes down into lists and objects by recursion.
+constexpr int kDeepestJson = 100;
 
 class GltfCheck {
  public:
@@ -41,10 +44,10 @@ class GltfCheck {
 
   /// The number under `key`; a reference to the list `to`, if there is one.
   std::uint64_t number(const json& of, const char* key, std::uint64_t fallback) const {
-    return of.contains(key) ? of.at(key).get<std::uint64_t>() : fallback;
+    return of.contains(key) ? whole_number<std::uint64_t>(of.at(key)) : fallback;
   }
   std::uint64_t reference(const json& value, const char* to, const std::string& by) const {
-    const auto i = value.get<std::uint64_t>();
+    const auto i = whole_number<std::uint64_t>(value);
     if (i >= list(to).size())
       refuse("index out of range: " + by + " names " + to + " " + std::to_string(i) + " of " +
              std::to_string(list(to).size()));
@@ -54,7 +57,7 @@ class GltfCheck {
 
   void check_buffer(std::size_t i) const {
     const json& buffer = list("buffers")[i];
-    const auto bytes = buffer.at("byteLength").get<std::uint64_t>();
+    const auto bytes = whole_number<std::uint64_t>(buffer.at("byteLength"));
     std::uint64_t there = chunk_;
     if (buffer.contains("uri")) {
       const auto uri = buffer["uri"].get<std::string>();
@@ -91,8 +94,9 @@ class GltfCheck {
     const json& view = list("bufferViews")[i];
     const std::string self = called("bufferView", i);
     const json& buffer = list("buffers")[reference(view.at("buffer"), "buffers", self)];
-    const std::uint64_t whole = buffer.at("byteLength").get<std::uint64_t>(), from = number(view, "byteOffset", 0);
-    if (from > whole || view.at("byteLength").get<std::uint64_t>() > whole - from)
+    const std::uint64_t whole = whole_number<std::uint64_t>(buffer.at("byteLength")),
+                        from = number(view, "byteOffset", 0);
+    if (from > whole || whole_number<std::uint64_t>(view.at("byteLength")) > whole - from)
       refuse("damaged: " + self + " reaches past the end of its buffer");
   }
 
@@ -100,11 +104,12 @@ class GltfCheck {
     const json& accessor = list("accessors")[i];
     const std::string self = called("accessor", i);
     if (accessor.contains("sparse")) refuse(self + " is sparse, which is not read; export it dense");
-    const auto count = accessor.at("count").get<std::uint64_t>();
+    const auto count = whole_number<std::uint64_t>(accessor.at("count"));
     const std::uint64_t size = element_bytes(accessor, self);
     if (!accessor.contains("bufferView")) return;
     const json& view = list("bufferViews")[reference(accessor["bufferView"], "bufferViews", self)];
-    const std::uint64_t whole = view.at("byteLength").get<std::uint64_t>(), from = number(accessor, "byteOffset", 0);
+    const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")),
+                        from = number(accessor, "byteOffset", 0);
     const std::uint64_t stride = std::max(size, number(view, "byteStride", size));
     if (count == 0) return;
     if (from > whole || size > whole - from || (count - 1) > (whole - from - size) / stride)
@@ -113,7 +118,7 @@ class GltfCheck {
 
   std::uint64_t element_bytes(const json& accessor, const std::string& self) const {
     std::uint64_t scalar = 0, n = 0;
-    switch (accessor.at("componentType").get<int>()) {
+    switch (whole_number<int>(accessor.at("componentType"))) {
       case 5120:
       case 5121:
         scalar = 1;
@@ -222,7 +227,12 @@ void check_gltf(const std::string& path, std::string_view bytes) {
   std::uint64_t chunk = 0;
   const bool binary = lower_extension(path) == ".glb";
   const std::string_view text = binary ? glb_json(path, bytes, chunk) : bytes;
-  const json top = json::parse(text.begin(), text.end(), nullptr, false);
+  const auto shallow = [&path](int depth, json::parse_event_t, json&) {
+    if (depth > kDeepestJson)
+      throw Error(path + ": its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");
+    return true;
+  };
+  const json top = json::parse(text.begin(), text.end(), shallow, false);
   if (top.is_discarded() || !top.is_object()) throw Error(path + ": truncated or damaged: not valid JSON");
   try {
     const auto version = top.at("asset").at("version").get<std::string>();

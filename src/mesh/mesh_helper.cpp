@@ -10,18 +10,10 @@
 #include <exception>
 #include <vector>
 
+#include "core/sanitizers.hpp"
 #include "mesh/mesh_pipe.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TEGOTAE_SHADOW_MEMORY
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TEGOTAE_SHADOW_MEMORY
-#endif
 
 namespace tegotae {
 namespace {
@@ -39,7 +31,7 @@ void confine(double megabytes, double seconds) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, std::ceil(seconds));
-#ifndef TEGOTAE_SHADOW_MEMORY  // sanitizers reserve terabytes of address space
+#ifndef TEGOTAE_SANITIZED  // sanitizers reserve terabytes of address space
   limit(RLIMIT_AS, 1e6 * megabytes);
 #else
   static_cast<void>(megabytes);

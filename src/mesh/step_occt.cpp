@@ -87,6 +87,12 @@ double rounding_margin(const TriangleMesh& mesh) {
 class StepReader {
  public:
   StepReader(const std::string& path, const AssemblyOptions& options) : path_(path), options_(options) {}
+  // The application lives as long as the program, and keeps the documents that are open.
+  ~StepReader() {
+    if (!document_.IsNull()) XCAFApp_Application::GetApplication()->Close(document_);
+  }
+  StepReader(const StepReader&) = delete;
+  StepReader& operator=(const StepReader&) = delete;
 
   Assembly read() {
     assembly_.unit = "mm";

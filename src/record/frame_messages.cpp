@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/whole_number.hpp"
+
 namespace tegotae {
 
 namespace {
@@ -93,8 +95,8 @@ std::string message_text(const RecordFrame& f, std::size_t i) {
 void take_message(const json& m, std::size_t i, RecordFrame& f) {
   switch (i) {
     case 0:
-      f.tick = m.at("tick").get<std::uint64_t>();
-      f.substep = m.at("substep").get<std::uint32_t>();
+      f.tick = whole_number<std::uint64_t>(m.at("tick"));
+      f.substep = whole_number<std::uint32_t>(m.at("substep"));
       f.t = number(m.at("t"));
       f.tick_us = number(m.at("tick_us"));
       return;
@@ -108,7 +110,7 @@ void take_message(const json& m, std::size_t i, RecordFrame& f) {
       f.wrench = {vector(m.at("force")), vector(m.at("torque"))};
       return;
     default:
-      f.contacts = m.at("contacts").get<int>();
+      f.contacts = whole_number<int>(m.at("contacts"));
       f.gap = m.at("gap").is_null() ? std::numeric_limits<double>::infinity() : m.at("gap").get<double>();
   }
 }

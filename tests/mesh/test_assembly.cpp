@@ -185,6 +185,8 @@ TEST_CASE("broken glTF files are refused in one line", "[assembly]") {
       {R"("data.bin")", R"("gone.bin")", "gone.bin is missing"},
       {R"("count":36)", R"("count":37)", "accessor 0 reaches past"},
       {R"("count":8)", R"("count":18446744073709551615)", "accessor 1 reaches past"},
+      {R"("count":8)", R"("count":1e300)", "whole number"},
+      {R"("count":8)", R"("count":8,"sparse":{})", "accessor 1 is sparse"},
       {R"("byteOffset":288)", R"("byteOffset":289)", "bufferView 3 reaches past"},
       {R"("POSITION":1)", R"("POSITION":9)", "accessors 9 of 4"},
       {R"("version":"2.0")", R"("version":"3.0")", "version 3.0"},
@@ -193,6 +195,10 @@ TEST_CASE("broken glTF files are refused in one line", "[assembly]") {
     write_gltf(folder, kNodes, replaced(kTop, from, to));
     refused("a.gltf", why);
   }
+  // Nesting that a recursive reader would follow to the end of its stack.
+  const std::string lists = std::string(200'000, '[') + std::string(200'000, ']');
+  write_gltf(folder, kNodes, replaced(kTop, R"("version":"2.0")", R"("version":"2.0","extras":)" + lists));
+  refused("a.gltf", "its JSON is nested");
 }
 
 TEST_CASE("flat files are one part, or one for each connected piece", "[assembly]") {

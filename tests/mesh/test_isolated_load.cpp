@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
@@ -147,7 +148,7 @@ TEST_CASE("memory and time of the helper are bounded", "[isolated]") {
   std::string big;
   for (int i = 0; i < 60'000; ++i) big += kTetrahedron;
   const std::string file = s.write("big.obj", big);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(TEGOTAE_SANITIZED)
   const std::string memory = refusal(file, {kHelper, 100, 60});
   INFO(memory);
   CHECK((contains(memory, "not enough memory") || contains(memory, "bad_alloc") || contains(memory, "process")));

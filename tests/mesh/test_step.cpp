@@ -1,4 +1,6 @@
 // STEP assemblies, written with OpenCASCADE and known in closed form.
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -219,4 +221,17 @@ TEST_CASE("STEP files that cannot be read are refused in one line", "[step]") {
   // A whole frame around data cut in the middle of an instance.
   refused(whole.substr(0, whole.find("DATA;") + 5) + "\nENDSEC;\nEND-ISO-10303-21;\n", "");
   CHECK(error_of(folder / "none.step").find("none.step") != std::string::npos);
+}
+
+TEST_CASE("a file that was read leaves nothing behind", "[step]") {
+  const TempFolder folder;
+  const std::string path = folder / "a.step";
+  write_step_assembly(path, {}, "MM", "AP214IS");
+  const auto in_use = [&](int reads) {
+    for (int i = 0; i < reads; ++i) read_assembly(path);
+    return static_cast<double>(mallinfo2().uordblks);
+  };
+  const double before = in_use(3);
+  // A document of it takes half a megabyte.
+  CHECK(in_use(10) - before < 500e3);
 }

@@ -12,8 +12,10 @@
 #include <cerrno>
 #include <cstddef>
 
-// The runtimes of these make system calls in every thread.
-#if defined(__SANITIZE_THREAD__)
+#include "core/sanitizers.hpp"
+
+// The run-time libraries of sanitizers make system calls in every thread.
+#if defined(TEGOTAE_SANITIZED)
 #define TEGOTAE_SANITIZER_CALLS 1
 #elif defined(__has_feature)
 #if __has_feature(realtime_sanitizer)

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #include "puppet_device.hpp"
 #include "syscall_guard.hpp"
 #include "tegotae/core/clock.hpp"
@@ -18,7 +19,7 @@ using test::PuppetDevice;
 namespace {
 
 // Sanitizers make every memory access a call, and take mlockall to themselves without doing it.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(TEGOTAE_SANITIZED)
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
@@ -82,7 +83,7 @@ TEST_CASE("the servo's loop makes no system call but the clock's", "[servo]") {
   servo.start();
   run_contact(link, 1.0);
   if (device.guarded == 0) {
-    std::cout << "SKIPPED: no seccomp filter here, or ThreadSanitizer\n";
+    std::cout << "SKIPPED: no seccomp filter here, or a sanitizer\n";
     return;
   }
   // Before stop(): a thread that ends returns its stack to the system.

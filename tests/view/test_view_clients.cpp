@@ -74,6 +74,9 @@ TEST_CASE("commands are bounded and checked") {
                           R"({"do":"move","part":0})",
                           R"({"do":"move","part":0,"by":[1,2],"turn":[0,0,0]})",
                           R"({"do":"move","part":0,"by":[0,0,0],"turn":[0,1e300,0]})",
+                          R"({"do":"step","ticks":1e300})",
+                          R"({"do":"hold","part":0.5})",
+                          R"({"do":"a\nb"})",
                           R"({"do":"speed","factor":"x"})",
                           R"([[[[[[1]]]]]])",
                           "{\"do\":\"\xff\xfe\"}"}) {
