@@ -46,10 +46,7 @@ void look(view::LiveView& view, std::atomic<bool>& stop) {
     require(hand.p.allFinite() && hand.p.cwiseAbs().maxCoeff() <= kFarthest, "the hand is led to where it can be");
     require(std::abs(hand.q.norm() - 1) < 1e-9, "the hand's rotation is one");
   }
-  std::size_t held = 0;
-  bool keep = false;
-  if (view.take_request(held, keep)) {
-    require(held < kParts, "the part to hold is one of the scene");
+  if (view.take_request()) {
     require(stop, "a new session ends the old one");
     stop = false;
   }
@@ -62,6 +59,8 @@ std::vector<Seed> seeds() {
   return {{"commands",
            "{\"do\":\"pause\"}\n{\"do\":\"step\",\"ticks\":7}\n{\"do\":\"play\"}\n{\"do\":\"speed\",\"factor\":0.1}\n"
            "{\"do\":\"speed\",\"factor\":null}\n{\"do\":\"restart\"}\n{\"do\":\"hold\",\"part\":0}\n"
+           "{\"do\":\"move\",\"part\":0,\"by\":[0.1,0,0],\"turn\":[0,0.5,0]}\n"
+           "{\"do\":\"remove\",\"part\":0}\n{\"do\":\"add\",\"part\":0}\n"
            "{\"do\":\"lead\",\"pose\":[0,0.1,-2e-3,1,0,0,0]}\n"},
           {"numbers",
            "{\"do\":\"step\",\"ticks\":1e300}\n{\"do\":\"step\",\"ticks\":-9223372036854775808}\n"
@@ -77,7 +76,9 @@ std::vector<Seed> seeds() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static std::atomic<bool> stop{false};
-  static view::LiveView view(two_parts(), true, true, true, stop);
+  static const SceneFile file = two_parts();
+  // Of no session: parts are looked up and moved, and then there is nothing to change.
+  static view::LiveView view(file, true, true, true, stop);
   std::istringstream lines(std::string(reinterpret_cast<const char*>(data), size));
   for (std::string line; std::getline(lines, line);) {
     try {
