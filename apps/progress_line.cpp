@@ -33,6 +33,11 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::print() const {
+  if (const double checked = progress_.checked.load(); checked >= 0) {
+    std::printf("\r\033[Kasking FCL about the poses: %.0f %%", 100 * checked);
+    std::fflush(stdout);
+    return;
+  }
   const double duration = progress_.duration.load();
   std::printf("\r\033[K%5.1f ", progress_.t.load());
   if (std::isfinite(duration)) std::printf("/ %.1f ", duration);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 
+#include "format.hpp"
 #include "progress_line.hpp"
 #include "start_text.hpp"
 #include "summary.hpp"
@@ -100,9 +101,11 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
   settings.stop = &catch_interrupts();
-  settings.on_start = [&](const StartReport& start) {
-    const std::string text = start_text(start, file.scene);
+  settings.on_start = [&](const RunStart& start) {
+    const std::string text = start_text(start.parts, file.scene);
     if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
+    if (!options.json && !start.stability.empty())
+      std::cout << format("%-12s ", "stability:") << start.stability << std::endl;
   };
 
   RunSummary summary;

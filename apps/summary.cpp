@@ -45,6 +45,8 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
                 {"missed", s.servo.missed},
                 {"compute_us", to_json(s.servo.compute_us)},
                 {"force_off", s.servo.force_off}};
+  j["recordings"] = s.recordings;
+  j["record_dropped"] = s.record_dropped;
   j["device_losses"] = s.device_losses;
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
@@ -77,12 +79,11 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   }
   if (!options.fast && !s.missing_realtime.empty())
     text += format("  %-12s ", "real time") + "not granted: " + s.missing_realtime + "\n";
-  if (!s.stability.empty()) text += format("  %-12s ", "stability") + s.stability + "\n";
   text += force_off_lines(s.servo);
   if (s.device_losses > 0)
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
                    static_cast<unsigned long long>(s.device_losses));
-  if (!options.record.empty()) text += format("  %-12s ", "recording") + options.record + "\n";
+  for (const std::string& path : s.recordings) text += format("  %-12s ", "recording") + path + "\n";
   return text;
 }
 

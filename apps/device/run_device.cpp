@@ -7,6 +7,7 @@
 #include "device/make_device.hpp"
 #include "device/status.hpp"
 #include "run_options.hpp"
+#include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/servo/servo.hpp"
 
@@ -40,6 +41,14 @@ ServoSettings servo_settings(const DeviceOptions& options) {
   return settings;
 }
 
+/// Of the coupling that an application has set, or else of the default one.
+std::string stability_text(const ChannelReader& channel, const DeviceInfo& info, double rate_hz) {
+  CouplingSettings coupling;
+  tegotae_shm_application a;
+  if (channel.read(a) && a.enable != 0) coupling = {a.stiffness, a.damping, a.torsional_stiffness, a.torsional_damping};
+  return stability(info, coupling, rate_hz).text();
+}
+
 void greet(const DeviceOptions& options, const ChannelReader& channel, const DeviceInfo& info,
            const RealtimeReport& realtime) {
   std::printf("%s: %s, process %llu, servo at %g Hz\n", channel.name().c_str(), info.name.c_str(),
@@ -50,17 +59,21 @@ void greet(const DeviceOptions& options, const ChannelReader& channel, const Dev
   std::fflush(stdout);
 }
 
-/// Prints the state whenever it is another one, until a signal comes.
-void watch(const ChannelReader& channel, const EndSignals& signals) {
-  std::string shown;
+/// Prints `now` when it is not what was shown last.
+void show(const std::string& now, std::string& shown) {
+  if (now == shown) return;
+  std::printf("  %s\n", now.c_str());
+  std::fflush(stdout);
+  shown = now;
+}
+
+/// Prints state and stability whenever they change, until a signal comes.
+void watch(const ChannelReader& channel, const DeviceInfo& info, double rate_hz, const EndSignals& signals) {
+  std::string state, limits;
   do {
+    show("stability: " + stability_text(channel, info, rate_hz), limits);
     tegotae_shm_device pen;
-    if (!channel.read(pen)) continue;
-    const std::string now = state_text(pen);
-    if (now == shown) continue;
-    std::printf("  %s\n", now.c_str());
-    std::fflush(stdout);
-    shown = now;
+    if (channel.read(pen)) show(state_text(pen), state);
   } while (!signals.came_within(kLook));
 }
 
@@ -75,7 +88,7 @@ int run_device(const DeviceOptions& options) {
   Servo servo(*device, channel, servo_settings(options));
   servo.start();
   greet(options, channel, device->info(), servo.realtime());
-  watch(channel, signals);
+  watch(channel, device->info(), options.rate_hz, signals);
   servo.stop();
   device->stop();
   tegotae_shm_statistics statistics;

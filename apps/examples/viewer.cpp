@@ -3,13 +3,13 @@
 // to the loop, which goes over to it between two ticks.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <thread>
 
-#include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -23,10 +23,8 @@ std::atomic<bool> closing{false};
 /// The contact loop, with a pen that goes to and fro by 25 mm.
 void haptics(HapticLoop& loop) {
   const Pose home = loop.latest();
-  const std::int64_t begin = monotonic_ns();
-  while (!closing) {
-    const double t = 1e-9 * static_cast<double>(monotonic_ns() - begin);
-    loop.step({home.q, home.p + Vec3(0.025 * std::sin(6 * t), 0, 0)}, 1e-3);
+  for (int tick = 0; !closing; ++tick) {
+    loop.step({home.q, home.p + Vec3(0.025 * std::sin(6e-3 * tick), 0, 0)}, 1e-3);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }

@@ -7,6 +7,7 @@
 #include "experiments/statistics.hpp"
 #include "experiments/trial.hpp"
 #include "experiments/wrench_scenes.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::experiments {
@@ -42,8 +43,7 @@ Reading read(const WrenchScene& w, const Probe& probe, const std::string& resolv
   scene.contact.resolver = resolver;
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   HapticLoop loop(scene);
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-  const Pose from = held->pose;
+  const Pose from = held_part(scene).pose;
   const Displacement way = displacement(from, probe.Y, Vec3::Zero());
   std::vector<double> force, torque;
   Wrench mean;

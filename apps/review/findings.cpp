@@ -7,8 +7,8 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "review/spans.hpp"
-#include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 
 namespace tegotae::review {
 namespace {
@@ -19,25 +19,10 @@ constexpr double kLeastTwoSided = 5e-3;  // s
 // A stall: slower than this over the window while the pen is ahead by so much, for so long.
 constexpr double kStallSpeed = 1e-3, kWindow = 0.05, kAhead = 0.5e-3, kLeastStall = 0.2;
 
-/// Takes the fixed parts whose names are in the list `names` out of `others`, and all other fixed parts out of
-/// `listed`.
-void split_off(const std::string& names, Scene& others, Scene& listed) {
-  const std::string list = ", " + names + ", ";
-  const auto is_listed = [&list](const Part& p) {
-    return !p.held && list.find(", " + p.name + ", ") != std::string::npos;
-  };
-  auto& o = others.parts;
-  o.erase(std::remove_if(o.begin(), o.end(), is_listed), o.end());
-  auto& l = listed.parts;
-  l.erase(std::remove_if(l.begin(), l.end(), [&](const Part& p) { return !p.held && !is_listed(p); }), l.end());
-}
-
 class Finder {
  public:
-  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-         const std::string& suspended)
-      : suspended_(suspended),
-        file_(file),
+  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center)
+      : file_(file),
         rows_(rows),
         scan_(scan),
         center_(center),
@@ -53,13 +38,7 @@ class Finder {
       out.turn += d.dr.norm();
     }
     if (has_goal()) out.goal = goal();
-    PoseCheck check;
-    for (const RecordFrame& row : rows_) check.add(row.x);
-    Scene kept_out = file_.scene, suspended = file_.scene;
-    split_off(suspended_, kept_out, suspended);
-    out.intersecting = check.count_intersecting(kept_out);
-    out.suspended = suspended_;
-    if (suspended.parts.size() > 1) out.in_suspended = check.count_intersecting(suspended);
+    out.start = find_start(file_.scene, rows_, scan_);
     out.clearances = clearances();
     out.contacts = contacts();
     out.two_sided = two_sided();
@@ -209,7 +188,6 @@ class Finder {
   Loads loads() const {
     Loads out;
     const SafetySettings& safety = file_.safety;
-    const auto& coupling = file_.scene.coupling;
     out.limit_force = std::min(safety.limits.force, file_.device.limits.force);
     out.limit_torque = std::min(safety.limits.torque, file_.device.limits.torque);
     const double a = safety.continuous_force, b = file_.device.continuous_force;
@@ -229,11 +207,9 @@ class Finder {
       };
       larger(r.wrench.force.norm(), out.force, &out.force_at);
       larger(r.wrench.torque.norm(), out.torque, &out.torque_at);
-      const Displacement lead = displacement(r.x, r.y, center_);
-      if (r.contacts > 0) {  // the coupling is off while nothing touches
-        larger(coupling.stiffness * lead.dp.norm(), out.asked_force, nullptr);
-        larger(coupling.torsional_stiffness * lead.dr.norm(), out.asked_torque, nullptr);
-      }
+      const Wrench asked = asked_wrench(r, file_.scene.coupling, center_);
+      larger(asked.force.norm(), out.asked_force, nullptr);
+      larger(asked.torque.norm(), out.asked_torque, nullptr);
       if (i == 0) continue;
       squares += share(i);
       while (r.t - rows_[oldest].t > out.thermal_time) squares -= share(oldest++);
@@ -242,7 +218,6 @@ class Finder {
     return out;
   }
 
-  std::string suspended_;
   const SceneFile& file_;
   const std::vector<RecordFrame>& rows_;
   const Scan& scan_;
@@ -253,9 +228,16 @@ class Finder {
 
 }  // namespace
 
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-              const std::string& suspended) {
-  return Finder(file, rows, scan, center, suspended).all();
+Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, const Vec3& center) {
+  if (row.contacts == 0) return row.wrench;  // the coupling is off while nothing touches
+  const Displacement lead = displacement(row.x, row.y, center);
+  const Wrench springs{coupling.stiffness * lead.dp, coupling.torsional_stiffness * lead.dr};
+  return {springs.force.norm() > row.wrench.force.norm() ? springs.force : row.wrench.force,
+          springs.torque.norm() > row.wrench.torque.norm() ? springs.torque : row.wrench.torque};
+}
+
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center) {
+  return Finder(file, rows, scan, center).all();
 }
 
 }  // namespace tegotae::review

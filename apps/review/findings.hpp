@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "review/path_scan.hpp"
+#include "review/start_findings.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
 namespace tegotae::review {
@@ -54,7 +55,7 @@ struct PartClearance {
 struct Loads {
   double force = 0, torque = 0;              ///< largest rendered
   double force_at = 0, torque_at = 0;        ///< s
-  double asked_force = 0, asked_torque = 0;  ///< largest of the coupling's springs, before any limit
+  double asked_force = 0, asked_torque = 0;  ///< largest of asked_wrench()
   double running_rms = 0;                    ///< largest RMS of the force over thermal_time (30 s) before each row
   double limit_force = 0, limit_torque = 0, continuous = 0,
          thermal_time = 0;  ///< what holds; continuous 0: not limited
@@ -76,9 +77,7 @@ struct Findings {
   double seconds = 0;
   double way = 0, turn = 0;  ///< that the center of mass went and the part turned, m, rad
   std::optional<GoalFindings> goal;
-  std::int64_t intersecting = 0;          ///< poses that intersect another part, by FCL; suspended ones left out
-  std::string suspended;                  ///< names of the parts that were suspended at the start
-  std::int64_t in_suspended = 0;          ///< poses that intersect one of these
+  StartFindings start;                    ///< what it touched or overlapped at the start, and poses that intersect
   std::vector<PartClearance> clearances;  ///< the closest first
   std::vector<ContactEpisode> contacts;
   std::vector<TwoSidedEpisode> two_sided;
@@ -86,9 +85,11 @@ struct Findings {
   Loads loads;
 };
 
+/// What the coupling's springs asked for at a row before any limit, or what was rendered where that is more: the
+/// damper's share is not in a recording.
+Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, const Vec3& center);
+
 /// `file`: the scene with the held part where the recording begins, and as script where it was to go.
-/// `suspended`: RecordingInfo::suspended.
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
-              const std::string& suspended = {});
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center);
 
 }  // namespace tegotae::review

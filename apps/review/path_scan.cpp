@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "view/follower.hpp"
 
 namespace tegotae::review {
@@ -71,6 +71,7 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
   ClearanceProbe probe(scene);
   view::Follower follower(scene, file, rows.front().x);
   scan.center = follower.loop().center();
+  scan.start = follower.loop().start();
   scan.rows.reserve(numbers.size());
   std::size_t next = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "review/clearance_probe.hpp"
 #include "tegotae/record/recording.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/start.hpp"
 
 namespace tegotae::review {
 
@@ -33,10 +34,12 @@ struct Scan {
   double reach = 0;        ///< m; distances to parts that are not the nearest are known below it
   std::size_t astray = 0;  ///< rows at which contacts could not be found
   Vec3 center;             ///< of mass of the held part, m, file frame
+  StartReport start;       ///< of the contact loop, before the first row
 };
 
 /// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the
-/// poses. `file` is the name of the recording, for messages. Throws Error when it does not fit the scene.
+/// poses. `scene` holds the part where the run began. `file` is the name of the recording, for messages. Throws Error
+/// when it does not fit the scene.
 Scan scan_path(const Scene& scene, const std::string& file, const std::vector<RecordFrame>& rows,
                const Progress& progress);
 

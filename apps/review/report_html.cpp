@@ -7,7 +7,7 @@
 #include "review/report_tables.hpp"
 #include "review/review.hpp"
 #include "review/surface_clearance.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "view/bundle.hpp"
 #include "web/page.hpp"
 

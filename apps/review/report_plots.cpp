@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "format.hpp"
 #include "sim/run_goal.hpp"
 
 namespace tegotae::review {
@@ -14,6 +15,8 @@ using nlohmann::json;
 constexpr std::size_t kMostPoints = 1500;  // of a line: more than pixels
 constexpr std::size_t kMostParts = 5;
 constexpr double kLeastShown = 1e-4;  // mm: where the logarithm of an intersection is drawn
+// A limit farther above the largest value than this is told in the title: drawn, it would press the line to the ground.
+constexpr double kMostAbove = 4;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 json number(double x) {
@@ -95,34 +98,40 @@ json way_plot(const Review& r, const Buckets& buckets, const json& times) {
     return 1e3 * (toward ? goal.depth(X) : displacement(first, X, r.center).dp.norm());
   };
   json series = json::array();
-  series.push_back(
-      {{"name", "part"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).x); })}});
+  // The last one is drawn on top.
   series.push_back(
       {{"name", "pen"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).y); })}});
+  series.push_back(
+      {{"name", "part"}, {"x", times}, {"y", buckets.most([&](std::size_t i) { return along(buckets.row(i).x); })}});
   if (toward) series.push_back(level("goal", times, 1e3 * goal.way()));
   return plot(toward ? "Way to the goal" : "Distance from the start", "center of mass (mm)", series);
 }
 
 json load_plot(const Review& r, const Buckets& buckets, const json& times, bool torque) {
   const Loads& l = r.findings.loads;
-  const auto& coupling = r.file.scene.coupling;
   const double unit = torque ? 1e3 : 1;
   const auto rendered = [&](std::size_t i) {
     const Wrench& w = buckets.row(i).wrench;
     return unit * (torque ? w.torque : w.force).norm();
   };
   const auto asked = [&](std::size_t i) {
-    const RecordFrame& row = buckets.row(i);
-    if (row.contacts == 0) return 0.0;
-    const Displacement lead = displacement(row.x, row.y, r.center);
-    return unit * (torque ? coupling.torsional_stiffness * lead.dr.norm() : coupling.stiffness * lead.dp.norm());
+    const Wrench w = asked_wrench(buckets.row(i), r.file.scene.coupling, r.center);
+    return unit * (torque ? w.torque : w.force).norm();
   };
   json series = json::array();
-  series.push_back({{"name", "rendered"}, {"x", times}, {"y", buckets.most(rendered)}});
   series.push_back({{"name", "without limits"}, {"x", times}, {"y", buckets.most(asked)}});
-  series.push_back(level("peak limit", times, unit * (torque ? l.limit_torque : l.limit_force)));
-  if (!torque && l.continuous > 0) series.push_back(level("continuous", times, l.continuous));
-  return torque ? plot("Torque", "torque (mN·m)", series) : plot("Force", "force (N)", series);
+  series.push_back({{"name", "rendered"}, {"x", times}, {"y", buckets.most(rendered)}});
+  const double most = torque ? l.asked_torque : l.asked_force, limit = torque ? l.limit_torque : l.limit_force;
+  std::string title = torque ? "Torque" : "Force";
+  const auto add_limit = [&](const char* name, double value) {
+    if (value <= kMostAbove * most)
+      series.push_back(level(name, times, unit * value));
+    else
+      title += apps::format(", %s %.3g %s", name, unit * value, torque ? "mN·m" : "N");
+  };
+  add_limit("peak limit", limit);
+  if (!torque && l.continuous > 0) add_limit("continuous", l.continuous);
+  return plot(title, torque ? "torque (mN·m)" : "force (N)", series);
 }
 
 }  // namespace

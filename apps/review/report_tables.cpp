@@ -1,6 +1,7 @@
 #include "review/report_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "format.hpp"
@@ -97,10 +98,36 @@ json loads(const Review& r) {
   return t;
 }
 
+/// What the held part touched or overlapped at the start.
+json start(const Review& r) {
+  json t = table("At the start",
+                 "Relieved: kept out of a copy of the part that is smaller by so much, until it had come free. "
+                 "Suspended: not kept out until then.",
+                 {"part", "", "gap or depth", "relieved by", "until (s)", "where"});
+  for (const StartFinding& f : r.findings.start.pairs) {
+    const Clash& c = f.pair.clash;
+    const bool relieved = f.pair.state == PairState::relieved, active = f.pair.state == PairState::active;
+    t["rows"].push_back({r.file.scene.parts[f.pair.part].name,
+                         active     ? "touching"
+                         : relieved ? "touching, relieved"
+                                    : "overlapping, suspended",
+                         c.gap > 0             ? "gap " + length_text(c.gap)
+                         : std::isnan(c.depth) ? "open surfaces cross"
+                                               : "depth " + length_text(c.depth),
+                         relieved ? length_text(f.pair.relief) : "–",
+                         active                   ? "–"
+                         : std::isfinite(f.until) ? seconds(f.until)
+                                                  : "the end",
+                         place_text(c.place_W)});
+  }
+  return t;
+}
+
 }  // namespace
 
 json report_tables(const Review& r) {
   json out = json::array({clearances(r), loads(r)});
+  if (!r.findings.start.pairs.empty()) out.push_back(start(r));
   if (!r.findings.contacts.empty()) out.push_back(contacts(r));
   if (!r.findings.two_sided.empty()) out.push_back(two_sided(r));
   if (!r.findings.stalls.empty()) out.push_back(stalls(r));

@@ -1,10 +1,10 @@
 #include "review/review.hpp"
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/run_goal.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "view/follower.hpp"
+#include "view/replay.hpp"
 
 namespace tegotae::review {
 namespace {
@@ -14,6 +14,15 @@ double clearance_at(const Scene& scene, const Pose& X) {
   std::vector<Clearance> out;
   probe.at(X, 0, out);
   return out.empty() ? 0 : out.front().distance;
+}
+
+/// The recording may be a part of a run only.
+void tell_scene_changes(const RecordingInfo& info, Review& r) {
+  if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.goes_on.empty()) {
+    r.verdict.outcome = Outcome::open;
+    r.verdict.headline = "It had not got there when the scene was changed";
+  }
+  for (const std::string& text : view::scene_changes(info)) r.verdict.evidence.push_back({Evidence::Kind::plain, text});
 }
 
 }  // namespace
@@ -26,22 +35,23 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (rows[i].t < rows[i - 1].t)
       throw Error(path + ": row " + std::to_string(i + 1) + ": its time is before that of the row before");
+  r.scan = scan_path(r.file.scene, path, rows, progress);
+  r.center = r.scan.center;
   for (Part& part : r.file.scene.parts)
     if (part.held) part.pose = rows.front().x;
   if (goal) {
     r.file.script = StylusScript({{0, rows.front().x}, {1, *goal}});
     r.file.scale = 1;
   }
-  r.scan = scan_path(r.file.scene, path, rows, progress);
-  r.center = r.scan.center;
   if (2 * r.scan.astray > rows.size())
     throw Error(path + ": does not fit this scene: the part would stand in another one for " +
                 std::to_string(r.scan.astray) + " of " + std::to_string(rows.size()) + " rows");
   if (progress) progress("asking for intersections", 0, 0);
-  r.findings = find(r.file, rows, r.scan, r.center, r.recording.info.suspended);
+  r.findings = find(r.file, rows, r.scan, r.center);
   const Pose& end = r.file.script.pose(r.file.script.end());
   const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
+  tell_scene_changes(r.recording.info, r);
   return r;
 }
 

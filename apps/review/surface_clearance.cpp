@@ -10,7 +10,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "feature/signed_distance.hpp"
 #include "parallel_for.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "view/display_mesh.hpp"
 
 namespace tegotae::review {

@@ -11,6 +11,10 @@ using apps::format;
 
 namespace {
 
+std::string times(std::size_t n) {
+  return n == 1 ? "once" : format("%zu times", n);
+}
+
 constexpr double kDegree = 0.017453292519943295;
 
 class Judge {
@@ -22,7 +26,7 @@ class Judge {
     decide();
     if (f_.goal) tell_goal();
     tell_intersections();
-    tell_suspended();
+    tell_start();
     tell_clearance();
     tell_loads();
     tell_contacts();
@@ -39,9 +43,14 @@ class Judge {
   void decide() {
     const char* goes = inwards_ ? "goes in" : "comes out";
     const char* go = inwards_ ? "go in" : "come out";
-    if (f_.intersecting > 0) {
+    const auto deeper = std::find_if(f_.start.pairs.begin(), f_.start.pairs.end(), is_too_deep);
+    if (f_.start.intersecting > 0) {
       v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(f_.intersecting) + " poses intersect other parts: no way for a rigid part";
+      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: no way for a rigid part";
+    } else if (deeper != f_.start.pairs.end()) {
+      v_.outcome = Outcome::does_not_go;
+      v_.headline = std::to_string(deeper->deeper) + " poses reach deeper into " + name(*deeper) +
+                    " than at the start: no way for a rigid part";
     } else if (!f_.goal) {
       v_.headline = "A way of " + length_text(f_.way) + " without a goal";
     } else if (f_.goal->reached) {
@@ -77,19 +86,38 @@ class Judge {
     add(g.reached ? Evidence::Kind::good : Evidence::Kind::bad, text);
   }
 
+  const std::string& name(const StartFinding& f) const { return scene_.parts[f.pair.part].name; }
+  static bool is_too_deep(const StartFinding& f) { return f.pair.state == PairState::relieved && f.deeper > 0; }
+  static bool was_active(const StartFinding& f) { return f.pair.state == PairState::active; }
+
   void tell_intersections() {
-    if (f_.intersecting == 0)
-      good(std::string("No pose intersects another part") + (f_.suspended.empty() ? "" : " that was not suspended") +
+    const auto& pairs = f_.start.pairs;
+    if (f_.start.intersecting == 0)
+      good(std::string("No pose intersects another part") +
+           (std::all_of(pairs.begin(), pairs.end(), was_active) ? "" : " that was free of it") +
            ", by their triangles and asked independently of the run.");
     else
-      bad(format("%lld poses intersect another part.", static_cast<long long>(f_.intersecting)));
+      bad(format("%lld poses intersect another part.", static_cast<long long>(f_.start.intersecting)));
   }
 
-  void tell_suspended() {
-    if (f_.suspended.empty()) return;
-    bad("Suspended at the start, because the part began in them: " + f_.suspended +
-        ". Nothing kept the part out of them until it had come free; " +
-        format("%lld poses intersect them.", static_cast<long long>(f_.in_suspended)));
+  void tell_start() {
+    std::vector<std::size_t> touching;
+    for (const StartFinding& f : f_.start.pairs)
+      if (was_active(f)) touching.push_back(f.pair.part);
+    if (!touching.empty())
+      plain("Touching at the start: " + names_text(touching, scene_) +
+            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " off." : "."));
+    for (const StartFinding& f : f_.start.pairs) {
+      const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
+      const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
+      if (f.pair.state == PairState::suspended)
+        bad("Suspended" + until + ", because the part began in it: " + name(f) + ". Nothing kept the part out of it; " +
+            poses + " intersect it.");
+      if (f.pair.state == PairState::relieved)
+        add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
+            "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +
+                (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
+    }
   }
 
   void tell_clearance() {
@@ -117,17 +145,17 @@ class Judge {
     if (!f_.two_sided.empty()) {
       double total = 0;
       for (const TwoSidedEpisode& e : f_.two_sided) total += e.span.length();
-      plain(format("Held from two sides %zu times, %.2f s together: it wedges when it is pressed.", f_.two_sided.size(),
-                   total));
+      plain("Held from two sides " + times(f_.two_sided.size()) +
+            format(", %.2f s together: it wedges when it is pressed.", total));
     }
     if (f_.stalls.empty()) return plain("It never stalled.");
     const auto longest = std::max_element(f_.stalls.begin(), f_.stalls.end(), [](const Stall& a, const Stall& b) {
       return a.span.length() < b.span.length();
     });
     const std::string by = longest->parts.empty() ? "" : " by " + names_text(longest->parts, scene_);
-    plain(format("Stalled %zu times, longest for %.2f s after %.2f s", f_.stalls.size(), longest->span.length(),
-                 longest->span.begin) +
-          by + " at " + place_text(longest->place_W) + ".");
+    plain("Stalled " + times(f_.stalls.size()) +
+          format(", longest for %.2f s after %.2f s", longest->span.length(), longest->span.begin) + by + " at " +
+          place_text(longest->place_W) + ".");
   }
 
   const Findings& f_;
@@ -146,7 +174,9 @@ std::string length_text(double meters) {
 }
 
 std::string place_text(const Vec3& p) {
-  return format("(%.2f, %.2f, %.2f) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
+  // Rounded first, so that there is no "-0.00".
+  const auto mm = [](double m) { return 0.01 * std::round(1e5 * m) + 0.0; };
+  return format("(%.2f, %.2f, %.2f) mm", mm(p.x()), mm(p.y()), mm(p.z()));
 }
 
 std::string seconds_text(double seconds) {

@@ -8,6 +8,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/session.hpp"

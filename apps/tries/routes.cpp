@@ -5,7 +5,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "review/clearance_probe.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::tries {

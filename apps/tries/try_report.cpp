@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format.hpp"
-#include "sim/run_goal.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "web/page.hpp"
 

@@ -11,7 +11,8 @@ namespace tegotae::view {
 /// shows: contacts are not in a recording.
 class Follower {
  public:
-  /// `path` of the recording is for the message. Throws Error when the part would stand in another one at `first`.
+  /// Begins where `scene` holds the part, or at `first`, the recording's first pose, when that is elsewhere. `path` of
+  /// the recording is for the message. Throws Error when the part would stand in another one there.
   Follower(Scene scene, const std::string& path, const Pose& first);
 
   const HapticLoop& loop() const { return loop_; }

@@ -35,7 +35,8 @@ struct Frame {
   std::uint32_t contacts = 0;
   std::uint32_t limits = 0;  ///< pairs there are, contacts included; `pair_count` of them are below
   std::uint32_t flags = 0;
-  std::uint32_t reason = 0;  ///< ForceOff: why the force went off, never `engage`
+  std::uint32_t reason = 0;      ///< ForceOff: why the force went off, never `engage`
+  std::uint64_t generation = 0;  ///< of the parts that it is of
   std::uint64_t pair_count = 0;
   std::array<FramePair, kMostPairs> pairs;  ///< what lies behind `pair_count` is not transported
 };

@@ -7,6 +7,11 @@ FrameMaker::FrameMaker(const Scene& scene) {
     if (!scene.parts[i].held) fixed_.push_back(i);
 }
 
+FrameMaker::FrameMaker(const std::vector<Part>& parts, const std::vector<std::uint32_t>& numbers) {
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!parts[i].held) fixed_.push_back(numbers[i]);
+}
+
 void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   const TickReport& report = loop.report();
   const auto& limits = loop.limits();

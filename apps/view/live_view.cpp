@@ -27,14 +27,8 @@ constexpr int kMostSteps = 10'000;
 // A pen farther from the world's origin (m) is a mistake.
 constexpr double kFarthest = 100;
 
-std::size_t held_number(const Scene& scene) {
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-  return static_cast<std::size_t>(held - scene.parts.begin());
-}
-
-Vec3 center_of(const Scene& scene) {
-  const TriangleMesh& mesh = *scene.parts[held_number(scene)].mesh;
-  return mass_properties(mesh, report(mesh).closed, scene.contact.density).center;
+Vec3 center_of(const Part& part, double density) {
+  return mass_properties(*part.mesh, report(*part.mesh).closed, density).center;
 }
 
 /// Why the force is off, by number.
@@ -44,69 +38,75 @@ json force_off_names() {
   return names;
 }
 
+std::array<double, 7> words(const Pose& X) {
+  return {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()};
+}
+Pose pose_of(const std::array<double, 7>& v) {
+  return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+}
+
 }  // namespace
 
-struct LiveView::Run {
-  Run(const SceneFile& file, std::shared_ptr<const std::string> bundle_in)
-      : maker(file.scene),
-        held(held_number(file.scene)),
-        parts(file.scene.parts.size()),
-        suspended(std::make_unique<std::atomic<bool>[]>(parts)),
-        bundle(std::move(bundle_in)) {
-    for (const Part& part : file.scene.parts) names.push_back(part.name);
-  }
+struct LiveView::Stretch {
+  Stretch(const PageParts& parts, std::uint64_t generation_in)
+      : generation(generation_in),
+        numbers(parts.numbers()),
+        maker(parts.in_scene(), numbers),
+        suspended(std::make_unique<std::atomic<bool>[]>(parts.all().size())) {}
+
+  const std::uint64_t generation;
+  const std::vector<std::uint32_t> numbers;  // of the scene's parts, as the page counts them
   FrameMaker maker;
-  HandGuide guide;
-  std::size_t held, parts;
-  std::vector<std::string> names;                  // of the parts
-  std::unique_ptr<std::atomic<bool>[]> suspended;  // the held part is not kept out of it
+  std::unique_ptr<std::atomic<bool>[]> suspended;  // of the page's parts: the held one is not kept out of it
   int suspended_count = 0;                         // of the contact loop's thread
-  std::shared_ptr<const std::string> bundle;
 };
 
 LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop)
-    : virtual_time_(virtual_time), restartable_(restartable), led_(led), stop_(stop), paused_(virtual_time) {
-  show(file);
+    : file_(file),
+      virtual_time_(virtual_time),
+      restartable_(restartable),
+      led_(led),
+      stop_(stop),
+      paused_(virtual_time),
+      parts_(file.scene) {
+  bundle_.about = {
+      {"mode", "live"}, {"title", file.path},          {"virtual_time", virtual_time_}, {"restartable", restartable_},
+      {"led", led_},    {"reasons", force_off_names()}};
+  add_scene(bundle_, file.scene, Vec3::Zero());
+  begin();
 }
 
 LiveView::~LiveView() = default;
 
-void LiveView::show(const SceneFile& file) {
-  Bundle bundle;
-  add_scene(bundle, file.scene, center_of(file.scene));
-  const std::lock_guard<std::mutex> lock(mutex_);
-  bundle.about["mode"] = "live";
-  bundle.about["title"] = file.path;
-  bundle.about["generation"] = ++generation_;
-  bundle.about["virtual_time"] = virtual_time_;
-  bundle.about["restartable"] = restartable_;
-  bundle.about["led"] = led_;
-  bundle.about["reasons"] = force_off_names();
-  run_ = std::make_shared<Run>(file, std::make_shared<const std::string>(bundle.bytes()));
-  looped_ = run_.get();
+void LiveView::begin() {
+  PageParts parts(file_.scene);
+  auto stretch = std::make_shared<Stretch>(parts, generation_ + 1);
+  by_number_[0] = looped_ = stretch.get();
   paced_ns_ = 0;
-}
-
-const HandGuide& LiveView::guide() const {
-  return looped_->guide;
-}
-
-bool LiveView::take_request(std::size_t& held, bool& keep) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!requested_) return false;
-  requested_ = false;
-  held = held_;
-  keep = keep_;
-  return true;
+  session_ = std::make_shared<Session>();
+  show(std::move(parts), std::move(stretch));
 }
 
-bool LiveView::pose(Pose& X) const {
-  FrameRing::Cursor cursor = ring_.newest();
-  std::uint64_t missed = 0;
-  Frame frame;
-  if (!ring_.read(cursor, frame, missed)) return false;
-  X = {Quat(frame.x[3], frame.x[4], frame.x[5], frame.x[6]), Vec3(frame.x[0], frame.x[1], frame.x[2])};
-  return true;
+/// With mutex_ held.
+void LiveView::show(PageParts parts, std::shared_ptr<Stretch> stretch) {
+  const std::size_t held = parts.held();
+  if (generation_ == 0 || held != parts_.held()) center_ = center_of(parts.all()[held], file_.scene.contact.density);
+  parts_ = std::move(parts);
+  stretch_ = std::move(stretch);
+  bundle_.about["generation"] = generation_ = stretch_->generation;
+  bundle_.about["center"] = {center_.x(), center_.y(), center_.z()};
+  for (std::size_t i = 0; i < parts_.all().size(); ++i) {
+    const Part& part = parts_.all()[i];
+    bundle_.about["parts"][i].update(
+        {{"held", part.held}, {"pose", pose_json(part.pose)}, {"removed", parts_.removed(i)}});
+  }
+  bytes_.reset();
+}
+
+bool LiveView::take_request() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(requested_, false);
 }
 
 void LiveView::before_tick(double t) {
@@ -115,6 +115,7 @@ void LiveView::before_tick(double t) {
     std::int64_t steps = steps_;
     if (steps > 0 && steps_.compare_exchange_strong(steps, steps - 1)) return;
     std::this_thread::sleep_for(kPausePoll);
+    if (changing_) return;  // it comes into force with a tick
   }
   const double speed = speed_;
   const std::int64_t now = monotonic_ns();
@@ -134,28 +135,41 @@ void LiveView::started(const StartReport& start) noexcept {
   looped_->suspended_count = 0;
   for (const StartPair& pair : start.pairs) {
     const bool suspended = pair.state == PairState::suspended;
-    looped_->suspended[pair.part] = suspended;
+    looped_->suspended[looped_->numbers[pair.part]] = suspended;
     looped_->suspended_count += suspended ? 1 : 0;
   }
 }
 
 void LiveView::after_tick(const TickView& tick) noexcept {
+  looped_ = by_number_[tick.stretch % kSlots].load(std::memory_order_acquire);
   if (tick.loop.report().suspended != looped_->suspended_count) started(tick.loop.start());
   looped_->maker.fill(tick, frame_);
+  frame_.generation = looped_->generation;
   ring_.push(frame_);
+  const Pose &P = tick.pen.raw, &Y = tick.pen.state.pose;
+  const Vec3& c = tick.loop.center();
+  pen_.write({words(P), words(Y), {c.x(), c.y(), c.z()}, tick.pen.scale, looped_->generation});
 }
 
 std::shared_ptr<const std::string> LiveView::scene() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return run_->bundle;
+  if (!bytes_) bytes_ = std::make_shared<const std::string>(bundle_.bytes());
+  return bytes_;
+}
+
+std::string LiveView::parts() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const json& about = bundle_.about;
+  return json{{"generation", about["generation"]}, {"center", about["center"]}, {"parts", about["parts"]}}.dump(
+      -1, ' ', false, json::error_handler_t::replace);
 }
 
 std::string LiveView::status() const {
   const double speed = speed_;
   const std::lock_guard<std::mutex> lock(mutex_);
   json suspended = json::array();
-  for (std::size_t i = 0; i < run_->parts; ++i)
-    if (run_->suspended[i]) suspended.push_back(run_->names[i]);
+  for (std::size_t i = 0; i < parts_.all().size(); ++i)
+    if (stretch_->suspended[i]) suspended.push_back(parts_.all()[i].name);
   return json{{"generation", generation_},
               {"suspended", suspended},
               {"paused", paused_.load()},
@@ -166,8 +180,8 @@ std::string LiveView::status() const {
 void LiveView::command(const json& command) {
   const std::string what = command.at("do");
   if (what == "lead") return lead(command);
-  if (what == "hold") return hold(command);
-  if (what == "restart") return request(0, false);
+  if (what == "restart") return restart();
+  if (what == "hold" || what == "remove" || what == "add" || what == "move") return edit(command);
   if (!virtual_time_) throw Error(json(what).dump() + " needs virtual time (--fast)");
   if (what == "pause") {
     paused_ = true;
@@ -196,26 +210,48 @@ void LiveView::lead(const json& command) {
   }
   const Quat q(v[3], v[4], v[5], v[6]);
   if (!(q.norm() > 0.5)) throw Error("a pose has no rotation");
+  const Pose wanted = {q.normalized(), Vec3(v[0], v[1], v[2])};
+  PenSpace space{};
+  if (!pen_.read(space)) return;
+  const Pose P = pose_of(space.raw), Y = pose_of(space.Y);
+  const Vec3 center(space.center.data());
+  // The hand is where it would be if it had brought the part there: the mapping from pen to part is rigid, but for
+  // scale.
+  const Quat turned = (wanted.q * Y.q.conjugate() * P.q).normalized();
+  const Vec3 at = P * center + (wanted * center - Y * center) / space.scale;
   const std::lock_guard<std::mutex> lock(mutex_);
-  run_->guide.lead({q.normalized(), Vec3(v[0], v[1], v[2])});
+  // What was meant for the part that was held before comes too late.
+  if (space.generation != generation_ || command.value("generation", generation_) != generation_) return;
+  session_->guide.lead({turned, at - turned * center});
 }
 
-void LiveView::hold(const json& command) {
-  const auto part = whole_number<std::int64_t>(command.at("part"));
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (part < 0 || static_cast<std::size_t>(part) >= run_->parts) throw Error("there is no such part");
-    if (static_cast<std::size_t>(part) == run_->held) return;
+void LiveView::edit(const json& command) {
+  const std::lock_guard<std::mutex> one(editing_);
+  std::unique_lock<std::mutex> lock(mutex_);
+  PageParts parts = parts_;
+  const std::shared_ptr<Session> session = session_;
+  const std::uint64_t generation = generation_ + 1;
+  lock.unlock();
+  parts.edit(command);
+  auto stretch = std::make_shared<Stretch>(parts, generation);
+  try {
+    parts.place(session->edits.change(parts.in_scene(), [&](std::uint64_t number) {
+      by_number_[number % kSlots].store(stretch.get(), std::memory_order_release);
+      changing_ = true;
+    }));
+  } catch (const std::exception& e) {
+    changing_ = false;
+    throw Error(std::string("Nothing was changed: ") + e.what());
   }
-  request(static_cast<std::size_t>(part), true);
+  changing_ = false;
+  lock.lock();
+  if (session == session_) show(std::move(parts), std::move(stretch));
 }
 
-void LiveView::request(std::size_t held, bool keep) {
+void LiveView::restart() {
   if (!restartable_) throw Error("a run that is recorded cannot start anew");
   const std::lock_guard<std::mutex> lock(mutex_);
   requested_ = true;
-  held_ = held;
-  keep_ = keep;
   stop_ = true;
 }
 

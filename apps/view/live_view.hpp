@@ -1,19 +1,23 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "device/mailbox.hpp"
 #include "tegotae/sim/session.hpp"
+#include "view/bundle.hpp"
 #include "view/frame_maker.hpp"
 #include "view/frame_ring.hpp"
+#include "view/page_parts.hpp"
 #include "view/source.hpp"
 
 namespace tegotae::view {
 
 /// A running session for the page: shows its ticks, and takes the page's commands. The loops meet the server's threads
-/// in a ring of frames, a hand guide and atomics only.
+/// in a ring of frames, a hand guide, the session's edits and atomics only.
 class LiveView final : public RunObserver, public ViewSource {
  public:
   /// `stop` ends the session (RunSettings::stop); commands that need another session set it. Keeps references.
@@ -21,52 +25,77 @@ class LiveView final : public RunObserver, public ViewSource {
   LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop);
   ~LiveView() override;
 
-  /// Another session begins, of `file`.
-  void show(const SceneFile& file);
+  /// Another session of the scene begins.
+  void begin();
   /// What leads the hand in the session now.
-  const HandGuide& guide() const;
+  const HandGuide& guide() const { return session_->guide; }
+  /// What changes its scene.
+  RunEdits& edits() const { return session_->edits; }
   /// How the held part starts in it; which pairs are suspended goes to the page.
   void started(const StartReport& start) noexcept;
-  /// Whether the page asked for another session; then `held` is the part to hold (its number in the scene) and `keep`
-  /// whether the parts shall stay where they are. Asking takes the request away.
-  bool take_request(std::size_t& held, bool& keep);
-  /// X of the newest frame; false before the first.
-  bool pose(Pose& X) const;
+  /// Whether the page asked for another session. Asking takes the request away.
+  bool take_request();
 
   void before_tick(double t) override;
   void after_tick(const TickView& tick) noexcept override;
 
   std::shared_ptr<const std::string> scene() const override;
+  std::string parts() const override;
   const FrameRing* frames() const override { return &ring_; }
   std::string status() const override;
   void command(const nlohmann::json& command) override;
 
  private:
-  struct Run;  // what belongs to one session
+  /// What belongs to one session.
+  struct Session {
+    HandGuide guide;
+    RunEdits edits;
+  };
+  /// What belongs to a stretch of it.
+  struct Stretch;
+  /// How the newest pose of the pen and of where it wants the part belong together.
+  struct PenSpace {
+    std::array<double, 7> raw, Y;
+    std::array<double, 3> center;  ///< of mass of the held part, file frame, m
+    double scale;
+    std::uint64_t generation;
+  };
+  // A stretch that begins, the one that ends, and room.
+  static constexpr std::size_t kSlots = 4;
 
+  void show(PageParts parts, std::shared_ptr<Stretch> stretch);
   void lead(const nlohmann::json& command);
-  void hold(const nlohmann::json& command);
-  void request(std::size_t held, bool keep);
+  void edit(const nlohmann::json& command);
+  void restart();
 
+  const SceneFile& file_;
   const bool virtual_time_;
   const bool restartable_;
   const bool led_;
   std::atomic<bool>& stop_;
   FrameRing ring_;
   Frame frame_;  // of the contact loop's thread
+  Mailbox<PenSpace> pen_;
 
   std::atomic<bool> paused_;
   std::atomic<std::int64_t> steps_{0};  // to make while paused
+  std::atomic<bool> changing_{false};   // a change waits for ticks
   std::atomic<double> speed_{1};        // virtual seconds in a second; infinite: as fast as it goes
   double paced_t_ = 0;                  // of the contact loop's thread: where pacing began
   std::int64_t paced_ns_ = 0;
 
-  mutable std::mutex mutex_;  // of the server's threads and of show(); no loop takes it
-  std::shared_ptr<Run> run_;
-  Run* looped_ = nullptr;  // the same, for the contact loop
-  std::uint64_t generation_ = 0;
-  bool requested_ = false, keep_ = false;
-  std::size_t held_ = 0;
+  std::mutex editing_;        // one edit at a time
+  mutable std::mutex mutex_;  // of the server's threads and of begin(); no loop takes it
+  std::shared_ptr<Session> session_;
+  std::shared_ptr<Stretch> stretch_;
+  std::array<std::atomic<Stretch*>, kSlots> by_number_{};
+  Stretch* looped_ = nullptr;  // of the contact loop's thread
+  PageParts parts_;
+  Bundle bundle_;
+  Vec3 center_;                                       // of mass of the held part, file frame
+  mutable std::shared_ptr<const std::string> bytes_;  // of the bundle; null: to be made
+  std::uint64_t generation_ = 0;                      // of what the page shows: sessions and changes
+  bool requested_ = false;
 };
 
 }  // namespace tegotae::view

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
@@ -26,12 +27,6 @@ namespace {
 // Frames that a page gets: more than pixels in a plot, and a file of some megabytes.
 constexpr std::size_t kMostFrames = 12'000;
 constexpr auto kPoll = std::chrono::milliseconds(50);
-
-Part& held_part(Scene& scene) {
-  for (Part& part : scene.parts)
-    if (part.held) return part;
-  throw Error("no part is held");
-}
 
 /// The frame of a row: recorded values, with the contacts found.
 void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& maker, Frame& frame) {
@@ -71,10 +66,13 @@ class ReplaySource final : public ViewSource {
   std::string review_;
 };
 
-std::string named_scene(const std::string& path, const std::string& scene) {
+std::string named_scene(const std::string& path, const RecordingInfo& info) {
+  const std::string& scene = info.scene;
   if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
   const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
-  for (const std::filesystem::path& file : {std::filesystem::path(scene), beside})
+  // That of a changed scene was written there.
+  const std::filesystem::path named = info.follows.empty() ? std::filesystem::path(scene) : beside;
+  for (const std::filesystem::path& file : {named, beside})
     if (std::filesystem::exists(file)) return file.string();
   throw Error(path + ": its scene " + scene + " is gone; add the scene file to the command");
 }
@@ -84,7 +82,15 @@ std::string named_scene(const std::string& path, const std::string& scene) {
 SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info, const std::string& scene,
                               SceneOptions how) {
   how.hold = info.held;
-  return load_scene(scene.empty() ? named_scene(path, info.scene) : scene, how);
+  return load_scene(scene.empty() ? named_scene(path, info) : scene, how);
+}
+
+std::vector<std::string> scene_changes(const RecordingInfo& info) {
+  std::vector<std::string> texts;
+  if (!info.follows.empty()) texts.push_back("It goes on from " + info.follows + ", where the scene was changed.");
+  if (!info.goes_on.empty())
+    texts.push_back("At its end the scene was changed; the run goes on in " + info.goes_on + ".");
+  return texts;
 }
 
 std::string replay_bundle(const std::string& path, const std::string& scene) {
@@ -122,6 +128,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene) {
   nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
   if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
+  for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);
   if (!recording.info.suspended.empty()) notes.push_back("Suspended at the start: " + recording.info.suspended);
   bundle.about["notes"] = notes;
   return bundle.bytes();

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tegotae/record/recording.hpp"
 #include "tegotae/sim/scene_file.hpp"
@@ -11,10 +12,13 @@
 namespace tegotae::view {
 
 /// The scene of the recording at `path`, with the part in the hand that was held then: the scene file `scene`, or when
-/// that is empty the one that the recording names, from here or from the recording's folder. Throws Error when that
-/// does not say or there is no such file.
+/// that is empty the one that the recording names, from here or from the recording's folder (that of a changed scene:
+/// only from there). Throws Error when that does not say or there is no such file.
 SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info, const std::string& scene,
                               SceneOptions how = {});
+
+/// What the info tells of recordings before and after it, of the same run in other scenes: sentences.
+std::vector<std::string> scene_changes(const RecordingInfo& info);
 
 /// The bundle of the recording at `path` over its scene (as load_recorded_scene has it), for the page. Contacts
 /// are not in a recording: they are found anew, by a contact loop that is led along the recorded poses and a little

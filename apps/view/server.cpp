@@ -101,6 +101,8 @@ struct Server::Impl {
       serve_page(connection);
     } else if (method == "GET" && uri == "/scene") {
       respond(connection, 200, "OK", "application/octet-stream", *source.scene());
+    } else if (method == "GET" && uri == "/parts" && source.frames()) {
+      respond(connection, 200, "OK", "application/json", source.parts());
     } else if (method == "GET" && uri == "/stream" && source.frames()) {
       serve_stream(connection);
     } else if (method == "GET" && uri == "/review") {
@@ -152,6 +154,8 @@ struct Server::Impl {
       respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
     } catch (const nlohmann::json::exception&) {
       respond(connection, 400, "Bad Request", text, "this is no command\n");
+    } catch (const std::exception& e) {
+      respond(connection, 500, "Internal Server Error", text, std::string(e.what()) + "\n");
     }
   }
 

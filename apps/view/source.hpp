@@ -14,6 +14,8 @@ class ViewSource {
   virtual ~ViewSource() = default;
   /// The bundle (bundle.hpp) that the page begins with.
   virtual std::shared_ptr<const std::string> scene() const = 0;
+  /// JSON: what changes of about.parts, about.center and about.generation when the scene does; empty: nothing does.
+  virtual std::string parts() const { return {}; }
   /// Frames to stream; null when all is in the bundle.
   virtual const FrameRing* frames() const = 0;
   /// JSON that goes along with the frames.

@@ -9,9 +9,9 @@
 namespace tegotae::view {
 
 /// run_session with a page to look at it. The run goes on after its script, until `stop` (which must be
-/// `settings.stop`) or for `settings.seconds`; the page may begin it anew, also with another part in the hand.
+/// `settings.stop`) or for `settings.seconds`; the page may begin it anew, and change its parts while it runs.
 /// `announce` gets the address to open. Returns the summary of the last run.
-RunSummary run_viewed(SceneFile file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
+RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
                       const std::function<void(const std::string&)>& announce);
 
 }  // namespace tegotae::view

@@ -43,7 +43,8 @@ void append_frame(const Frame& f, std::vector<float>& out) {
   append(out, f.flags);
   append(out, f.reason);
   append(out, static_cast<double>(f.pair_count));
-  static_assert(kFrameFloats == 4 + 7 + 7 + 6 + 8);
+  append(out, static_cast<double>(f.generation));
+  static_assert(kFrameFloats == 4 + 7 + 7 + 6 + 9);
   out.resize(begin + kFrameFloats);
 }
 

@@ -11,7 +11,7 @@ namespace tegotae::view {
 
 // A frame on its way to a page is a row of 32-bit floats: kFrameFloats of them, then kPairFloats for each pair. The
 // page reads them in apps/web/src/view/frame.js.
-inline constexpr std::size_t kFrameFloats = 32;
+inline constexpr std::size_t kFrameFloats = 33;
 inline constexpr std::size_t kPairFloats = 8;
 
 /// Appends the frame without its pairs.

@@ -1,17 +1,10 @@
-// The one file that includes OpenCASCADE.
-#include <BRepAdaptor_Surface.hxx>
-#include <BRepBndLib.hxx>
+// Reads STEP files with OpenCASCADE: products, instances, names, colors.
 #include <BRepGProp.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
-#include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
-#include <Poly_PolygonOnTriangulation.hxx>
-#include <Poly_Triangulation.hxx>
 #include <Quantity_ColorRGBA.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -20,13 +13,6 @@
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
-#include <TopExp.hxx>
-#include <TopExp_Explorer.hxx>
-#include <TopTools_DataMapOfShapeInteger.hxx>
-#include <TopoDS.hxx>
-#include <TopoDS_Edge.hxx>
-#include <TopoDS_Face.hxx>
-#include <TopoDS_Vertex.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -37,29 +23,16 @@
 #include <cstdio>
 #include <gp_Quaternion.hxx>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include "mesh/occt_shape.hpp"
 #include "mesh/read_parts.hpp"
-#include "mesh/round_faces.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/report.hpp"
 
 namespace tegotae {
 namespace {
-
-constexpr double kMillimeter = 1e-3;  // OpenCASCADE hands out millimeters, whatever the file's unit
-// Turn between neighboring facets, rad: what small curved faces get besides the chord error.
-constexpr double kFacetAngle = 0.35;
-
-Vec3 meters(const gp_XYZ& p) {
-  return kMillimeter * Vec3(p.X(), p.Y(), p.Z());
-}
-
-Vec3 direction(const gp_Dir& d) {
-  return {d.X(), d.Y(), d.Z()};
-}
 
 Pose pose_of(const TopLoc_Location& location) {
   const gp_Trsf& t = location.Transformation();
@@ -100,165 +73,6 @@ class Quiet {
  private:
   const Message_SequenceOfPrinters printers_;
 };
-
-/// What stands on the surface of a part.
-CadFace describe(const TopoDS_Face& face) {
-  CadFace out;
-  Bnd_Box box;
-  BRepBndLib::Add(face, box);
-  if (!box.IsVoid()) {
-    double x0, y0, z0, x1, y1, z1;
-    box.Get(x0, y0, z0, x1, y1, z1);
-    out.box = Eigen::AlignedBox3d(meters({x0, y0, z0}), meters({x1, y1, z1}));
-  }
-  const BRepAdaptor_Surface surface(face);
-  gp_Ax3 axes;
-  switch (surface.GetType()) {
-    case GeomAbs_Plane:
-      axes = surface.Plane().Position();
-      out.kind = FaceKind::plane;
-      break;
-    case GeomAbs_Cylinder:
-      axes = surface.Cylinder().Position();
-      out.kind = FaceKind::cylinder;
-      out.radius = kMillimeter * surface.Cylinder().Radius();
-      break;
-    case GeomAbs_Cone:
-      axes = surface.Cone().Position();
-      out.kind = FaceKind::cone;
-      out.radius = kMillimeter * surface.Cone().RefRadius();
-      break;
-    case GeomAbs_Sphere:
-      axes = surface.Sphere().Position();
-      out.kind = FaceKind::sphere;
-      out.radius = kMillimeter * surface.Sphere().Radius();
-      break;
-    case GeomAbs_Torus:
-      axes = surface.Torus().Position();
-      out.kind = FaceKind::torus;
-      out.radius = kMillimeter * surface.Torus().MajorRadius();
-      break;
-    default:
-      return out;
-  }
-  out.point = meters(axes.Location().XYZ());
-  out.axis = direction(axes.Direction());
-  // The normal of these surfaces looks outwards when their axes are right-handed.
-  out.hole = axes.Direct() == (face.Orientation() == TopAbs_REVERSED);
-  return out;
-}
-
-std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
-  std::vector<TopoDS_Face> faces;
-  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) faces.push_back(TopoDS::Face(e.Current()));
-  return faces;
-}
-
-/// Puts the triangulations of the faces of a shape together, joining nodes where the faces share edges.
-class Joiner {
- public:
-  TessellatedShape join(const std::vector<TopoDS_Face>& faces) {
-    for (std::size_t f = 0; f < faces.size(); ++f) add(faces[f], static_cast<std::uint32_t>(f));
-    TessellatedShape out;
-    std::vector<std::uint32_t> index(nodes_.size(), 0xffffffffu);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      std::array<std::uint32_t, 3> corners;
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t node = root(triangles_[t][k]);
-        if (index[node] == 0xffffffffu) {
-          index[node] = static_cast<std::uint32_t>(out.mesh.vertices.size());
-          out.mesh.vertices.push_back(nodes_[node]);
-        }
-        corners[k] = index[node];
-      }
-      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-      out.mesh.triangles.push_back(corners);
-      out.face_of.push_back(face_of_[t]);
-    }
-    return out;
-  }
-
-  std::size_t missing() const { return missing_; }
-
- private:
-  void add(const TopoDS_Face& face, std::uint32_t number) {
-    TopLoc_Location location;
-    const Handle(Poly_Triangulation)& mesh = BRep_Tool::Triangulation(face, location);
-    if (mesh.IsNull() || mesh->NbTriangles() == 0) {
-      ++missing_;
-      return;
-    }
-    const auto base = static_cast<std::uint32_t>(nodes_.size());
-    for (int i = 1; i <= mesh->NbNodes(); ++i) {
-      nodes_.push_back(meters(mesh->Node(i).Transformed(location.Transformation()).XYZ()));
-      parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
-    }
-    const auto at = [base](int node) { return base + static_cast<std::uint32_t>(node - 1); };
-    const bool reversed = face.Orientation() == TopAbs_REVERSED;
-    for (int i = 1; i <= mesh->NbTriangles(); ++i) {
-      int a, b, c;
-      mesh->Triangle(i).Get(a, b, c);
-      triangles_.push_back({at(a), at(reversed ? c : b), at(reversed ? b : c)});
-      face_of_.push_back(number);
-    }
-    for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
-      const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
-      const Handle(Poly_PolygonOnTriangulation)& line = BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
-      if (line.IsNull()) continue;
-      std::vector<std::uint32_t> along;
-      for (int i = 1; i <= line->NbNodes(); ++i) along.push_back(at(line->Node(i)));
-      join_edge(edge, along);
-    }
-  }
-
-  void join_edge(const TopoDS_Edge& edge, const std::vector<std::uint32_t>& along) {
-    if (edges_.IsBound(edge)) {
-      const std::vector<std::uint32_t>& other = lines_[static_cast<std::size_t>(edges_.Find(edge))];
-      if (other.size() == along.size())
-        for (std::size_t i = 0; i < along.size(); ++i) unite(along[i], other[i]);
-    } else {
-      edges_.Bind(edge, static_cast<int>(lines_.size()));
-      lines_.push_back(along);
-    }
-    TopoDS_Vertex first, last;
-    TopExp::Vertices(edge, first, last);
-    join_vertex(first, along.front());
-    join_vertex(last, along.back());
-  }
-
-  void join_vertex(const TopoDS_Vertex& vertex, std::uint32_t node) {
-    if (vertex.IsNull()) return;
-    if (vertices_.IsBound(vertex))
-      unite(node, static_cast<std::uint32_t>(vertices_.Find(vertex)));
-    else
-      vertices_.Bind(vertex, static_cast<int>(node));
-  }
-
-  std::uint32_t root(std::uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t x = root(a), y = root(b);
-    parent_[std::max(x, y)] = std::min(x, y);
-  }
-
-  std::vector<Vec3> nodes_;
-  std::vector<std::uint32_t> parent_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> face_of_;
-  TopTools_DataMapOfShapeInteger edges_, vertices_;  // same place in space, whatever the orientation
-  std::vector<std::vector<std::uint32_t>> lines_;
-  std::size_t missing_ = 0;
-};
-
-void tessellate(const TopoDS_Shape& shape, double chord) {
-  IMeshTools_Parameters settings;
-  settings.Deflection = chord / kMillimeter;
-  settings.Angle = kFacetAngle;
-  settings.MinSize = 0.1 * settings.Deflection;
-  BRepMesh_IncrementalMesh(shape, settings);
-}
 
 /// Half a unit in the last place of a file of floats, wherever in the shape; for the shape's file frame see
 /// read_assembly.
@@ -423,11 +237,11 @@ class StepReader {
     for (std::size_t f = 0; f < leaf.faces.size(); ++f)
       if (leaf.fine[f]) tessellate(leaf.faces[f], options_.chord);
     tessellate(leaf.shape, std::max(options_.chord, options_.coarse_chord));
-    Joiner joiner;
-    TessellatedShape shape = joiner.join(leaf.faces);
+    std::size_t missing = 0;
+    TessellatedShape shape = joined(leaf.faces, missing);
     const std::string self = '"' + leaf.name + '"';
-    if (joiner.missing() > 0)
-      assembly_.notes.push_back(self + ": " + std::to_string(joiner.missing()) + " faces could not be tessellated");
+    if (missing > 0)
+      assembly_.notes.push_back(self + ": " + std::to_string(missing) + " faces could not be tessellated");
     if (!shape.mesh.triangles.empty()) {
       const ClearanceReport kept = keep_clearance(shape, leaf.cad, rounding_margin(shape.mesh));
       note(self, kept);

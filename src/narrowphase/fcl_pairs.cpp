@@ -7,12 +7,29 @@
 
 namespace tegotae {
 
+namespace {
+
+// FCL's distance of two triangles takes one whose normal (the product of two edges) is shorter than 3e-8 for a segment,
+// whatever the unit, and then may call them touching: lengths are given to it in 0.1 mm.
+constexpr double kUnit = 1e-4;
+
+TriangleMesh in_units(TriangleMesh mesh) {
+  for (Vec3& v : mesh.vertices) v /= kUnit;
+  return mesh;
+}
+
+fcl::Transform3d in_units(const Pose& X) {
+  return fcl_transform({X.q, X.p / kUnit});
+}
+
+}  // namespace
+
 struct FclPairs::Models {
   std::map<const TriangleMesh*, std::shared_ptr<FclModel>> of;
 
   const FclModel* operator[](const TriangleMesh& mesh) {
     auto& model = of[&mesh];
-    if (!model) model = fcl_model(mesh);
+    if (!model) model = fcl_model(in_units(mesh));
     return model.get();
   }
 };
@@ -25,7 +42,7 @@ std::vector<FclPairs::Faces> FclPairs::intersections(const TriangleMesh& a, cons
   fcl::CollisionRequestd request;
   request.num_max_contacts = most;
   fcl::CollisionResultd result;
-  fcl::collide((*models_)[a], fcl_transform(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
+  fcl::collide((*models_)[a], in_units(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
   std::vector<Faces> pairs;
   pairs.reserve(result.numContacts());
   for (std::size_t i = 0; i < result.numContacts(); ++i) {
@@ -39,11 +56,11 @@ double FclPairs::distance_below(double bound, const TriangleMesh& a, const Trian
                                 Faces& nearest) {
   const fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
-  result.min_distance = bound;  // the traversal leaves out whatever is farther than the best so far
-  fcl::distance((*models_)[a], fcl_transform(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
-  if (!(result.min_distance < bound)) return bound;
+  result.min_distance = bound / kUnit;  // the traversal leaves out whatever is farther than the best so far
+  fcl::distance((*models_)[a], in_units(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
+  if (!(result.min_distance < bound / kUnit)) return bound;
   nearest = {static_cast<std::uint32_t>(result.b1), static_cast<std::uint32_t>(result.b2)};
-  return result.min_distance;
+  return kUnit * result.min_distance;
 }
 
 }  // namespace tegotae

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kBufferSize = 64 * 1024;
 }  // namespace
 
-CsvFile::CsvFile(const std::string& path, const RecordingInfo& info) : file_(path) {
+CsvFile::CsvFile(const std::string& path, const RecordingInfo& info) : path_(path), file_(path), info_(info) {
   rows_.reserve(kBufferSize);
   rows_ = kRecordHeader;
   flush();
@@ -30,9 +30,11 @@ void CsvFile::flush() noexcept {
   rows_.clear();
 }
 
-void CsvFile::close() {
+void CsvFile::close(const std::string& goes_on) {
   flush();
   file_.close();
+  info_.goes_on = goes_on;
+  if (!goes_on.empty()) write_info(info_, path_);
 }
 
 }  // namespace tegotae

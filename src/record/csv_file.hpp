@@ -14,10 +14,12 @@ class CsvFile final : public RecordFile {
 
   void add(const RecordFrame& frame) noexcept override;
   void flush() noexcept override;
-  void close() override;
+  void close(const std::string& goes_on) override;
 
  private:
+  std::string path_;
   OutputFile file_;
+  RecordingInfo info_;
   std::string rows_;
 };
 

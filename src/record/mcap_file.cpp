@@ -58,17 +58,20 @@ Bytes metadata(const RecordingInfo& info) {
 
 }  // namespace
 
-McapFile::McapFile(const std::string& path, const RecordingInfo& info) : file_(path) {
+McapFile::McapFile(const std::string& path, const RecordingInfo& info) : file_(path), info_(info) {
   Bytes begin;
   begin.text = kMagic;
   begin.record(kHeader, Bytes().put(std::string_view()).put("tegotae"));
   file_.write(begin.text);
-  metadata_at_ = file_.size();
-  Bytes record;
-  record.record(kMetadata, metadata(info));
-  metadata_length_ = record.text.size();
-  file_.write(record.text);
+  write_metadata();
   file_.check();
+}
+
+void McapFile::write_metadata() {
+  Bytes record;
+  record.record(kMetadata, metadata(info_));
+  metadata_.emplace_back(file_.size(), record.text.size());
+  file_.write(record.text);
 }
 
 void McapFile::add(const RecordFrame& frame) noexcept {
@@ -158,10 +161,12 @@ void McapFile::write_summary() {
   }
   Bytes content;
   content.put(frames_ * kFrameTopics).put(static_cast<std::uint16_t>(kFrameTopics));
-  content.put(static_cast<std::uint32_t>(kFrameTopics)).put(std::uint32_t{0}).put(std::uint32_t{1});
+  content.put(static_cast<std::uint32_t>(kFrameTopics)).put(std::uint32_t{0});
+  content.put(static_cast<std::uint32_t>(metadata_.size()));
   content.put(static_cast<std::uint32_t>(chunks_.size())).put(begin).put(end).put(counts.text);
   statistics.record(kStatistics, content);
-  metadata_index.record(kMetadataIndex, Bytes().put(metadata_at_).put(metadata_length_).put(kMetadataName));
+  for (const auto& [at, length] : metadata_)
+    metadata_index.record(kMetadataIndex, Bytes().put(at).put(length).put(kMetadataName));
 
   group(kSchema, schemas);
   group(kChannel, channels);
@@ -177,9 +182,11 @@ void McapFile::write_summary() {
   file_.write(summary.text);
 }
 
-void McapFile::close() {
+void McapFile::close(const std::string& goes_on) {
   if (!file_.failed()) {
     write_chunk();
+    info_.goes_on = goes_on;
+    if (!goes_on.empty()) write_metadata();                                     // a reader takes the last one
     file_.write(Bytes().record(kDataEnd, Bytes().put(std::uint32_t{0})).text);  // 0: no checksum of all data
     write_summary();
   }

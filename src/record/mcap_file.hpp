@@ -18,7 +18,7 @@ class McapFile final : public RecordFile {
 
   void add(const RecordFrame& frame) noexcept override;
   void flush() noexcept override {}  // a chunk leaves when it is full
-  void close() override;
+  void close(const std::string& goes_on) override;
 
  private:
   using TimeAndOffset = std::pair<std::uint64_t, std::uint64_t>;
@@ -30,16 +30,18 @@ class McapFile final : public RecordFile {
     std::uint64_t size = 0, stored = 0;  // of the records in it, as they are and as stored
   };
 
+  void write_metadata();
   void add_messages(const RecordFrame& frame);
   void write_chunk();
   void write_summary();
 
   OutputFile file_;
+  RecordingInfo info_;
   mcap::Bytes records_;  // of the chunk that is being filled
   std::array<std::vector<TimeAndOffset>, kFrameTopics> index_;
   std::vector<Chunk> chunks_;
   std::uint64_t frames_ = 0;
-  std::uint64_t metadata_at_ = 0, metadata_length_ = 0;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> metadata_;  // where each such record is, and how long
 };
 
 }  // namespace tegotae

@@ -14,8 +14,8 @@ class RecordFile {
   virtual void add(const RecordFrame& frame) noexcept = 0;
   /// Hands over to the system what may be handed over by now.
   virtual void flush() noexcept = 0;
-  /// Writes what is left and throws the first failure, as Error.
-  virtual void close() = 0;
+  /// Writes what is left, with `goes_on` in the info where there is one, and throws the first failure, as Error.
+  virtual void close(const std::string& goes_on) = 0;
 };
 
 /// Creates or replaces the file; its ending chooses the format. Throws Error naming the path and the cause.

@@ -42,14 +42,14 @@ struct Recorder::Impl {
     drain();
   }
 
-  void close() {
+  void close(const std::string& goes_on) {
     if (!open) return;
     open = false;
     if (writer.joinable()) {
       stopping.store(true, std::memory_order_release);
       writer.join();
     }
-    file->close();
+    file->close(goes_on);
   }
 };
 
@@ -63,7 +63,7 @@ Recorder::Recorder(const std::string& path, RecordMode mode, const RecordingInfo
 
 Recorder::~Recorder() {
   try {
-    impl_->close();
+    impl_->close({});
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
   }
@@ -80,8 +80,8 @@ void Recorder::push(const RecordFrame& frame) noexcept {
   impl_->rows.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Recorder::close() {
-  impl_->close();
+void Recorder::close(const std::string& goes_on) {
+  impl_->close(goes_on);
 }
 
 std::uint64_t Recorder::rows() const noexcept {

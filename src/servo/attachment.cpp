@@ -76,6 +76,13 @@ void Attachment::publish(const ProxyState& proxy, std::uint64_t tick, std::uint6
   link_->publish(proxy, tick, device_sequence, now_ns, planes);
 }
 
+void Attachment::hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept {
+  center_ = center;
+  gyration_ = gyration;
+  link_->hold(center, gyration, X);
+  homed_ = true;
+}
+
 ServoStatistics Attachment::statistics() const noexcept {
   return servo_statistics(*channel_);
 }

@@ -12,6 +12,7 @@
 #include "mesh/components.hpp"
 #include "narrowphase/fcl_pairs.hpp"
 #include "narrowphase/patch_cache.hpp"
+#include "narrowphase/patch_front.hpp"
 #include "tegotae/mesh/report.hpp"
 
 namespace tegotae {
@@ -19,6 +20,8 @@ namespace {
 
 // Enough for all of them in practice; the deepest point is looked for near these and at every vertex.
 constexpr std::size_t kMostPairs = 1000000;
+// For planes between patches of a pair, about 15 ms, before FCL is asked.
+constexpr int kMostSearches = 1 << 16;
 // An edge that leans less than this out of a triangle's plane (sine) does not cross it: parts that lie face to face.
 constexpr double kCrossing = 1e-9;
 
@@ -27,6 +30,7 @@ using Box = Eigen::AlignedBox3d;
 /// What is known of a mesh, made when first needed.
 struct MeshData {
   Box box;
+  std::shared_ptr<const PatchTree> tree;
   std::unique_ptr<SignedDistance> distance;
   bool closed = false;                     ///< set with it
   std::vector<std::uint32_t> one_of_each;  ///< a vertex of each component
@@ -53,9 +57,11 @@ class PairLook {
   /// Fills kind, gap, depth and place; false when the two are too far apart to be listed.
   bool look(const Side& a, const Side& b, Clash& clash) {
     const Pose X_BA = b.part->pose.inverse() * a.part->pose;
-    const auto pairs = fcl_.intersections(*a.part->mesh, *b.part->mesh, X_BA, kMostPairs);
+    const bool apart = known_apart(a, b, X_BA);
+    std::vector<FclPairs::Faces> pairs;
+    if (!apart) pairs = fcl_.intersections(*a.part->mesh, *b.part->mesh, X_BA, kMostPairs);
     const bool inside = pairs.empty() && (any_inside(a, b) || any_inside(b, a));
-    if (pairs.empty() && !inside) return look_apart(a, b, X_BA, clash);
+    if (pairs.empty() && !inside) return !apart && look_apart(a, b, X_BA, clash);
     clash.gap = 0;
     clash.depth = 0;
     clash.triangle_pairs = pairs.size();
@@ -80,10 +86,27 @@ class PairLook {
   }
 
  private:
+  double reach() const { return std::max(options_.tolerance, options_.within); }
+
+  /// Whether the certificate of the patches says that the surfaces are farther apart than `reach()`. FCL need not be
+  /// asked then: its models of large meshes take seconds to build, and patches come from the cache.
+  bool known_apart(const Side& a, const Side& b, const Pose& X_BA) {
+    front_.attach(*tree(a), a.data->box.center(), *tree(b));
+    front_.set_clearance(reach());
+    WorkLimit limit;
+    limit.searches = kMostSearches;
+    limit.blocking = 1;
+    return front_.certify(X_BA, Displacement{}, limit).status == CertifyStatus::certified;
+  }
+
+  static const std::shared_ptr<const PatchTree>& tree(const Side& s) {
+    if (!s.data->tree) s.data->tree = cached_patch_tree(s.part->mesh);
+    return s.data->tree;
+  }
   static SignedDistance& prepared(const Side& s) {
     if (!s.data->distance) {
       const auto& mesh = s.part->mesh;
-      s.data->distance = std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
+      s.data->distance = std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), tree(s));
       s.data->closed = report(*mesh).closed;
     }
     return *s.data->distance;
@@ -120,10 +143,9 @@ class PairLook {
   }
 
   bool look_apart(const Side& a, const Side& b, const Pose& X_BA, Clash& clash) {
-    const double reach = std::max(options_.tolerance, options_.within);
     FclPairs::Faces nearest;
     // The bound itself is not found: look a little farther.
-    const double bound = reach * (1 + 1e-9) + 1e-12;
+    const double bound = reach() * (1 + 1e-9) + 1e-12;
     clash.gap = fcl_.distance_below(bound, *a.part->mesh, *b.part->mesh, X_BA, nearest);
     if (!(clash.gap < bound)) return false;
     const ClosestPoints c = closest_points(triangle(a, nearest.first, X_BA), triangle(b, nearest.second, Pose()));
@@ -186,6 +208,7 @@ class PairLook {
 
   FclPairs& fcl_;
   const ClashOptions& options_;
+  PatchFront front_;
 };
 
 /// Pairs of parts whose boxes come within `reach`.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -31,6 +31,10 @@ constexpr int kMostResolves = 6;
 constexpr int kMostHalvings = 4;
 // Share of the kept gap by which one that is too small recovers in a piece.
 constexpr double kRecovery = 0.4;
+// Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
+// room no motion may keep all gaps to the last bit. Where there is none, gaps may be lost by this share of the wanted
+// motion.
+constexpr double kNormalNoise = 1e-9;
 // To recover gaps a part goes no farther away from the pen than this many kept gaps.
 constexpr double kMostRecovery = 30;
 // Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
@@ -84,7 +88,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
   least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
   X_ = at_.X;
-  last_Y_ = SceneParts(scene).held->pose;
+  last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMostBlocking);
   near_.reserve(at_.spheres.size());
 }
@@ -140,7 +144,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (report.pieces.empty()) report.pieces.push_back(X_);
     if (!late()) track();
   }
-  gather(report);
+  at_.tell(keep_ / kKeepShare, report);
   // Out of time, the limits may be those of an earlier pose.
   report.planes.count = 0;
   if (tracked_) {
@@ -268,14 +272,15 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   const auto& limits = at_.contacts->limits();
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
-  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it always has
-  // an answer, because standing still is one.
-  for (const double recovery : {kRecovery * keep_, 0.0}) {
+  // Gaps that were lost to rounding or curvature recover where the programme allows it; without recovery it has an
+  // answer, because standing still is one, but for rounding.
+  for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
+    const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const double gap = limits[i].gap;
-      const double lost = gap < kRecoverBelow * keep_ ? recovery : 0;
-      bounds_[i] =
-          limits[i].age == kCutAge ? std::min(kCutMargin * kGapFloor, gap) - gap : std::min(keep_, gap + lost) - gap;
+      const double lost = gap < kRecoverBelow * keep_ && limits[i].age != kCutAge ? recovery : 0;
+      const double keep = limits[i].age == kCutAge ? kCutMargin * kGapFloor : keep_;
+      bounds_[i] = std::min(keep, gap + lost) - gap - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
@@ -316,21 +321,6 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
   return made > kStiction * still_ticks_ * error.squaredNorm();
-}
-
-void ContactLoop::gather(TickReport& report) const {
-  report.contacts = 0;
-  report.contact_gap = keep_ / kKeepShare;
-  report.gap = std::numeric_limits<double>::infinity();
-  for (const Contact& c : at_.contacts->limits()) {
-    if (c.age == kCutAge) continue;
-    report.contacts += c.gap <= report.contact_gap ? 1 : 0;
-    report.gap = std::min(report.gap, c.gap);
-  }
-  report.limits = static_cast<int>(at_.contacts->limits().size());
-  report.suspended = at_.start.suspended();
-  report.relieved = at_.start.relieved();
-  report.overflow = at_.contacts->overflow() > 0 || at_.check->overflow();
 }
 
 }  // namespace tegotae

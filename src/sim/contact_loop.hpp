@@ -50,7 +50,6 @@ class ContactLoop final : public ProxyLoop {
   bool wedged() const;
   /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
   bool track();
-  void gather(TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
 

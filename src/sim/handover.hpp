@@ -24,6 +24,9 @@ class Handover {
     std::unique_ptr<T>(offered_.exchange(object.release(), std::memory_order_acq_rel));
   }
 
+  /// Any thread. Whether there was an offer to take back; one that the taker looks at is not there.
+  bool withdraw() { return std::unique_ptr<T>(offered_.exchange(nullptr, std::memory_order_acq_rel)) != nullptr; }
+
   // The taker's thread.
   /// Null when there is no offer.
   T* take() noexcept {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <thread>
 
 #include "device/mailbox.hpp"
 #include "sim/handover.hpp"
@@ -67,8 +68,9 @@ struct HapticLoop::State {
     RunningScene* changed = next.take();
     if (changed == nullptr) return false;
     const bool same = changed->held == now->held;
-    // What was there before the held part is free of, as long as every pair is active.
-    const bool known = changed->fresh_since == now->number && report.suspended + report.relieved == 0;
+    // What was there before the held part is free of, where the old loop keeps it out and every pair is active.
+    const bool known = changed->fresh_since == now->number && now->keeps_out && changed->held_mesh == now->held_mesh &&
+                       report.suspended + report.relieved == 0;
     const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
     if (same && !changed->loop->take_over(report, Y, known ? &changed->fresh : nullptr, until)) {
       next.put_back(changed);
@@ -76,7 +78,10 @@ struct HapticLoop::State {
     }
     next.done_with(now.release());
     now.reset(changed);
-    if (!same) begin();
+    if (!same) {
+      Y = now->loop->pose();  // the old part's means nothing for the new one
+      begin();
+    }
     change_in_force.store(changed->number, std::memory_order_release);
     return !same;
   }
@@ -96,7 +101,8 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   return s.report;
 }
 
-std::uint64_t HapticLoop::change(const Scene& next) {
+std::uint64_t HapticLoop::change(const Scene& next,
+                                 const std::function<void(std::uint64_t number, const StartReport& start)>& ready) {
   State& s = *state_;
   const std::lock_guard<std::mutex> lock(s.changing);
   auto changed = std::make_unique<RunningScene>(next);
@@ -104,10 +110,26 @@ std::uint64_t HapticLoop::change(const Scene& next) {
   const std::uint64_t in_force = change_in_force();
   s.obstacles.erase(s.obstacles.begin(), s.obstacles.find(in_force));
   changed->compare(*s.obstacles.at(in_force), in_force);
-  const std::uint64_t number = changed->number = ++s.last_change;
+  const std::uint64_t number = changed->number = s.last_change + 1;
+  if (ready) ready(number, changed->loop->start());
+  s.last_change = number;
   s.obstacles[number] = changed->obstacles;
   s.next.offer(std::move(changed));
   return number;
+}
+
+bool HapticLoop::withdraw() {
+  State& s = *state_;
+  const std::lock_guard<std::mutex> lock(s.changing);
+  for (;;) {
+    const std::uint64_t in_force = change_in_force();
+    if (in_force == s.last_change) return false;
+    if (s.next.withdraw()) {
+      s.last_change = in_force;
+      return true;
+    }
+    std::this_thread::yield();  // a tick looks at it: it comes into force, or back, within that tick
+  }
 }
 
 std::uint64_t HapticLoop::change_in_force() const noexcept {

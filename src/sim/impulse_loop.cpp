@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -43,7 +43,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
       envelope_(std::min(kEnvelope, 0.5 * settings.l_min)),
       piece_cap_(at_.check->longest_motion()) {
   X_ = at_.X;
-  last_Y_ = SceneParts(scene).held->pose;
+  last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMostBlocking);
   near_.reserve(at_.spheres.size());
 }
@@ -218,18 +218,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport&
 }
 
 void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const {
-  report.contacts = 0;
-  report.contact_gap = 2 * envelope_;
-  report.gap = std::numeric_limits<double>::infinity();
-  for (const Contact& c : at_.contacts->limits()) {
-    if (c.age == kCutAge) continue;
-    report.contacts += c.gap <= report.contact_gap ? 1 : 0;
-    report.gap = std::min(report.gap, c.gap);
-  }
-  report.limits = static_cast<int>(at_.contacts->limits().size());
-  report.suspended = at_.start.suspended();
-  report.relieved = at_.start.relieved();
-  report.overflow = at_.contacts->overflow() > 0 || at_.check->overflow();
+  at_.tell(2 * envelope_, report);
   report.cut |= late();
   const double left = size(displacement(X_, Y, mass_.center));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;

@@ -8,6 +8,7 @@
 
 #include "narrowphase/patch_cache.hpp"
 #include "narrowphase/patch_motion_check.hpp"
+#include "sim/scene_parts.hpp"
 #include "sim/surroundings.hpp"
 #include "tegotae/core/clock.hpp"
 

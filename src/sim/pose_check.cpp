@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "narrowphase/fcl_narrow_phase.hpp"
+#include "narrowphase/fcl_pairs.hpp"
 
 namespace tegotae {
 
@@ -20,10 +20,10 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   poses_.push_back({X, freed});
 }
 
-std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start) const {
+std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start,
+                                           std::atomic<double>* share) const {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
-  std::vector<const TriangleMesh*> meshes;
   BoundingSpheres spheres;
   std::vector<std::uint32_t> freed;  // of each fixed part, in which place it came free
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
@@ -36,17 +36,19 @@ std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport
     const auto pair =
         std::find_if(start.pairs.begin(), start.pairs.end(), [i](const StartPair& p) { return p.part == i; });
     freed.push_back(pair == start.pairs.end() ? 0 : pair->freed);
-    meshes.push_back(part.mesh.get());
     spheres.add(bounding_sphere(*part.mesh), part.pose);
   }
-  FclNarrowPhase narrow(*held->mesh, meshes);
+  FclPairs fcl;  // makes the models of just those meshes that some pose is near to
   const Sphere ball = bounding_sphere(*held->mesh);
   std::vector<std::uint32_t> near;
-  std::int64_t count = 0;
+  std::int64_t count = 0, asked = 0;
   for (const auto& [X, came_free] : poses_) {
+    if (share) share->store(static_cast<double>(asked++) / static_cast<double>(poses_.size()));
     spheres.query(X * ball.center, ball.radius, 0.0, near);
     for (const std::uint32_t i : near) {
-      if (freed[i] > came_free || !narrow.intersects(i, fixed[i]->pose.inverse() * X)) continue;
+      if (freed[i] > came_free ||
+          fcl.intersections(*held->mesh, *fixed[i]->mesh, fixed[i]->pose.inverse() * X, 1).empty())
+        continue;
       ++count;
       break;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,8 +21,12 @@ class PoseCheck {
 
   /// Never allocates. A pose equal to the last one counts once. `freed`: how many pairs of StartReport had come free.
   void add(const Pose& X, std::uint32_t freed = 0) noexcept;
+  /// No pose comes any more.
+  void shrink() { poses_.shrink_to_fit(); }
   /// How many of the kept poses intersect a fixed part of `scene`, pairs left out that had not come free by then.
-  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {}) const;
+  /// `share` (may be null) is told how far that is, from 0 to 1.
+  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {},
+                                  std::atomic<double>* share = nullptr) const;
 
  private:
   struct Kept {

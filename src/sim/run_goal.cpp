@@ -1,8 +1,7 @@
 #include "sim/run_goal.hpp"
 
-#include <algorithm>
-
 #include "broadphase/bounding_spheres.hpp"
+#include "sim/scene_parts.hpp"
 
 namespace tegotae {
 
@@ -14,10 +13,6 @@ constexpr double kEndTolerance = 0.02;
 constexpr double kEndRotationTolerance = 0.1;  // rad
 
 }  // namespace
-
-const Part& held_part(const Scene& scene) {
-  return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
-}
 
 RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
     : center_(center),

@@ -4,9 +4,6 @@
 
 namespace tegotae {
 
-/// The part that is held.
-const Part& held_part(const Scene& scene);
-
 /// Where a scene's script takes the held part, and how far that has come.
 class RunGoal {
  public:

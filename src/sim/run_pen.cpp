@@ -50,10 +50,21 @@ class LocalPen final : public RunPen {
   void tick_servo(std::int64_t now_ns) noexcept override { servo_.tick(now_ns); }
   void advance(double dt) noexcept override { device_.advance(dt); }
 
-  bool read(PenSample& pen, std::int64_t) noexcept override { return link_.read(pen); }
+  bool read(PenSample& pen, std::int64_t) noexcept override {
+    PenSample newest;
+    // Before the first hold() there is nothing to obey; a servo that has not heard of this application tells the pen
+    // too.
+    if (!link_.read(newest) || (homed_ && !link_.obeyed(newest))) return false;
+    pen = newest;
+    return true;
+  }
   void publish(const ProxyState& proxy, const ContactPlanes& planes, std::uint64_t tick, std::uint64_t device_sequence,
                std::int64_t now_ns) noexcept override {
     link_.publish(proxy, tick, device_sequence, now_ns, planes);
+  }
+  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept override {
+    link_.hold(center, gyration, X);
+    homed_ = true;
   }
 
   bool connected() const noexcept override { return true; }
@@ -71,6 +82,7 @@ class LocalPen final : public RunPen {
   Channel channel_;
   Servo servo_;
   ContactLink link_;
+  bool homed_ = false;
   std::string stability_;
 };
 
@@ -88,6 +100,10 @@ class RemotePen final : public RunPen {
   void publish(const ProxyState& proxy, const ContactPlanes& planes, std::uint64_t tick, std::uint64_t device_sequence,
                std::int64_t now_ns) noexcept override {
     attachment_.publish(proxy, tick, device_sequence, now_ns, planes);
+  }
+
+  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept override {
+    attachment_.hold(center, gyration, X);
   }
 
   bool connected() const noexcept override { return attachment_.connected(); }

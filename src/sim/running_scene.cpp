@@ -8,6 +8,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "sim/contact_loop.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -51,16 +52,10 @@ ContactSettings completed(ContactSettings s, double radius) {
   return s;
 }
 
-const Part& held_part(const Scene& scene) {
-  const Part* held = nullptr;
-  for (const Part& p : scene.parts) {
+const Scene& checked(const Scene& scene) {
+  for (const Part& p : scene.parts)
     if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
-    if (!p.held) continue;
-    if (held) throw Error("parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be");
-    held = &p;
-  }
-  if (!held) throw Error("no part is held; exactly one must be");
-  return *held;
+  return scene;
 }
 
 }  // namespace
@@ -69,13 +64,15 @@ ContactSettings::ContactSettings()
     : l_min(std::numeric_limits<double>::quiet_NaN()), l_0(std::numeric_limits<double>::quiet_NaN()) {}
 
 RunningScene::RunningScene(const Scene& scene)
-    : held(held_part(scene).name),
+    : held(held_part(checked(scene)).name),
+      held_mesh(held_part(scene).mesh),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
       loop(make_proxy_loop(scene, settings, mass)) {
   std::vector<Obstacle> list;
   for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});
   obstacles = std::make_shared<const std::vector<Obstacle>>(std::move(list));
+  keeps_out = settings.narrowphase == "patch" && (settings.custom_resolver || settings.resolver != "penalty");
 }
 
 void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_number) {

@@ -23,7 +23,9 @@ struct RunningScene {
   std::shared_ptr<const std::vector<Obstacle>> obstacles;  ///< the fixed parts, by number
   std::vector<bool> fresh;  ///< of them: whether the scene of change `fresh_since` does not have it there
   std::uint64_t fresh_since = 0;
-  std::string held;          ///< name of the held part
+  std::string held;  ///< name of the held part
+  std::shared_ptr<const TriangleMesh> held_mesh;
+  bool keeps_out;  ///< no tick leaves the held part nearer to an obstacle than kGapFloor, pairs of start() aside
   ContactSettings settings;  ///< nothing left open
   MassProperties mass;       ///< of the held part
   std::unique_ptr<ProxyLoop> loop;

@@ -184,7 +184,8 @@ StylusScript rest(const Scene& scene) {
 }  // namespace
 
 SceneFile load_scene(const std::string& path, const SceneOptions& options) {
-  const toml::table parsed = parse_toml(path);
+  std::string text = read_file(path);
+  const toml::table parsed = parse_toml(text, path);
   const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   Scene scene;
@@ -207,7 +208,7 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   }
   read_parts(top, folder, options, scene);
   if (!script) script = rest(scene);
-  return {path, std::move(scene), settings, std::move(*script), safety, read_scale(device)};
+  return {path, std::move(scene), settings, std::move(*script), safety, read_scale(device), std::move(text)};
 }
 
 }  // namespace tegotae

@@ -9,12 +9,12 @@
 #include <optional>
 
 #include "sim/loop_priority.hpp"
-#include "sim/pose_check.hpp"
 #include "sim/run_goal.hpp"
 #include "sim/run_pen.hpp"
+#include "sim/run_stretches.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/record/recorder.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae {
@@ -28,10 +28,7 @@ constexpr double kPeriod = 1e-9 * kPeriodNs;
 constexpr std::int64_t kTickPerRest = 10;
 
 HapticLoop make_loop(const SceneFile& file, bool real_time) try {
-  Scene scene = file.scene;
-  // A budget in seconds would let the load of the machine decide what a run in virtual time does.
-  if (!real_time) scene.contact.tick_budget = std::numeric_limits<double>::infinity();
-  return HapticLoop(scene);
+  return HapticLoop(in_its_time(file.scene, real_time));
 } catch (const Error& e) {
   throw Error(file.path + ": " + e.what());
 }
@@ -64,34 +61,30 @@ class Session {
         loop_(make_loop(file, settings.real_time)),
         pen_(make_pen(file, settings, loop_)),
         goal_(file, loop_.center()),
-        duration_(duration(file, settings)) {
-    if (!settings.record.empty())
-      recorder_.emplace(settings.record, settings.real_time ? RecordMode::threaded : RecordMode::synchronous, info());
+        duration_(duration(file, settings)),
+        stretches_(file, settings, loop_) {
     if (settings.progress) settings.progress->duration = duration_;
-    waiting_ = loop_.report().suspended + loop_.report().relieved;
-    if (settings.on_start) settings.on_start(loop_.start());
+    summary_.stability = pen_->stability();
+    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability});
   }
 
   RunSummary run() {
     pen_->start();
     settings_.real_time ? run_real_time() : run_virtual_time();
     pen_->stop();
-    if (recorder_) {
-      recorder_->close();
-      summary_.record_dropped = recorder_->dropped();
-    }
+    stretches_.end();
+    summary_.record_dropped = stretches_.dropped();
+    summary_.recordings = stretches_.recordings();
     summary_.servo = pen_->statistics();
     summary_.missing_realtime = pen_->missing_realtime();
     if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
-    summary_.stability = pen_->stability();
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
-    const Pose& X = loop_.report().proxy.X;
     const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
-    summary_.depth_m = goal_.depth(X);
-    summary_.completed = script_over && goal_.reached(X);
-    summary_.start = loop_.start();
-    summary_.penetrating = check_.count_intersecting(file_.scene, summary_.start);
+    summary_.depth_m = goal_.depth(X_);
+    summary_.completed = script_over && holds_first_ && goal_.reached(X_);
+    summary_.start = stretches_.start();
+    summary_.penetrating = stretches_.penetrating(settings_.progress ? &settings_.progress->checked : nullptr);
     return summary_;
   }
 
@@ -135,6 +128,8 @@ class Session {
     const std::int64_t begin = monotonic_ns();
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
+    const std::string& held = stretches_.now().held;
+    if (stretches_.follow() && stretches_.now().held != held) hold(pen);
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
     pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
     sequence_ = pen.state.sequence;
@@ -144,17 +139,28 @@ class Session {
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
-    const auto freed = static_cast<std::uint32_t>(waiting_ - report.suspended - report.relieved);
-    for (const Pose& X : report.pieces) check_.add(X, freed);
+    RunStretch& stretch = stretches_.now();
+    for (const Pose& X : report.pieces) stretch.check.add(X, static_cast<std::uint32_t>(stretch.freed));
+    if (holds_first_) X_ = report.proxy.X;
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
-    if (recorder_) record(number, t, pen, report, tick_us);
+    if (stretch.recorder) record(number, t, pen, report, tick_us);
     if (settings_.observer) observe(number, t, pen, tick_us);
     if (settings_.progress) show(t, pen, report);
   }
 
   void observe(std::uint64_t number, double t, const PenSample& pen, double tick_us) {
     const ServoStatistics servo = settings_.real_time ? pen_->statistics() : ServoStatistics();
-    settings_.observer->after_tick({number, t, pen, loop_, tick_us, pen_->servo_late_us(), servo});
+    settings_.observer->after_tick(
+        {number, t, pen, loop_, stretches_.now().number, tick_us, pen_->servo_late_us(), servo});
+  }
+
+  /// Another part is held: the pen comes to mean it where it is.
+  void hold(PenSample& pen) noexcept {
+    const Pose& X = loop_.report().proxy.X;
+    pen_->hold(loop_.center(), loop_.gyration(), X);
+    pen.state.pose = X;
+    pen.state.velocity = {};
+    holds_first_ = stretches_.now().held == held_part(file_.scene).name;
   }
 
   /// There is no pen to follow: the part stays, and the servo hears that this loop lives.
@@ -163,14 +169,6 @@ class Session {
     still.velocity = {};
     pen_->publish(still, {}, static_cast<std::uint64_t>(summary_.ticks), sequence_, now);
     if (settings_.progress) settings_.progress->device.store(pen_->connected(), std::memory_order_relaxed);
-  }
-
-  RecordingInfo info() const {
-    std::string suspended;
-    for (const StartPair& pair : loop_.start().pairs)
-      if (pair.state == PairState::suspended)
-        suspended += (suspended.empty() ? "" : ", ") + file_.scene.parts[pair.part].name;
-    return {file_.path, held_part(file_.scene).name, file_.scene.contact.resolver, settings_.program, suspended};
   }
 
   void record(std::uint64_t number, double t, const PenSample& pen, const TickReport& report, double tick_us) {
@@ -184,7 +182,7 @@ class Session {
     frame.tick_us = tick_us;
     for (const Pose& X : report.pieces) {
       frame.x = X;
-      recorder_->push(frame);
+      stretches_.now().recorder->push(frame);
       ++frame.substep;
     }
   }
@@ -192,7 +190,7 @@ class Session {
   void show(double t, const PenSample& pen, const TickReport& report) {
     RunProgress& p = *settings_.progress;
     p.t.store(t, std::memory_order_relaxed);
-    p.depth.store(goal_.depth(report.proxy.X), std::memory_order_relaxed);
+    p.depth.store(goal_.depth(X_), std::memory_order_relaxed);
     p.contacts.store(report.contacts, std::memory_order_relaxed);
     p.force.store(pen.wrench.force.norm(), std::memory_order_relaxed);
     p.device.store(true, std::memory_order_relaxed);
@@ -203,11 +201,11 @@ class Session {
   HapticLoop loop_;
   std::unique_ptr<RunPen> pen_;
   RunGoal goal_;
-  std::optional<Recorder> recorder_;
   double duration_;
-  int waiting_ = 0;             // pairs that were not free when the run began
-  std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
-  PoseCheck check_;
+  RunStretches stretches_;
+  Pose X_ = loop_.report().proxy.X;  // of the part that the file holds
+  bool holds_first_ = true;          // that part is held
+  std::uint64_t sequence_ = 0;       // of the pen's sample that the last tick answered
   LatencyHistogram tick_times_;
   std::string missing_;  // of real time, for the contact loop
   RunSummary summary_;

@@ -7,6 +7,7 @@
 #include "narrowphase/patch_cache.hpp"
 #include "narrowphase/patch_front.hpp"
 #include "sim/inset.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -63,12 +64,12 @@ StartPairs::StartPairs(const Scene& scene, const ContactSettings& settings)
 
 void StartPairs::suspend_or_refuse(const Scene& scene, StartPair& pair, const std::string& why) {
   const Part& other = scene.parts[pair.part];
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  const Part& held = held_part(scene);
   const Clash& c = pair.clash;
   if (!ignore_) {
     char place[96];
     std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) m", c.place_W.x(), c.place_W.y(), c.place_W.z());
-    throw Error("parts \"" + held->name + "\" and \"" + other.name + "\" intersect at the start, " +
+    throw Error("parts \"" + held.name + "\" and \"" + other.name + "\" intersect at the start, " +
                 (c.triangle_pairs == 0 ? "one inside the other, " : "") +
                 (std::isnan(c.depth) ? "open surfaces" : length(c.depth) + " deep") + " at " + place + " (" +
                 std::to_string(c.triangle_pairs) + " intersecting triangle pairs" + why +
@@ -79,7 +80,7 @@ void StartPairs::suspend_or_refuse(const Scene& scene, StartPair& pair, const st
   pair.freed = StartPair::kNotYet;
   Waiting w;
   w.part = number_[pair.part];
-  w.inside = std::make_unique<InsideLook>(held->mesh, other.mesh);
+  w.inside = std::make_unique<InsideLook>(held.mesh, other.mesh);
   w.X_WB = other.pose;
   waiting_.push_back(std::move(w));
   ++suspended_;
@@ -87,15 +88,15 @@ void StartPairs::suspend_or_refuse(const Scene& scene, StartPair& pair, const st
 
 std::vector<StartPairs::Copy> StartPairs::relieve(const Scene& scene, const Vec3& center, std::uint32_t first) {
   std::vector<Copy> copies;
-  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  const Part& held = held_part(scene);
   for (std::size_t i = 0; i < report_.pairs.size(); ++i) {
     StartPair& pair = report_.pairs[i];
     const Clash& c = pair.clash;
     if (pair.state == PairState::suspended || c.gap >= kGapFloor + kRoom) continue;
     const Part& other = scene.parts[pair.part];
     const Surface surface(other.mesh);
-    const Pose X_BA = other.pose.inverse() * held->pose;
-    const auto held_tree = cached_patch_tree(held->mesh);
+    const Pose X_BA = other.pose.inverse() * held.pose;
+    const auto held_tree = cached_patch_tree(held.mesh);
     Copy copy{number_[pair.part], nullptr, nullptr};
     bool found = false;
     for (double by = kGapFloor + kRoom - kept(c); !found && by < kGapFloor + kRoom + kMostTolerances * tolerance_;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "narrowphase/fcl_motion_check.hpp"
 #include "narrowphase/patch_cache.hpp"
 #include "narrowphase/patch_motion_check.hpp"
 #include "sim/ease_start.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -47,10 +49,6 @@ std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixe
 }
 
 }  // namespace
-
-SceneParts::SceneParts(const Scene& scene) {
-  for (const Part& p : scene.parts) (p.held ? held = &p : (fixed.push_back(&p), held));
-}
 
 Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
     : look_time_(kLookShare * settings.tick_budget) {
@@ -106,6 +104,21 @@ bool Surroundings::look_at_start(const Pose& pose) noexcept {
   if (freed == nullptr) return false;
   if (freed->stand_in != StartPairs::kNobody) contacts->transfer(freed->stand_in, freed->part);
   return true;
+}
+
+void Surroundings::tell(double contact_gap, TickReport& report) const noexcept {
+  report.contacts = 0;
+  report.contact_gap = contact_gap;
+  report.gap = std::numeric_limits<double>::infinity();
+  for (const Contact& c : contacts->limits()) {
+    if (c.age == kCutAge) continue;  // planes for one motion, not surfaces
+    report.contacts += c.gap <= contact_gap ? 1 : 0;
+    report.gap = std::min(report.gap, c.gap);
+  }
+  report.limits = static_cast<int>(contacts->limits().size());
+  report.suspended = start.suspended();
+  report.relieved = start.relieved();
+  report.overflow = contacts->overflow() > 0 || check->overflow();
 }
 
 }  // namespace tegotae

@@ -8,19 +8,12 @@
 #include "narrowphase/motion_check.hpp"
 #include "sim/start_pairs.hpp"
 #include "tegotae/mesh/mass.hpp"
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae {
 
 /// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
 inline constexpr int kMostLimits = 4096;
-
-/// The held part and the fixed ones, in the order of their numbers.
-struct SceneParts {
-  const Part* held = nullptr;
-  std::vector<const Part*> fixed;
-  explicit SceneParts(const Scene& scene);
-};
 
 /// What every loop that never penetrates holds of its scene.
 struct Surroundings {
@@ -45,6 +38,10 @@ struct Surroundings {
   bool is_way_free(const Pose& from, const Pose& to, const Vec3& center, const std::vector<bool>* fresh,
                    std::int64_t deadline_ns, std::vector<std::uint32_t>& near,
                    std::vector<FacePair>& blocking) const noexcept;
+
+  /// Sets what a report says of contacts, limits and pairs that were not free at the start. Gaps of at most
+  /// `contact_gap` (m) count as contact.
+  void tell(double contact_gap, TickReport& report) const noexcept;
 
  private:
   double look_time_;  ///< s

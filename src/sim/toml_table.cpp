@@ -48,13 +48,19 @@ std::string shown(double value) {
 
 }  // namespace
 
-toml::table parse_toml(const std::string& path) {
+std::string read_file(const std::string& path) {
   if (!std::filesystem::exists(path)) throw Error(path + ": no such file");
   if (!std::filesystem::is_regular_file(path)) throw Error(path + ": not a file");
   std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
   if (!in) throw Error(path + ": cannot be read (" + std::strerror(errno) + ")");
+  return text.str();
+}
+
+toml::table parse_toml(const std::string& text, const std::string& path) {
   try {
-    return toml::parse(in, path);
+    return toml::parse(text, path);
   } catch (const toml::parse_error& e) {
     throw Error(at(path, e.source()) + ": not valid TOML: " + one_line(std::string(e.description())));
   }

@@ -10,8 +10,10 @@
 
 namespace tegotae {
 
-/// Parses the TOML file at `path`. Throws Error with file and line when it cannot be read or is not valid TOML.
-toml::table parse_toml(const std::string& path);
+/// The file at `path`. Throws Error when it cannot be read.
+std::string read_file(const std::string& path);
+/// Parses the text of the TOML file at `path`. Throws Error with file and line when it is not valid TOML.
+toml::table parse_toml(const std::string& text, const std::string& path);
 
 /// One table of a TOML file, read key by key. Everything wrong with it is an Error `file:line: table.key: reason`.
 class TomlTable {

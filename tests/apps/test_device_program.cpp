@@ -36,7 +36,7 @@ std::unique_ptr<Program> start(std::vector<std::string> arguments, std::string* 
   arguments.insert(arguments.begin(), kDevice);
   auto device = std::make_unique<Program>(arguments);
   std::string text;
-  for (int i = 0; i < 4; ++i) text += device->line() + "\n";  // the first state last
+  for (int i = 0; i < 5; ++i) text += device->line() + "\n";  // the first state last
   if (greeting != nullptr) *greeting = text;
   return device;
 }
@@ -108,6 +108,9 @@ TEST_CASE("a device tells of itself, is told of by another process, and ends on 
   CHECK(greeting.find("/" + kName + ": simulated, process " + std::to_string(device->pid())) == 0);
   CHECK(greeting.find("real time: ") != std::string::npos);
   CHECK(greeting.find("--device shm:" + kName) != std::string::npos);
+  // 2 (b - B) / T with the simulated pen's and the default coupling's torsional damping, 0.04 and 0.004 N m s/rad.
+  CHECK(greeting.find("stability: stiffness 800 N/m") != std::string::npos);
+  CHECK(greeting.find("(limit 36 N·m/rad)") != std::string::npos);
   CHECK(greeting.find("force off: no application asks for force") != std::string::npos);
 
   json j = status();

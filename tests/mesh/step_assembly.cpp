@@ -1,7 +1,9 @@
 #include "mesh/step_assembly.hpp"
 
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -28,6 +30,15 @@ TopoDS_Shape cylinder(double x, double z, double diameter, double height) {
 
 TopoDS_Shape cut(const TopoDS_Shape& from, const TopoDS_Shape& what) {
   return BRepAlgoAPI_Cut(from, what).Shape();
+}
+
+/// Stands at z = 0, its upper end chamfered.
+TopoDS_Shape dowel(const StepSizes& s) {
+  const double straight = s.dowel_length - s.chamfer_length;
+  const gp_Ax2 end(gp_Pnt(0, 0, straight), gp_Dir(0, 0, 1));
+  const TopoDS_Shape tip =
+      BRepPrimAPI_MakeCone(end, s.dowel / 2, s.dowel / 2 - s.chamfer_depth, s.chamfer_length).Shape();
+  return BRepAlgoAPI_Fuse(cylinder(0, 0, s.dowel, straight), tip).Shape();
 }
 
 /// Top face at z = 0.
@@ -93,7 +104,7 @@ void write_step_assembly(const std::string& path, const StepSizes& s, const std:
   };
 
   const TDF_Label bushings = colored(product(bushing(s), "Buchse"), 0.8, 0.1, 0.1);
-  const TDF_Label dowels = product(cylinder(0, 0, s.dowel, s.dowel_length), "Stift");
+  const TDF_Label dowels = product(dowel(s), "Stift");
   const TDF_Label carrier = group("Träger");
   put(carrier, colored(product(plate(s), "Grundplatte"), 0.1, 0.2, 0.9), TopLoc_Location(), "Grundplatte");
   put(carrier, bushings, at(-s.bore_at, 0, -s.bushing_length), "Buchse links");

@@ -5,7 +5,8 @@
 
 namespace tegotae::test {
 
-/// Sizes in mm: fits of 20 mm H7/g6 (hole +0..+21 µm, shaft -7..-20 µm) and 6 mm H7/m6-like dowels, at the tightest.
+/// Sizes in mm: fits of 20 mm H7/g6 (hole +0..+21 µm, shaft -7..-20 µm) and of 6 mm H7/g6 (hole +0..+12 µm, dowel
+/// -4..-12 µm), at the tightest.
 struct StepSizes {
   double plate_x = 110, plate_y = 60, plate_z = 15;
   double bore = 26;              ///< of the plate, for the bushings
@@ -16,6 +17,7 @@ struct StepSizes {
   double shaft_length = 60;
   double window = 31;  ///< of the cover, around bushing and shaft
   double dowel_hole = 6.0, dowel = 5.996, dowel_length = 14;
+  double chamfer_length = 2, chamfer_depth = 0.5;  ///< of the dowels' upper ends, along and across
   double cover_z = 5;
   double bore_at = 20;  ///< x of the two bores, on both sides of the middle
   double dowel_at = 42;

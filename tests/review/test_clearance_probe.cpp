@@ -5,6 +5,7 @@
 
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "models/shapes.hpp"
 #include "review/clearance_probe.hpp"
 #include "review/surface_clearance.hpp"
 
@@ -124,6 +125,24 @@ TEST_CASE("clearances along a path are those of all pairs of triangles") {
   CHECK(second > 0);
   CHECK(intersecting > 0);
   CHECK(intersecting < 40);
+}
+
+TEST_CASE("clearances of finely meshed parts: FCL takes small triangles for points unless lengths are large numbers") {
+  // Edges of 0.05 to 0.1 mm: the fourth power of that, in m, is under its threshold.
+  Scene scene;
+  scene.parts.push_back(
+      {"plate", shared(shapes::box({2e-3, 2e-3, 1e-3}, {20, 20, 10})), {Quat::Identity(), {0, 0, -5e-4}}});
+  scene.parts.push_back({"held", shared(shapes::box({1e-3, 1e-3, 1e-3}, {20, 20, 20})), Pose{}, true});
+  ClearanceProbe probe(scene);
+  std::vector<Clearance> found;
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    const double gap = std::pow(10, -6 + 3 * unit(rng));
+    probe.at({rotation(Vec3(0, 0, 6 * unit(rng))), {4e-4 * unit(rng), 4e-4 * unit(rng), 5e-4 + gap}}, 0, found);
+    REQUIRE(found.size() == 1);
+    REQUIRE(found[0].distance == Approx(gap).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("a box over a floor: every point's least clearance is the height of its lowest place") {

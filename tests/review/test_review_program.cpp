@@ -159,7 +159,7 @@ TEST_CASE("a block that presses on the floor does not go, and the script presses
   const Output o = run_program("tegotae", "review " + csv + " --script " + folder / "s.csv --out " + folder / "x.html");
   CHECK(o.code == 1);
   CHECK_THAT(o.out, Contains("It does not go in: blocked by floor, \"the\" at ("));
-  CHECK_THAT(o.out, Contains("Stalled 1 times"));
+  CHECK_THAT(o.out, Contains("Stalled once"));
   CHECK_THAT(o.out, Contains("report: " + folder / "x.html"));
   const Output again = run_program(
       "tegotae", "run --fast --script " + folder / "s.csv --record " + folder / "again.csv " + folder / "scene.toml");
@@ -170,6 +170,31 @@ TEST_CASE("a block that presses on the floor does not go, and the script presses
   CHECK(force(o2.out) == Approx(force(o.out)).epsilon(0.2));  // the hand's mass is not in it
   // To another goal, where it came by.
   CHECK(run_program("tegotae", "review " + csv + " --goal 0.0005,0,0.0102,0.995,0,0,0.09987").code == 0);
+}
+
+TEST_CASE("a block that starts pressed between two comes out, relieved of them until it is apart") {
+  const TempFolder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0.02,0,1,0,0,0\n");
+  // Each 3 um too near.
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"left\"\nmesh = \"cube.obj\"\nposition = [-0.009997, 0, 0]\n"
+               "[[part]]\nname = \"right\"\nmesh = \"cube.obj\"\nposition = [0.009997, 0, 0]\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\n[device]\nscript = \"path.csv\"\n");
+  const std::string csv = record(folder, "r.csv");
+  const Output o = run_program("tegotae", "review " + csv);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("It comes out\n"));
+  CHECK_THAT(o.out, Contains("No pose intersects another part that was free of it"));
+  for (const std::string name : {"left", "right"}) {
+    // Until it has gone by its own 10 mm, after half a second.
+    const std::string line = "Touching at the start, and relieved by 4.3 µm until 0.5";
+    const auto at = o.out.find(name + "; no pose reached deeper.");
+    REQUIRE(at != std::string::npos);
+    CHECK(o.out.rfind(line, at) != std::string::npos);
+    CHECK(at - o.out.rfind(line, at) < line.size() + 10);
+  }
 }
 
 TEST_CASE("what is no recording, or not of this scene, is one line") {

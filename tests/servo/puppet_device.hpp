@@ -40,4 +40,11 @@ inline std::int64_t engage(Servo& servo, ContactLink& link, std::int64_t from_ns
   return now;
 }
 
+inline ProxyState touching_at(const Vec3& p) {
+  ProxyState x;
+  x.X.p = p;
+  x.touching = true;
+  return x;
+}
+
 }  // namespace tegotae::test

@@ -1,18 +1,9 @@
-#include <sched.h>
-
-#include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <limits>
-#include <random>
-#include <thread>
 #include <vector>
 
 #include "alloc_guard.hpp"
 #include "catch.hpp"
 #include "puppet_device.hpp"
-#include "tegotae/core/clock.hpp"
-#include "tegotae/core/error.hpp"
 #include "tegotae/device/simulated_device.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
@@ -21,15 +12,9 @@ using namespace tegotae;
 using test::engage;
 using test::kMs;
 using test::PuppetDevice;
+using test::touching_at;
 
 namespace {
-
-ProxyState touching_at(const Vec3& p) {
-  ProxyState x;
-  x.X.p = p;
-  x.touching = true;
-  return x;
-}
 
 /// Moves the pen by a script against the wall x >= 0, the proxy being the pen's center projected on the wall, in
 /// virtual time; gives back what the contact loop saw.
@@ -142,170 +127,6 @@ TEST_CASE("the force ends with the contact loop's heartbeat and comes back from 
   CHECK(servo.statistics().force_off[TEGOTAE_SHM_REASON_WATCHDOG] == 1);
 }
 
-TEST_CASE("a device that is lost and a pen that is not finite get no force", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3::Zero());
-  Servo servo(device, channel);
-  link.publish(touching_at(Vec3(0.001, 0, 0)), 1, 0, 0);
-  PenSample pen;
-  device.now = DeviceStatus::uninitialized;
-  servo.tick(0);
-  REQUIRE(link.read(pen));
-  CHECK(pen.status == DeviceStatus::uninitialized);
-  CHECK(pen.reason == ForceOff::disconnected);
-  CHECK(device.rendered.force.norm() == 0);
-  device.now = DeviceStatus::enabled;
-  device.state.pose.p.y() = std::numeric_limits<double>::quiet_NaN();
-  servo.tick(kMs);
-  REQUIRE(link.read(pen));
-  CHECK(pen.reason == ForceOff::not_finite);
-  CHECK(device.rendered.force.norm() == 0);
-}
-
-TEST_CASE("whatever stands in the application's slot, the wrench stays within the limits", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  Servo servo(device, channel);
-  std::mt19937_64 rng(11);
-  for (int i = 0; i < 20'000; ++i) {
-    std::uint64_t words[sizeof(tegotae_shm_application) / 8];
-    for (std::uint64_t& word : words) {
-      const double moderate = std::uniform_real_distribution<double>(-10, 10)(rng);
-      std::memcpy(&word, &moderate, sizeof word);
-      if (rng() % 8 == 0) word = rng();
-    }
-    tegotae_shm_application garbage;
-    std::memcpy(&garbage, words, sizeof garbage);
-    if (i % 2 == 0) garbage.heartbeat_ns = i * kMs;
-    channel.write(garbage);
-    servo.tick(i * kMs);
-    REQUIRE(device.rendered.force.allFinite());
-    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-15));
-    REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-15));
-    REQUIRE(device.center().allFinite());
-  }
-}
-
-TEST_CASE("every field of the application's slot may hold garbage, one at a time or all", "[servo]") {
-  PuppetDevice device;
-  device.state.pose.p = Vec3(0, 0, -0.002);
-  Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
-  Servo servo(device, channel);
-  std::mt19937_64 rng(12);
-  ContactPlanes planes;
-  planes.planes[0] = {Vec3::UnitZ(), Vec3::Zero(), 0};
-  planes.count = 1;
-  std::int64_t now = 0;
-  std::uint64_t rendered = 0;
-  Wrench last;
-  constexpr std::size_t kWords = sizeof(tegotae_shm_application) / 8;
-  for (int i = 0; i < 100'000; ++i) {
-    now += kMs;
-    // Long enough without garbage to be engaged and to press.
-    const int phase = i % 400;
-    planes.pen = device.state.pose;
-    link.publish(phase < 300 ? ProxyState() : touching_at(Vec3::Zero()), 0, 0, now, planes);
-    if (phase >= 340) {
-      tegotae_shm_application slot;
-      REQUIRE(channel.read(slot));
-      std::uint64_t words[kWords];
-      std::memcpy(words, &slot, sizeof slot);
-      const std::uint64_t odd[] = {rng(), 0x7ff8000000000000u, 0x7ff0000000000000u, 0xffffffffffffffffu,
-                                   0,     rng() >> 32};
-      if (phase % 10 == 0)
-        for (std::uint64_t& word : words) word = rng() % 2 == 0 ? word : odd[rng() % 6];
-      else
-        words[static_cast<std::size_t>(i) % kWords] = odd[rng() % 6];
-      std::memcpy(&slot, words, sizeof slot);
-      channel.write(slot);
-    }
-    servo.tick(now);
-    REQUIRE(device.rendered.force.allFinite());
-    REQUIRE(device.rendered.torque.allFinite());
-    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
-    REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-12));
-    const double step = (device.rendered.force - last.force).norm();
-    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
-    last = device.rendered;
-    REQUIRE(device.center().allFinite());
-    rendered += device.rendered.force.norm() > 0.5 ? 1 : 0;
-  }
-  CHECK(rendered > 5'000);
-}
-
-TEST_CASE("a pen that jumps, says NaN or falls silent for 10 s gets no sudden force", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3::Zero());
-  Servo servo(device, channel);
-  std::mt19937_64 rng(13);
-  std::normal_distribution<double> normal;
-  std::int64_t now = engage(servo, link);
-  Wrench last;
-  PenSample pen;
-  const auto tick = [&](bool repeat) {
-    now += kMs;
-    // The wall x >= 0, the proxy on it.
-    ProxyState x;
-    if (link.read(pen) && pen.state.pose.p.allFinite()) x.X = pen.state.pose;
-    x.touching = x.X.p.x() < 0;
-    x.X.p.x() = std::max(0.0, x.X.p.x());
-    link.publish(x, 0, 0, now);
-    if (repeat) --device.state.sequence;
-    device.state.time_ns = now;
-    servo.tick(now);
-    REQUIRE(link.read(pen));
-    REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-12));
-    const double step = (device.rendered.force - last.force).norm();
-    REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
-    last = device.rendered;
-  };
-  const auto press = [&] {
-    device.state.pose = {Quat::Identity(), Vec3(0.01, 0, 0)};
-    for (int i = 0; i < 400; ++i) tick(false);
-    for (int i = 0; i < 60; ++i) {
-      device.state.pose.p.x() -= 0.2e-3;
-      tick(false);
-    }
-    REQUIRE(device.rendered.force.x() > 1);
-  };
-  press();
-  for (int i = 0; i < 10'000; ++i) {
-    tick(true);
-    if (i > 25) REQUIRE(device.rendered.force.norm() == 0);
-  }
-  CHECK(pen.reason == ForceOff::silent);
-  device.state.pose.p.x() = -0.1;  // it comes back somewhere else
-  for (int i = 0; i < 100; ++i) tick(false);
-  CHECK(device.rendered.force.norm() == 0);
-  CHECK(pen.reason == ForceOff::engage);
-  for (int round = 0; round < 50; ++round) {
-    press();
-    const DeviceState good = device.state;
-    switch (round % 4) {
-      case 0:
-        device.state.pose.p[static_cast<int>(rng() % 3)] = std::numeric_limits<double>::quiet_NaN();
-        break;
-      case 1:
-        device.state.velocity.w.x() = std::numeric_limits<double>::infinity();
-        break;
-      case 2:
-        device.state.pose.p += Vec3(normal(rng), normal(rng), normal(rng));
-        break;
-      default:
-        device.state.pose.q.coeffs() *= 1 + normal(rng);
-    }
-    for (int i = 0; i < 10; ++i) tick(false);
-    CHECK(device.rendered.force.norm() == 0);
-    device.state.pose = good.pose;
-    device.state.velocity = good.velocity;
-    tick(false);
-    CHECK(device.rendered.force.norm() == 0);
-  }
-}
-
 TEST_CASE("closed over the simulated pen, pushing a wall settles where the springs balance", "[servo]") {
   const std::vector<PenSample> seen = push_wall(3000);
   // The hand (400 N/m) wants to be 10 mm inside, the coupling is 800 N/m: 3.33 mm and 2.67 N; the friction's dead zone
@@ -376,75 +197,4 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
   }
   CHECK(allocations == 0);
   CHECK(local > 100);  // until the pen has turned farther than flat planes can tell
-}
-
-TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3::Zero());
-  ServoSettings settings;
-  settings.rate_hz = 2000;
-  Servo servo(device, channel, settings);
-  const std::int64_t begin = monotonic_ns();
-  servo.start();
-  CHECK_THROWS_WITH(servo.start(), Catch::Contains("runs already"));
-  PenSample pen;
-  std::uint64_t rendered = 0;
-  // A machine that holds this loop up for 20 ms turns the force off: then it lets go and presses again.
-  const std::int64_t give_up = begin + 60'000 * kMs;
-  while (rendered < 300 && monotonic_ns() < give_up) {
-    const bool off = !link.read(pen) || pen.reason != ForceOff::none || (pen.flags & TEGOTAE_SHM_FLAG_RAMP) != 0;
-    link.publish(off ? ProxyState() : touching_at(Vec3(0.001, 0, 0)), rendered, 0, monotonic_ns());
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-    if (link.read(pen) && pen.reason == ForceOff::none && pen.wrench.force.x() > 0.7) ++rendered;
-  }
-  servo.stop();
-  const double elapsed = 1e-9 * static_cast<double>(monotonic_ns() - begin);
-  CHECK(device.rendered.force.norm() == 0);
-  const ServoStatistics s = servo.statistics();
-  // Every period of the schedule is a tick or a counted miss.
-  const double periods = static_cast<double>(s.ticks + s.missed);
-  CHECK(periods <= elapsed * 2000 + 2);
-  CHECK(periods >= elapsed * 2000 * 0.5);
-  CHECK(s.ticks > 250);
-  CHECK(s.rate_hz > 0);
-  CHECK(s.rate_hz < 2100);
-  CHECK(s.late_us.p50 <= s.late_us.p99);
-  CHECK(s.late_us.p99 <= s.late_us.p999);
-  CHECK(s.late_us.p999 <= s.late_us.max);
-  tegotae_shm_statistics published;
-  REQUIRE(channel.read(published));
-  CHECK(published.ticks == s.ticks);
-  CHECK(published.missed == s.missed);
-  CHECK(published.late_us[3] == s.late_us.max);
-  CHECK_NOTHROW(servo.start());
-}
-
-TEST_CASE("what is missing of real time is told, and refused when enforced", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  ServoSettings settings;
-  Servo servo(device, channel, settings);
-  servo.start();
-  servo.stop();
-  const RealtimeReport report = servo.realtime();
-  CHECK(report.missing.empty() == (report.fifo && report.memory_locked && report.timer_slack));
-  CHECK(report.fifo == (report.missing.find("SCHED_FIFO") == std::string::npos));
-  settings.realtime = RealtimeConfig::enforce;
-  Servo strict(device, channel, settings);
-  if (report.missing.empty()) {
-    CHECK_NOTHROW(strict.start());
-  } else {
-    CHECK_THROWS_WITH(strict.start(), Catch::Contains(report.missing));
-  }
-}
-
-TEST_CASE("servo settings out of range are refused", "[servo]") {
-  PuppetDevice device;
-  Channel channel = Channel::create();
-  ServoSettings settings;
-  settings.rate_hz = 4001;
-  CHECK_THROWS_WITH(Servo(device, channel, settings), Catch::Contains("rate"));
-  settings.rate_hz = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH(Servo(device, channel, settings), Catch::Contains("rate"));
 }

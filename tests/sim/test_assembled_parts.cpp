@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 #include "catch.hpp"
 #include "fcl_oracle.hpp"
@@ -44,9 +45,9 @@ struct Waypoint {
 
 struct Outcome {
   Pose X;
-  int intersecting = 0;  ///< of the poses that FCL was asked about
-  int touching = 0;      ///< ticks
-  double highest = -INFINITY;
+  int intersecting = 0;                                                     ///< of the poses that FCL was asked about
+  int touching = 0;                                                         ///< ticks
+  Vec3 least = Vec3::Constant(INFINITY), most = Vec3::Constant(-INFINITY);  ///< of the coordinates of X.p
 };
 
 /// Leads the held part from waypoint to waypoint; FCL looks at every third pose.
@@ -66,7 +67,8 @@ Outcome lead(const Scene& scene, HapticLoop& loop, const std::vector<Waypoint>& 
       out.touching += r.proxy.touching ? 1 : 0;
       for (const Pose& X : r.pieces) {
         if (n++ % 3 == 0 && !oracle.intersecting(X).empty()) ++out.intersecting;
-        out.highest = std::max(out.highest, X.p.z());
+        out.least = out.least.cwiseMin(X.p);
+        out.most = out.most.cwiseMax(X.p);
       }
     }
   }
@@ -75,6 +77,14 @@ Outcome lead(const Scene& scene, HapticLoop& loop, const std::vector<Waypoint>& 
 }
 
 const std::string kGears = "industreal/industreal_gear_";
+
+/// Files of the fixed parts that the held one, the first of `files`, is in contact with.
+std::set<std::string> touched(const HapticLoop& loop, const std::vector<std::string>& files) {
+  std::set<std::string> out;
+  for (const Contact& c : loop.limits())
+    if (c.age != kCutAge && c.gap <= loop.report().contact_gap) out.insert(files[c.part + 1]);
+  return out;
+}
 
 }  // namespace
 
@@ -101,11 +111,35 @@ TEST_CASE("each gear comes off its coplanar seat and goes back in mesh with its 
   const Outcome out =
       lead(scene, loop, {{0, none}, {0.1, down}, {0.6, up}, {0.8, up, turned}, {1.0, up}, {1.6, down}, {1.8, down}});
   CHECK(out.intersecting == 0);
-  CHECK(out.highest > 0.0259);
+  CHECK(out.most.z() > 0.0259);
   CHECK(out.touching > 200);
   CHECK(out.X.p.z() > 0);
   CHECK(out.X.p.z() < loop.contact().l_min);
   CHECK(out.X.p.norm() < 5e-4);
+
+  // In mesh: pressed onto its seat and turned by far more than a tooth it is stopped within half a pitch, either way,
+  // by a gear next to it. Module 1 mm, 60, 40 and 20 teeth; the large one and the small one are at the ends.
+  std::vector<double> angles;
+  const int teeth = held == "large" ? 60 : held == "medium" ? 40 : 20;
+  for (const double way : {1.0, -1.0}) {
+    CAPTURE(way);
+    const Vec3 turn(0, 0, 0.4 * way);
+    const Outcome stopped = lead(scene, loop, {{0, down}, {0.1, down, turn}, {0.15, down, turn}});
+    CHECK(stopped.intersecting == 0);
+    const double angle = way * displacement(Pose{}, stopped.X, Vec3::Zero()).dr.z();
+    CHECK(angle > 0);
+    CHECK(angle < M_PI / teeth);
+    angles.push_back(angle);
+    const std::set<std::string> by = touched(loop, files);
+    CHECK(by.count(kGears + "base.obj") == 1);
+    const auto gear = [&](const std::string& other) { return by.count(kGears + other + ".obj"); };
+    CHECK(gear("medium") == (held == "medium" ? 0 : 1));
+    CHECK(gear("large") == (held == "medium" ? 1 : 0));
+    CHECK(gear("small") == (held == "medium" ? 1 : 0));
+    const Outcome back = lead(scene, loop, {{0, down, turn}, {0.1, down}, {0.12, down}});
+    CHECK(back.intersecting == 0);
+  }
+  CHECK(angles[0] == Approx(angles[1]).margin(1e-5));
 }
 
 TEST_CASE("the rectangular peg comes out of its tray and goes back to the bottom", "[real_parts]") {
@@ -123,10 +157,17 @@ TEST_CASE("the rectangular peg comes out of its tray and goes back to the bottom
   const Outcome out =
       lead(scene, loop, {{0, none}, {0.1, down}, {0.3, aside}, {0.4, down}, {0.9, up}, {1.4, down}, {1.6, down}});
   CHECK(out.intersecting == 0);
-  CHECK(out.highest > 0.0299);
+  CHECK(out.most.z() > 0.0299);
   CHECK(out.touching > 300);
   CHECK(out.X.p.z() > 0);
   CHECK(out.X.p.z() < loop.contact().l_min);
+  CHECK(out.most.x() < 1e-3);  // the pocket's walls held it
+  // All the way out: over the tray it goes aside by three times its width.
+  const Vec3 beside(0.024, 0, 0.03);
+  const Outcome over = lead(scene, loop, {{0, down}, {0.5, up}, {0.7, beside}, {0.9, up}, {1.4, down}, {1.6, down}});
+  CHECK(over.intersecting == 0);
+  CHECK(over.most.x() > 0.0239);
+  CHECK(over.X.p.z() < loop.contact().l_min);
 }
 
 TEST_CASE("the piston runs in its cylinder", "[real_parts]") {
@@ -144,6 +185,16 @@ TEST_CASE("the piston runs in its cylinder", "[real_parts]") {
   CHECK(out.intersecting == 0);
   CHECK(out.touching > 500);
   CHECK(out.X.p.norm() < 1e-4);
+  // All the way, and pushed aside by the clearance of the pair (3.4 to 5 mm as its source has it), not by the
+  // hand's 42.
+  CHECK(out.most.y() > 0.149);
+  CHECK(out.least.y() < -0.149);
+  for (const int axis : {0, 2}) {
+    CHECK(out.most[axis] > 2e-3);
+    CHECK(out.most[axis] < 6e-3);
+    CHECK(out.least[axis] < -2e-3);
+    CHECK(out.least[axis] > -6e-3);
+  }
 }
 
 TEST_CASE("a nut drawn into its bolt is suspended until it is off, then kept out", "[real_parts]") {
@@ -158,7 +209,7 @@ TEST_CASE("a nut drawn into its bolt is suspended until it is off, then kept out
   const Vec3 none = Vec3::Zero(), up(0, 0, 0.06), back(0, 0, 0.02);
   // Off, along the axis and through the thread.
   Outcome out = lead(scene, loop, {{0, none}, {0.6, up}});
-  CHECK(out.highest > 0.0599);
+  CHECK(out.most.z() > 0.0599);
   REQUIRE(loop.report().suspended == 0);
   // The thread now stops what went through it before.
   out = lead(scene, loop, {{0, up}, {0.6, back}, {0.7, back}});

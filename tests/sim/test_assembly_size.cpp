@@ -1,5 +1,5 @@
-// A large assembly: 2000 instances of 100 meshes of 10 000 triangles, loaded from files as a user loads them, beside a
-// grid of 1000 parts of 1000 triangles; and its scene changed while the loop runs.
+// A large assembly: 2000 instances of 100 meshes of 10 000 triangles, loaded from files as a user loads them, beside
+// 1000 instances of the same meshes; and its scene changed while the loop runs.
 #include <sys/resource.h>
 #include <time.h>
 
@@ -113,10 +113,10 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   const TempFolder small_folder, folder;
   Ticks small;
   {
-    const SceneFile file = load_scene(write_grid(small_folder, 4, 22, 10));
+    const SceneFile file = load_scene(write_grid(small_folder, 100, 71, 10));
     HapticLoop loop(file.scene);
     small = run(loop, kTicks, [](int) {});
-    print("1000 parts of 1 k triangles", small);
+    print("1000 parts of 10 k triangles", small);
   }
 
   const std::string path = write_grid(folder, 100, 71, 20);
@@ -132,7 +132,9 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   CHECK(cpu_s < 20);
   const Ticks large = run(loop, kTicks, [](int) {});
   print("2000 parts of 10 k triangles", large);
-  CHECK(large.median_us < 2 * small.median_us);
+  // As many triangles near, so the same but for noise.
+  CHECK(large.median_us < 1.3 * small.median_us);
+  CHECK(large.p99_us < 1.5 * small.p99_us);
   CHECK(1000 * large.late <= kTicks);
 
   // Parts go and come back while the rod is moved.

@@ -142,6 +142,89 @@ TEST_CASE("a change waits while what it adds is between where the part was and w
   CHECK(loop.report().proxy.X.p.x() == Approx(0.02).margin(1e-4));
 }
 
+TEST_CASE("a part that springs let into another one is not taken over by a resolver that keeps parts apart",
+          "[change]") {
+  Scene scene = scene_of({floor_at(0), block_at(Vec3(0, 0, 0.03))});
+  scene.contact.resolver = "penalty";
+  HapticLoop loop(scene);
+  push(loop, Vec3(0, 0, 0), 300);
+  REQUIRE(loop.report().proxy.X.p.z() <
+          0.0099);  // the block's lower face is 0.1 mm and more under the floor's upper one
+  // The same parts, and the held one where it was before it sank in.
+  scene.contact.resolver = "qp";
+  loop.change(scene);
+  push(loop, Vec3(0, 0, 0), 20);
+  CHECK(loop.change_in_force() == 0);
+  // Pulled out, it is kept out.
+  push(loop, Vec3(0, 0, 0.02), 100);
+  CHECK(loop.change_in_force() == 1);
+  push(loop, Vec3(0, 0, 0), 300);
+  CHECK(loop.report().proxy.X.p.z() > 0.01);
+}
+
+TEST_CASE("a held part of another shape is asked about everything on its way", "[change]") {
+  Scene scene = scene_of({wall_at(0.03), block_at(Vec3(-0.1, 0, 0))});
+  HapticLoop loop(scene);
+  Scene wider = scene;
+  wider.parts[1].mesh = shared(box(Vec3(0.06, 0.02, 0.02)));
+  push(loop, Vec3(0.015, 0, 0), 200);  // the wider block would be 15 mm in the wall
+  loop.change(wider);
+  push(loop, Vec3(0.015, 0, 0), 20);
+  CHECK(loop.change_in_force() == 0);
+  push(loop, Vec3(-0.05, 0, 0), 200);
+  CHECK(loop.change_in_force() == 1);
+  push(loop, Vec3(0.03, 0, 0), 200);
+  CHECK(loop.report().proxy.X.p.x() == Approx(0).margin(1e-4));
+}
+
+TEST_CASE("a change that is not in force can be taken back", "[change]") {
+  Scene scene = scene_of({floor_at(0), block_at(Vec3(0, 0, 0.03))});
+  HapticLoop loop(scene);
+  CHECK_FALSE(loop.withdraw());
+  Scene empty = scene;
+  empty.parts = {scene.parts[1]};
+  loop.change(empty);
+  CHECK(loop.withdraw());
+  CHECK_FALSE(loop.withdraw());
+  push(loop, Vec3(0, 0, 0), 200);
+  CHECK(loop.change_in_force() == 0);
+  CHECK(loop.report().proxy.X.p.z() == Approx(0.01).margin(1e-4));
+  // One in force cannot, and what `ready` throws takes it back too.
+  empty.parts[0].pose = loop.report().proxy.X;
+  CHECK_THROWS_WITH(loop.change(empty, [](std::uint64_t, const StartReport&) { throw Error("no disk"); }), "no disk");
+  std::uint64_t told = 0;
+  const std::uint64_t number = loop.change(empty, [&](std::uint64_t n, const StartReport&) { told = n; });
+  CHECK(told == number);
+  push(loop, Vec3(0, 0, -0.01), 200);
+  CHECK(loop.change_in_force() == number);
+  CHECK_FALSE(loop.withdraw());
+  CHECK(loop.report().proxy.X.p.z() == Approx(-0.01).margin(1e-6));
+}
+
+TEST_CASE("a part that comes into the hand and a change right after it: nothing of the old part's pen is left",
+          "[change]") {
+  // The rivals' coupling damps against the pen's velocity: a jump of 50 mm in a millisecond would throw the part.
+  Scene scene = scene_of({block_at(Vec3(0, 0, 0.03)),
+                          {"other", kBlock, {Quat::Identity(), Vec3(0.05, 0, 0.03)}},
+                          {"bystander", kBlock, {Quat::Identity(), Vec3(0, 0.5, 0)}}});
+  scene.contact.resolver = "impulse";
+  HapticLoop loop(scene);
+  push(loop, Vec3(0, 0, 0.02), 50);
+  scene.parts[0].pose = loop.report().proxy.X;
+  scene.parts[0].held = false;
+  scene.parts[1].held = true;
+  loop.change(scene);
+  loop.step(scene.parts[0].pose, 1e-3);
+  REQUIRE(loop.change_in_force() == 1);
+  scene.parts.pop_back();
+  loop.change(scene);
+  for (int i = 0; i < 20; ++i) {
+    loop.step(scene.parts[1].pose, 1e-3);
+    CHECK((loop.report().proxy.X.p - scene.parts[1].pose.p).norm() < 1e-6);
+  }
+  CHECK(loop.change_in_force() == 2);
+}
+
 TEST_CASE("another part can be held", "[change]") {
   Scene scene = scene_of({floor_at(0), block_at(Vec3(0, 0, 0.03))});
   scene.parts.push_back({"other", shared(box(Vec3(0.01, 0.03, 0.04))), {Quat::Identity(), Vec3(0.05, 0, 0.03)}});

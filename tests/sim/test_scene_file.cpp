@@ -6,6 +6,7 @@
 #include <string>
 
 #include "catch.hpp"
+#include "sim/scene_text.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/scene_file.hpp"
 
@@ -324,4 +325,75 @@ TEST_CASE("a scene file that is not there is an error", "[scene_file]") {
   CHECK_THROWS_WITH(load_scene(folder.scene_path()), folder.scene_path() + ": no such file");
   const std::string parent = fs::path(folder.scene_path()).parent_path().string();
   CHECK_THROWS_WITH(load_scene(parent), parent + ": not a file");
+}
+
+TEST_CASE("a scene with parts moved, left out, and another one held is written so that it reads back the same") {
+  const Folder folder;
+  const fs::path before = fs::current_path();
+  folder.write("scene.toml", R"(unit = "mm"
+[[part]]
+name = "left \"one\""
+mesh = "meshes/other.obj"
+rpy_deg = [10, 20, 30]
+path = ["group"]
+color = [1, 0.5, 0]
+[[part]]
+name = "gone"
+mesh = "tet.obj"
+[[part]]
+name = "peg"
+mesh = "tet.obj"
+unit = "cm"
+held = true
+position = [0, 0, 0.3]
+[contact]
+l_min = 3e-6
+penalty = { stiffness = 123.456789012345678 }
+[safety]
+force_limit = 3.3
+[device]
+script = "insert.csv"
+scale = 2.5
+)");
+  // As a user in the folder names it, and from elsewhere.
+  fs::current_path(fs::path(folder.scene_path()).parent_path());
+  const SceneFile file = load_scene("scene.toml");
+  Scene now = file.scene;
+  now.contact.resolver = "lp";
+  now.parts.erase(now.parts.begin() + 1);
+  now.parts[0].pose = {Quat(0.1, 0.2, 0.3, 0.4).normalized(), Vec3(1.0 / 3, -1e-7, 0.1 + 0.2)};
+  for (const std::string to : {"", "meshes"}) {
+    CAPTURE(to);
+    const fs::path written = fs::path(to) / "changed.toml";
+    std::ofstream(written) << scene_text(file, now, to);
+    const SceneFile read = load_scene(written.string());
+    REQUIRE(read.scene.parts.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Part &a = now.parts[i], &b = read.scene.parts[i];
+      CHECK(a.name == b.name);
+      CHECK(a.held == b.held);
+      CHECK(a.path == b.path);
+      CHECK(a.color == b.color);
+      CHECK(a.pose.p == b.pose.p);
+      CHECK((a.pose.q.coeffs() - b.pose.q.coeffs()).norm() < 1e-15);  // normalized once more
+      CHECK(a.mesh->vertices == b.mesh->vertices);
+    }
+    CHECK(read.scene.contact.resolver == "lp");
+    CHECK(read.scene.contact.l_min == file.scene.contact.l_min);
+    CHECK(read.scene.contact.penalty.stiffness == file.scene.contact.penalty.stiffness);
+    CHECK(read.safety.limits.force == 3.3);
+    CHECK(read.scale == 2.5);
+    CHECK(read.script.end() == file.script.end());
+  }
+  // The script is for the part that the file holds.
+  now.parts[0].held = true;
+  now.parts[1].held = false;
+  std::ofstream("changed.toml") << scene_text(file, now, "");
+  const SceneFile other = load_scene("changed.toml");
+  CHECK(other.scene.parts[0].held);
+  CHECK(other.script.end() == other.script.begin());
+  SceneFile unread = file;
+  unread.text.clear();
+  CHECK_THROWS_AS(scene_text(unread, now, ""), Error);
+  fs::current_path(before);
 }

@@ -233,6 +233,30 @@ TEST_CASE("a block pressed into a slot slides, comes no deeper, and is kept out 
   CHECK(X.p.z() > 0.015);
 }
 
+TEST_CASE("a block pressed in between two boards is pulled out from where it rubs on their ends", "[start]") {
+  // Walls of two parts, exactly opposite, with no room between: their limits have no answer but along them.
+  const std::string resolver = GENERATE("lp", "qp");
+  const double aside = GENERATE(0.0, 1e-6, 1e-4);
+  CAPTURE(resolver, aside);
+  Scene scene = make_scene(resolver);
+  for (const double side : {-1.0, 1.0})
+    scene.parts.push_back({side < 0 ? "left" : "right",
+                           shared(box({0.01, 0.02, 0.02})),
+                           {Quat::Identity(), {side * (0.01 - 3e-6), 0, 0}}});
+  scene.parts.push_back({"block", shared(box({0.01, 0.01, 0.01})), Pose{}, true});
+  HapticLoop loop(scene);
+  REQUIRE(loop.report().relieved == 2);
+  for (int i = 1; i <= 1000; ++i) {
+    const double y = 2e-5 * i;
+    const Pose Y{Quat::Identity(), {i > 100 && i <= 200 ? aside : 0, y, 0}};
+    const Pose& X = loop.step(Y, 1e-3).proxy.X;
+    REQUIRE(X.p.y() == Approx(y).margin(1e-5));
+    // While they overlap along y, no deeper than at the start.
+    if (y < 0.0149) REQUIRE(std::abs(X.p.x()) < kNoDeeper);
+  }
+  CHECK(loop.report().relieved == 0);
+}
+
 TEST_CASE("overlapping parts are refused, with names, depth, place and what to do", "[start]") {
   Scene scene = make_scene("qp");
   scene.parts.push_back({"plate", shared(box({0.1, 0.1, 0.02})), {Quat::Identity(), {0, 0, -0.01}}});

@@ -57,7 +57,7 @@ test("a live run: parts, arrows, plots that move", async (browser) => {
   const program = await serve("tegotae", "run", writeFloor(keys.join("")), "--view");
   const page = await open(browser, program.url);
   const first = await until(page, (s) => s.plots[0].points > 5);
-  assert.deepEqual(first.parts, [{ name: "floor", held: false, visible: true }, { name: "block <b>1</b>", held: true, visible: true }]);
+  assert.deepEqual(first.parts, [{ name: "floor", held: false, visible: true, removed: false }, { name: "block <b>1</b>", held: true, visible: true, removed: false }]);
   const touching = await until(page, (s) => s.arrows.force > 0 && s.shown.contacts > 0);
   assert.ok(touching.frame.forceOn);
   assert.ok(touching.frame.force[2] > 0, "the floor pushes up");
@@ -98,12 +98,82 @@ test("the mouse is the pen: dragged onto the floor, the part pushes back", async
   await restsOnFloor(page);
 
   // Another part in the hand.
-  await page.click("#parts li:nth-child(1) button");
+  await page.click("#parts li:nth-child(1) .do");
   const other = await until(page, (s) => s.parts[0].held && s.status.generation === 2);
   assert.equal(other.parts[1].held, false);
   await page.click("#restart");
   await until(page, (s) => s.parts[1].held && s.status.generation === 3);
   assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("parts are moved, removed, added back and another one is held while the run goes on", async (browser) => {
+  const { program, page } = await openPaced(browser);
+  await lookFromFront(page);
+  const before = await until(page, (s) => s.frame.forceOn);
+  const going = (s) => s.frame.tick > before.frame.tick;
+
+  // A click on the floor selects it; 7 mm down it is 10 mm under the block.
+  const at = await page.evaluate(() => window.__tegotae.project([0.015, -0.02, -0.002]));
+  await page.mouse.click(...at);
+  await until(page, (s) => s.selected === 0);
+  assert.equal(await page.textContent("#selected-name"), "floor");
+  await page.fill("#move input[name=by-z]", "-7");
+  await page.press("#move input[name=by-z]", "Enter");
+  const down = (s) => Math.abs(s.places[0][2] + 0.007) < 1e-9;
+  await until(page, (s) => going(s) && s.frame.generation === 2 && down(s));
+  await drag(page, 0.02);
+  const pressed = await until(page, pushesBack);
+  assert.ok(pressed.frame.x[2] < 0 && pressed.frame.x[2] > -0.002, "the block rests on the floor that was moved");
+  await page.mouse.up();
+  await until(page, (s) => s.frame.forceOn && s.force < 0.1);
+
+  // Up again by 10 mm it would be in the block: the program says why not, and nothing changes.
+  await page.fill("#move input[name=by-z]", "10");
+  await page.click("#move button");
+  const refused = await until(page, (s) => s.message !== "");
+  assert.match(refused.message, /^Nothing was changed: parts "block <b>1<\/b>" and "floor" intersect/);
+  assert.ok(down(refused));
+  await until(page, (s) => s.frame.tick > refused.frame.tick && s.status.generation === 2);
+
+  // Removed, it is not drawn and not felt.
+  await page.click("#remove");
+  const removed = await until(page, (s) => s.parts[0].removed && s.message === "");
+  assert.equal(await page.textContent("#remove"), "Add back");
+  await drag(page, 0.008);
+  await until(page, (s) => Math.abs(s.frame.x[2] + 0.01) < 0.002 && s.shown.contacts === 0);
+  await page.mouse.up();
+
+  // Not where the block is now, but where it was when that is away again.
+  await page.click("#parts li:nth-child(1) .do");
+  await until(page, (s) => s.message.includes("intersect"));
+  await drag(page, -0.02);
+  await until(page, (s) => s.frame.x[2] > 0.005);
+  await page.mouse.up();
+  await page.click("#parts li:nth-child(1) .do");
+  await until(page, (s) => !s.parts[0].removed && s.message === "");
+
+  // A hidden part is still felt.
+  await page.click("#parts li:nth-child(1) input");
+  await drag(page, 0.03);
+  await until(page, (s) => pushesBack(s) && !s.parts[0].visible);
+  await page.mouse.up();
+  await page.click("#parts li:nth-child(1) input");
+
+  // Another part in the hand: nothing jumps, the force comes on again, and the run is the same.
+  const last = await until(page, (s) => s.frame.forceOn && s.force < 0.1);
+  await page.click("#hold");
+  const held = await until(page, (s) => s.parts[0].held && s.frame.generation === s.status.generation && s.frame.forceOn);
+  assert.ok(held.frame.tick > last.frame.tick && held.frame.tick > removed.frame.tick);
+  assert.ok(Math.abs(held.frame.x[2] + 0.007) < 1e-4, "the floor stays where it was");
+  assert.ok(held.lag < 2e-4 && held.force < 0.2);
+  // And the mouse leads it from there, straight down. (Its front, where the mouse holds it, is nearer than its center.)
+  await drag(page, 0.02);
+  await until(page, (s) => s.frame.x[2] < -0.02 && s.frame.x[2] > -0.027 && Math.hypot(s.frame.x[0], s.frame.x[1]) < 1e-3);
+  await page.mouse.up();
+  assert.equal(await page.textContent("#selected-note"), "The pen moves it. Hold another part to move or remove it here.");
+  assert.deepEqual(page.complaints.filter((text) => !text.includes("400 (Bad Request)")), []);
   await page.close();
   assert.equal(await program.stop(), 0);
 });

@@ -51,6 +51,18 @@ for (const dark of [false, true]) {
   });
 }
 
+test("a review on a narrow page: nothing is wider than the page", async (browser) => {
+  await record();
+  const page = await openReport(browser, false);
+  await page.setViewportSize({ width: 600, height: 900 });
+  await page.waitForFunction(() => [...document.querySelectorAll(".uplot")].every((plot) => plot.clientWidth <= innerWidth));
+  const wide = await page.evaluate(() => [...document.querySelectorAll("#tables .table")].filter((t) => t.scrollWidth > t.clientWidth).map((t) => t.textContent.slice(0, 40)));
+  assert.deepEqual(wide, []);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), true);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
 test("the review button of a replay saves the report", async (browser) => {
   await record();
   const program = await serve("tegotae", "replay", recording);

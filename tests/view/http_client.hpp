@@ -126,11 +126,19 @@ inline std::string text_of(const Request& r) {
   return text + "\r\n" + r.body;
 }
 
+/// Bytes that an answer has when it is whole; more than any while its head is not.
+inline std::size_t length_of(const std::string& answer) {
+  const std::size_t body = answer.find("\r\n\r\n"), length = answer.find("Content-Length: ");
+  return body == answer.npos || length > body ? answer.max_size() : body + 4 + std::stoul(answer.substr(length + 16));
+}
+
 /// The answer's status; 0 when there was none.
 inline int ask(int port, const Request& request, std::string* answer = nullptr) {
   const Connection connection(port);
   if (!connection.open() || !connection.send(text_of(request))) return 0;
   std::string text = connection.receive();
+  for (std::string more = text; answer && !more.empty() && text.size() < length_of(text); text += more)
+    more = connection.receive();
   if (answer) *answer = text;
   return text.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(text.substr(9, 3)) : 0;
 }

@@ -11,6 +11,7 @@
 #include "view/address.hpp"
 #include "view/bundle.hpp"
 #include "view/display_mesh.hpp"
+#include "view/page_parts.hpp"
 #include "view/request_guard.hpp"
 
 using namespace tegotae;
@@ -133,4 +134,45 @@ TEST_CASE("a led hand goes to its goal like a hand") {
   CHECK(fastest > 0.3);
   CHECK((pen.true_pose().p - goal.p).norm() < 1e-6);
   CHECK(rotation_vector(pen.true_pose().q * goal.q.conjugate()).norm() < 1e-6);
+}
+
+TEST_CASE("parts that a page moves, removes, adds back and takes into the hand") {
+  using nlohmann::json;
+  // A box of 2 x 4 x 6 cm whose middle is 10 cm from its file's origin.
+  TriangleMesh mesh = test::box(Vec3(0.02, 0.04, 0.06));
+  for (Vec3& v : mesh.vertices) v += Vec3(0.1, 0, 0);
+  const auto shape = std::make_shared<const TriangleMesh>(mesh);
+  Scene scene;
+  scene.parts = {{"a", shape, {Quat::Identity(), Vec3(1, 2, 3)}}, {"b", shape, {}, true}, {"c", shape, {}}};
+  PageParts parts(scene);
+  const double quarter = std::acos(0.0);
+
+  parts.edit({{"do", "move"}, {"part", 0}, {"by", {0.5, 0, 0}}, {"turn", {0, 0, quarter}}});
+  const Pose& X = parts.all()[0].pose;
+  // The middle goes by what is asked for; what pointed along x from there points along y.
+  CHECK((X * Vec3(0.1, 0, 0) - Vec3(1.6, 2, 3)).norm() < 1e-12);
+  CHECK((X * Vec3(0.11, 0, 0) - Vec3(1.6, 2.01, 3)).norm() < 1e-12);
+  // First about x, then about y: z goes to -y and stays there.
+  parts.edit({{"do", "move"}, {"part", 2}, {"by", {0, 0, 0}}, {"turn", {quarter, quarter, 0}}});
+  CHECK((parts.all()[2].pose.q * Vec3::UnitZ() + Vec3::UnitY()).norm() < 1e-12);
+
+  parts.edit({{"do", "remove"}, {"part", 0}});
+  CHECK(parts.numbers() == std::vector<std::uint32_t>{1, 2});
+  CHECK(parts.in_scene().front().name == "b");
+  parts.edit({{"do", "hold"}, {"part", 2}});
+  CHECK(parts.held() == 2);
+  CHECK_FALSE(parts.all()[1].held);
+  std::vector<Part> placed = parts.in_scene();
+  placed[0].pose.p = Vec3(7, 8, 9);
+  parts.place(placed);
+  CHECK(parts.all()[1].pose.p == Vec3(7, 8, 9));
+  for (const char* what : {"hold", "remove", "move"})
+    CHECK_THROWS_AS(parts.edit({{"do", what}, {"part", 0}, {"by", {0, 0, 0}}, {"turn", {0, 0, 0}}}), Error);
+  parts.edit({{"do", "add"}, {"part", 0}});
+  CHECK((parts.all()[0].pose * Vec3(0.1, 0, 0) - Vec3(1.6, 2, 3)).norm() < 1e-12);
+  CHECK(parts.numbers().size() == 3);
+  for (const json& bad : {json{{"do", "add"}, {"part", 0}}, json{{"do", "remove"}, {"part", 2}},
+                          json{{"do", "remove"}, {"part", 3}}, json{{"do", "remove"}, {"part", -1}},
+                          json{{"do", "move"}, {"part", 0}, {"by", {200, 0, 0}}, {"turn", {0, 0, 0}}}})
+    CHECK_THROWS_AS(parts.edit(bad), Error);
 }

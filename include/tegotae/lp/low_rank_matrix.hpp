@@ -13,21 +13,23 @@ inline constexpr int kRowLanes = 8;
 
 /// Eight rows of six, coefficient by coefficient, so that wide instructions work across rows.
 struct alignas(64) RowBlock {
-  double g[6][kRowLanes];
+  double g[6][kRowLanes];  ///< coefficient, then row
 };
 
 /// Eight numbers, one a row.
 struct alignas(64) LaneBlock {
-  double v[kRowLanes];
+  double v[kRowLanes];  ///< by row
 };
 
 /// N×6 matrix G with a fixed capacity: the rows of G x >= d, in the metric in which the length of x counts. For a rigid
 /// body with contact Jacobian J and mass matrix M, G = J M^(-1/2) and x = M^(1/2) δ. Filling never allocates.
 class LowRankMatrix {
  public:
+  /// Empty, with room for `capacity` rows; the only call that allocates.
   explicit LowRankMatrix(int capacity)
       : capacity_(capacity), blocks_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)) {}
 
+  /// Takes all rows out; the capacity stays.
   void clear() noexcept { rows_ = 0; }
 
   /// Appends the row `g`; false, and nothing happens, when the matrix is full.
@@ -43,10 +45,12 @@ class LowRankMatrix {
     return true;
   }
 
-  int rows() const noexcept { return rows_; }
-  int capacity() const noexcept { return capacity_; }
+  int rows() const noexcept { return rows_; }          ///< N
+  int capacity() const noexcept { return capacity_; }  ///< the most that rows() can be
+  /// Rows by eights; what is beyond rows() in the last block is of no meaning.
   const RowBlock* blocks() const noexcept { return blocks_.data(); }
 
+  /// Row `i` of rows().
   Vec6 row(int i) const noexcept {
     const RowBlock& block = blocks_[static_cast<std::size_t>(i / kRowLanes)];
     Vec6 g;

@@ -34,8 +34,9 @@ class Recorder {
   /// Adds a row. One thread calls it. Threaded: never waits or allocates; when the ring is full the frame is dropped
   /// and counted. After a failed write it does nothing; close() tells.
   void push(const RecordFrame& frame) noexcept;
-  /// Writes what is left and closes. Throws Error naming the path and the cause of the first failed write.
-  void close();
+  /// Writes what is left and closes. `goes_on` is added to the info (RecordingInfo::goes_on). Throws Error naming the
+  /// path and the cause of the first failed write.
+  void close(const std::string& goes_on = {});
 
   std::uint64_t rows() const noexcept;     ///< rows taken by push()
   std::uint64_t dropped() const noexcept;  ///< frames that were not: the ring was full

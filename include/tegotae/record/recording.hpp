@@ -29,6 +29,8 @@ struct RecordingInfo {
   std::string resolver;     ///< name
   std::string program;      ///< who wrote it, and its version
   std::string suspended{};  ///< names of the parts that the held part overlapped at the start, and was not kept out of
+  std::string follows{};    ///< the recording beside it that it goes on from: the scene changed there
+  std::string goes_on{};    ///< the recording beside it that goes on from its end: the scene changed there
 };
 
 /// A recording in memory.

@@ -12,9 +12,9 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// A resolver's answer.
 struct Resolution {
-  Vec6 motion = Vec6::Zero();  ///< in whitened coordinates; zero unless solved
-  ResolveStatus status = ResolveStatus::stalled;
-  int iterations = 0;
+  Vec6 motion = Vec6::Zero();                     ///< in whitened coordinates; zero unless solved
+  ResolveStatus status = ResolveStatus::stalled;  ///< how it ended
+  int iterations = 0;                             ///< pivots, for TickReport::iterations
 };
 
 /// Turns a wanted motion of the held part into one that the limits allow. Motions are in whitened coordinates, m: the

@@ -31,6 +31,9 @@ class Attachment {
   void publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence, std::int64_t now_ns,
                const ContactPlanes& planes = {}) noexcept;
 
+  /// As ContactLink::hold, for this device and those that come after it.
+  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept;
+
   /// The device's heartbeat was fresh at the last read().
   bool connected() const noexcept { return connected_; }
   /// How often the device was lost.

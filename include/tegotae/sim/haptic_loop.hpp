@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -62,8 +63,13 @@ class HapticLoop {
   /// is, the change waits and the old scene stays in force. A part that was not held before starts where `next` has it:
   /// the first tick with it does not follow the pen, so that the pen can be brought there first (ContactLink::home).
   ///
-  /// Returns the change's number, from 1 on. Throws Error as the constructor does; nothing changes then.
-  std::uint64_t change(const Scene& next);
+  /// `ready` is told the change's number and how the held part starts in it, in this thread and before step() may go
+  /// over to it. Returns the number, from 1 on. Throws Error as the constructor does, and what `ready` throws; nothing
+  /// changes then.
+  std::uint64_t change(const Scene& next,
+                       const std::function<void(std::uint64_t number, const StartReport& start)>& ready = {});
+  /// Takes the last change back, from any thread; false when it is in force.
+  bool withdraw();
   /// Number of the change that the last tick ran in, 0 before the first; from any thread.
   std::uint64_t change_in_force() const noexcept;
 

@@ -20,6 +20,7 @@ struct SceneFile {
   StylusScript script;             ///< what the operator's hand does
   SafetySettings safety{};         ///< of the servo in this process; a device in another one has its own
   double scale = 1;                ///< meters that the held part moves for a meter of the pen
+  std::string text{};              ///< of the file, as it was read
 };
 
 /// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.

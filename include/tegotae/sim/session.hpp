@@ -3,7 +3,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/device/hand_guide.hpp"
@@ -23,6 +25,7 @@ struct RunProgress {
   std::atomic<int> contacts{0};     ///< TickReport::contacts of the newest tick
   std::atomic<double> force{0};     ///< N
   std::atomic<bool> device{true};   ///< the device is there
+  std::atomic<double> checked{-1};  ///< after the last tick: share of the poses that FCL was asked about; before: < 0
 };
 
 /// A tick of the contact loop, for whoever looks on.
@@ -31,6 +34,7 @@ struct TickView {
   double t;                ///< s since the start
   const PenSample& pen;    ///< the sample that the tick answered
   const HapticLoop& loop;  ///< its report() and limits() are of this tick
+  std::uint64_t stretch;   ///< of the run between two changes of its scene (RunEdits), from 0
   double tick_us;          ///< time the tick took; 0 in virtual time
   double servo_late_us;    ///< how late the servo's newest tick began, or of another process's servo the worst in a
                            ///< tenth of a second; NaN in virtual time and where nothing tells
@@ -47,6 +51,39 @@ class RunObserver {
   virtual void after_tick(const TickView& tick) noexcept = 0;
 };
 
+/// Changes the scene of a running session (RunSettings::edits) as HapticLoop::change does: parts are added, removed,
+/// moved, or another one is held. Pen, servo, recorder and ticks go on. Where another part is held the pen, where it
+/// is, comes to mean that part, and the force goes off until a small one is wanted.
+///
+/// A recording is of one scene. So with each change it ends, and RECORDING.2, RECORDING.3, ... (before its extension)
+/// go on from it, each with its scene in a file beside it (RECORDING.2.toml) and ticks and times that count on.
+class RunEdits {
+ public:
+  RunEdits();
+  ~RunEdits();
+  RunEdits(const RunEdits&) = delete;
+  RunEdits& operator=(const RunEdits&) = delete;
+
+  /// Goes on with `parts`, of which the one that is held now is put where it is now, and settings as they are. From
+  /// any thread but the session's; returns the parts as they are when they are in force. `ready` is told the number
+  /// that TickView::stretch will have then, before it has. Throws Error, and the run goes on as it was, when there is
+  /// none, the parts cannot be held (see HapticLoop), their recording cannot be written, or what is new stands for a
+  /// second in the way that the held part has gone meanwhile.
+  std::vector<Part> change(std::vector<Part> parts, const std::function<void(std::uint64_t stretch)>& ready = {});
+
+  struct State;
+  State& state() const { return *state_; }  ///< for run_session
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// What is known of a run before its first tick.
+struct RunStart {
+  const StartReport& parts;      ///< what the held part touches or overlaps
+  const std::string& stability;  ///< as RunSummary::stability
+};
+
 /// How run_session() runs a scene.
 struct RunSettings {
   /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
@@ -56,29 +93,30 @@ struct RunSettings {
   double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
   std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;  ///< name and version, for the recording's info
-  RunProgress* progress = nullptr;                   ///< written to while it runs; null: nobody looks
-  RunObserver* observer = nullptr;                   ///< asked around every tick; null: nobody looks
-  HandIntent* hand = nullptr;                        ///< moves the simulated pen instead of the script
-  const HandGuide* guide = nullptr;                  ///< leads the simulated hand away from the script
-  std::function<void(const StartReport&)> on_start;  ///< told how the held part starts, before the first tick
-  const std::atomic<bool>* stop = nullptr;           ///< set it to end the run early; the recording is kept
+  RunProgress* progress = nullptr;                ///< written to while it runs; null: nobody looks
+  RunObserver* observer = nullptr;                ///< asked around every tick; null: nobody looks
+  RunEdits* edits = nullptr;                      ///< changes the scene while it runs; null: it stays
+  HandIntent* hand = nullptr;                     ///< moves the simulated pen instead of the script
+  const HandGuide* guide = nullptr;               ///< leads the simulated hand away from the script
+  std::function<void(const RunStart&)> on_start;  ///< told before the first tick
+  const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording is kept
 };
 
 /// How a run went.
 struct RunSummary {
   std::int64_t ticks = 0;  ///< of the contact loop
   double seconds = 0;      ///< simulated time; in real time also the time it took
-  /// The run went past the end of the script (with the device of another process: whenever it ended) and the held part
-  /// rests where the script ends: its center within 2 % of the way plus the part's radius and what friction and
-  /// resolution leave of the pen, its rotation within 0.1 rad.
+  /// The run went past the end of the script (with the device of another process: whenever it ended) and the part that
+  /// the scene file holds rests where the script ends: its center within 2 % of the way plus the part's radius and what
+  /// friction and resolution leave of the pen, its rotation within 0.1 rad.
   bool completed = false;
-  /// How far (m) the held part's center has gone along the straight line from where the script starts to where it ends.
+  /// How far (m) that part's center has gone along the straight line from where the script starts to where it ends.
   double depth_m = 0;
   int contacts_max = 0;  ///< most TickReport::contacts of a tick
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked. Pairs that `start` names do not count until they have come free.
   std::int64_t penetrating = 0;
-  StartReport start;       ///< what the held part touched or overlapped at the start, as it was at the end
+  StartReport start;       ///< what the held part touched or overlapped at the start, as it was at the end or a change
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;  ///< time a tick of the contact loop takes
   ServoStatistics servo;   ///< in virtual time only the number of ticks
@@ -88,6 +126,7 @@ struct RunSummary {
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
   std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
+  std::vector<std::string> recordings;  ///< their paths: one, and one more for each change of the scene
 };
 
 /// Time (s) after the end of the script in which the hand comes to rest.

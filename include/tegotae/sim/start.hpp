@@ -24,16 +24,16 @@ struct StartPair {
   std::size_t part = 0;  ///< the fixed part, index into Scene::parts
   Clash clash;           ///< where the scene puts the held part: touch or overlap, gap or depth, place
   double relief = 0;     ///< m: by how much the fixed part's faces are moved inwards while the pair is relieved
-  PairState state = PairState::active;
+  PairState state = PairState::active;  ///< by the last tick
   /// When it came free, counted from 1 over the pairs that did after the first tick began; 0: before, kNotYet: not yet.
   std::uint32_t freed = 0;
 };
 
 /// How the held part starts, and what has become of it.
 struct StartReport {
-  std::vector<StartPair> pairs;
-  double shift =
-      0;  ///< m: how far the point of the held part that went farthest was moved to part the pairs that touch
+  std::vector<StartPair> pairs;  ///< that were not free, in the order of the scene's parts
+  /// m: how far the point of the held part that went farthest was moved to part the pairs that touch.
+  double shift = 0;
 };
 
 }  // namespace tegotae

@@ -9,7 +9,8 @@ export function element(tag, text = "", className = "") {
 // What is nothing but rounding is told as small, not with its digits.
 function cellText(value) {
   const rounding = typeof value === "number" && value !== 0 && Math.abs(value) < 1e-6;
-  return rounding ? "< 1e-6" : String(value ?? "–");
+  // A number and its unit stay on one line.
+  return rounding ? "< 1e-6" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
 }
 
 // A table of {caption?, head: [...], rows: [[cell, ...], ...]}; a cell is text, a number or {text, class}.

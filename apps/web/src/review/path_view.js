@@ -1,22 +1,11 @@
 // The path in 3-D: the parts, the held one in the colors of its clearance, its ghosts along the way, and what happened where.
 import * as THREE from "three";
+import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { setPose, Stage } from "../view/stage.js";
 import { shadedSurface } from "../view/surface.js";
 
 const rowFloats = 8; // t and pose
-
-function disk() {
-  const side = 32;
-  const data = new Uint8Array(4 * side * side);
-  for (let i = 0; i < side * side; ++i) {
-    const r = Math.hypot((i % side) + 0.5 - side / 2, Math.floor(i / side) + 0.5 - side / 2);
-    data.set([255, 255, 255, 255 * Math.min(1, Math.max(0, side / 2 - r))], 4 * i);
-  }
-  const texture = new THREE.DataTexture(data, side, side);
-  texture.needsUpdate = true;
-  return texture;
-}
 
 export class PathView {
   constructor(canvas, bundle, scale) {

@@ -22,28 +22,6 @@ function checkbox(label, checked, change) {
   return line;
 }
 
-// The list of parts. `hold(i)`: null where the part in the hand cannot be chosen.
-export function showParts(stage, hold) {
-  $("parts").replaceChildren(...stage.parts.map((part, i) => {
-    const item = element("li");
-    const swatch = element("span", "", "swatch");
-    swatch.style.background = `var(${part.colorName})`;
-    const name = element("span", part.name, "name");
-    name.title = part.name;
-    const line = checkbox("", true, (on) => stage.setVisible(part, on));
-    line.append(swatch, name);
-    item.append(line);
-    if (part.held) item.append(element("span", "held", "badge"));
-    else if (hold) {
-      const button = element("button", "Hold");
-      button.title = `Take ${part.name} into the hand`;
-      button.addEventListener("click", () => hold(i));
-      item.append(button);
-    }
-    return item;
-  }));
-}
-
 export function showLayers(overlay) {
   const names = { contacts: "Contacts and normals", pairs: "Nearest features", arrows: "Force and torque" };
   $("layers").replaceChildren(...Object.entries(names).map(([layer, name]) => checkbox(name, overlay.enabled[layer], (on) => overlay.enable(layer, on))));

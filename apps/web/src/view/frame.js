@@ -1,5 +1,5 @@
 // A frame as apps/view/wire.cpp writes it: a row of floats, then its pairs.
-export const frameFloats = 32;
+export const frameFloats = 33;
 export const pairFloats = 8;
 
 const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8, waiting: 16 };
@@ -20,6 +20,7 @@ export function readFrame(row, pairs) {
     contacts: row[27],
     limits: row[28],
     reason: row[30],
+    generation: row[32],
     pairs: [],
   };
   for (const [name, bit] of Object.entries(flagNames)) frame[name] = (flags & bit) !== 0;

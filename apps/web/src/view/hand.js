@@ -20,9 +20,11 @@ export class Hand {
 
   setScene(about) {
     this.center = new THREE.Vector3(...about.center);
+    if (this.grip) this.viewpoint.controls.enabled = true;
     this.goal = null;
     this.grip = null;
     this.keys = false;
+    this.changed("");
   }
 
   showFrame(frame) {

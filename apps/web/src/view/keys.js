@@ -11,6 +11,9 @@ export const help = [
     ["wheel while dragging", "move it away or nearer"],
     ["H", "hold it by keys: arrows and Page Up / Down move, with Shift turn; Esc lets go"],
   ]],
+  ["Changing the parts (live)", [
+    ["click on a part, or on its name", "select it: hold, move, remove, add back"],
+  ]],
   ["Keys", [
     ["1 … 7", "front, back, left, right, top, bottom, isometric"],
     ["F, C", "show everything, show the held part"],
@@ -28,6 +31,7 @@ export const help = [
 export function isTyping(event) {
   const tag = event.target.tagName;
   if (tag === "SELECT" || tag === "DIALOG") return true;
+  if (tag === "INPUT" && event.target.type === "number") return event.key !== "Escape";
   if (tag === "INPUT") return event.target.type === "range" ? /^(Arrow|Page|Home|End)/.test(event.key) : event.key === " ";
   return tag === "BUTTON" && (event.key === " " || event.key === "Enter");
 }

@@ -23,6 +23,10 @@ export class Live {
   async scene() {
     return readBundle(await (await this.get("scene")).arrayBuffer());
   }
+  // What changes of the scene when it does.
+  async parts() {
+    return (await this.get("parts")).json();
+  }
   // The report on a recording, a blob.
   async review() {
     return (await this.get("review")).blob();
@@ -73,13 +77,25 @@ export class Live {
     if (!this.sending) this.flush();
   }
 
+  // Changes the scene; throws what the program says against it.
+  async edit(command) {
+    const answer = await this.post(command).catch(() => {
+      throw new Error("The program does not answer.");
+    });
+    if (!answer.ok) throw new Error((await answer.text()).trim());
+  }
+
+  post(command) {
+    return fetch("command", { method: "POST", headers: this.headers, body: JSON.stringify(command) });
+  }
+
   async flush() {
     this.sending = true;
     while (this.pending.size > 0) {
       const [kind, command] = this.pending.entries().next().value;
       this.pending.delete(kind);
       try {
-        const answer = await fetch("command", { method: "POST", headers: this.headers, body: JSON.stringify(command) });
+        const answer = await this.post(command);
         if (!answer.ok) this.onStatus({ message: (await answer.text()).trim() });
       } catch {
         break; // the stream says that the program has ended

@@ -2,7 +2,8 @@
 import { cssColor, setDark, systemIsDark } from "../common/theme.js";
 import { embeddedBundle } from "./bundle.js";
 import { Viewpoint } from "./camera.js";
-import { addHelp, addViews, listenToKeys, Section, showLayers, showParts } from "./controls.js";
+import { addHelp, addViews, listenToKeys, Section, showLayers } from "./controls.js";
+import { Parts } from "./edit.js";
 import { ForceNotice } from "./force.js";
 import { distance, norm } from "./frame.js";
 import { Hand } from "./hand.js";
@@ -26,8 +27,8 @@ const overlay = new Overlay(stage);
 const section = new Section(stage);
 const numbers = new Numbers($("numbers"));
 const force = new ForceNotice($("force"));
-const hand = new Hand(stage, viewpoint, { lead: (pose) => live.send({ do: "lead", pose }), changed: showHand });
-let plots, live = null, replay = null, about = null, frame = null, frames = 0, status = {};
+const hand = new Hand(stage, viewpoint, { lead: (pose) => live.send({ do: "lead", pose, generation: about.generation }), changed: showHand });
+let parts, plots, live = null, replay = null, about = null, frame = null, frames = 0, status = {};
 
 function showMessage(text) {
   $("message").textContent = text;
@@ -43,6 +44,8 @@ function showHand(what) {
 }
 
 function showFrame(next) {
+  // Of parts that the page has not yet, or no longer.
+  if (!replay && next.generation !== about.generation) return;
   frame = next;
   ++frames;
   hand.showFrame(frame);
@@ -64,17 +67,21 @@ function showScene(bundle) {
   $("title").textContent = name;
   $("title").title = about.title;
   stage.setScene(bundle);
-  overlay.setScene(about);
   overlay.applyTheme();
-  hand.setScene(about);
+  showHeld();
   hand.enabled = about.led === true;
   section.set(section.axis);
-  showParts(stage, live && about.restartable ? (part) => live.send({ do: "hold", part }) : null);
+  parts.show();
   showLayers(overlay);
-  $("scale").textContent = `Arrows: ${1e3 * overlay.metersPerNewton} mm for 1 N,\n${overlay.metersPerNewtonMeter.toPrecision(1)} mm for 1 N·mm`;
   const thinned = about.meshes.some((mesh) => mesh.shown < mesh.triangles);
   const total = (key) => about.parts.reduce((sum, part) => sum + about.meshes[part.mesh][key], 0).toLocaleString("en");
   $("notes").textContent = [`${total("triangles")} triangles${thinned ? `, drawn with ${total("shown")}` : ""}`, ...(about.notes ?? [])].join("\n");
+}
+
+function showHeld() {
+  overlay.setScene(about);
+  hand.setScene(about);
+  $("scale").textContent = `Arrows: ${1e3 * overlay.metersPerNewton} mm for 1 N,\n${overlay.metersPerNewtonMeter.toPrecision(1)} mm for 1 N·mm`;
 }
 
 function showStatus(next) {
@@ -83,12 +90,20 @@ function showStatus(next) {
   if (next.paused !== undefined) $("play").textContent = next.paused ? "Play" : "Pause";
   if (next.suspended !== undefined) $("suspended").textContent = next.suspended.length ? `suspended: ${next.suspended.join(", ")}` : "";
   if (next.speed !== undefined) $("speed").value = String(next.speed);
-  if (next.generation !== undefined && about && next.generation !== about.generation) loadAgain(next.generation);
+  if (next.generation !== undefined && about && next.generation !== about.generation) loadParts();
 }
 
-async function loadAgain(generation) {
-  about = { ...about, generation }; // once
-  showScene(await live.scene());
+// The scene has changed.
+async function loadParts() {
+  if (loadParts.busy) return; // the next status asks again
+  loadParts.busy = true;
+  const next = await live.parts().catch(() => ({})); // the stream says that the program has ended
+  loadParts.busy = false;
+  if (!next.parts) return;
+  Object.assign(about, next);
+  if (stage.setParts(about.parts)) showHeld();
+  section.apply();
+  parts.show();
   viewpoint.limits();
 }
 
@@ -162,6 +177,7 @@ async function begin() {
     live = null;
     replay = new Replay(bundle, { onFrame: showFrame, onStatus: showStatus });
   }
+  parts = new Parts(stage, live && ((command) => live.edit(command)), showMessage);
   plots = new Plots($("plots"), replay ? (t) => replay.seek(t) : null, withoutValues(bundle.about));
   showScene(bundle);
   showRun();
@@ -187,7 +203,7 @@ function project(point) {
 window.__tegotae = {
   get state() {
     return {
-      mode: about?.mode, parts: stage.parts?.map(({ name, held, visible }) => ({ name, held, visible })), frame, frames,
+      mode: about?.mode, parts: stage.parts?.map(({ name, held, visible, removed }) => ({ name, held, visible, removed })), places: stage.parts?.map(({ group }) => group.position.toArray()), selected: parts?.selected ?? null, frame, frames,
       status, shown: overlay.shown, plots: plots?.state(), drawn: stage.drawn,
       arrows: { force: overlay.force.group.visible ? overlay.force.length : 0, torque: overlay.torque.group.visible ? overlay.torque.length : 0 },
       force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0, camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,

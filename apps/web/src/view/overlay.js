@@ -1,6 +1,7 @@
 // What acts on the held part: contact points with normals, nearest-feature pairs, force and torque. Drawn over the
 // parts, for most of it happens between them.
 import * as THREE from "three";
+import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { norm } from "./frame.js";
 
@@ -41,20 +42,6 @@ class Arrow {
       mesh.scale.set(thickness * 1.2, thickness * 1.2, head);
     });
   }
-}
-
-// A white disk; the material gives it its color.
-function disk() {
-  const side = 32;
-  const data = new Uint8Array(4 * side * side);
-  for (let i = 0; i < side * side; ++i) {
-    const r = Math.hypot((i % side) + 0.5 - side / 2, Math.floor(i / side) + 0.5 - side / 2);
-    data.set([255, 255, 255, 255 * Math.min(1, Math.max(0, side / 2 - r))], 4 * i);
-  }
-  const texture = new THREE.DataTexture(data, side, side);
-  texture.magFilter = texture.minFilter = THREE.LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
 }
 
 function dots(size) {

@@ -33,25 +33,48 @@ export class Stage {
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
-  // The parts of a bundle; called again when another session begins.
+  // The parts of a bundle.
   setScene(bundle) {
-    this.world.clear();
-    const geometries = bundle.about.meshes.map((mesh) => this.geometries(bundle, mesh));
-    let color = 0;
+    this.geometry = bundle.about.meshes.map((mesh) => this.geometries(bundle, mesh));
     this.parts = bundle.about.parts.map((about) => {
-      const part = { ...about, name: about.name, group: new THREE.Group(), visible: true };
-      part.colorName = about.held ? "--part-held" : `--part-${color++ % fixedColors}`;
-      this.addSurface(part, geometries[about.mesh]);
-      setPose(part.group, about.pose);
+      const part = { name: about.name, mesh: about.mesh, group: new THREE.Group(), visible: true };
+      this.addSurface(part, this.geometry[about.mesh]);
       this.world.add(part.group);
       return part;
     });
-    this.held = this.parts.find((part) => part.held);
-    this.held.radius = geometries[this.held.mesh].surface.boundingSphere.radius;
-    this.addGhost(geometries[this.held.mesh]);
-    this.measure();
+    this.setParts(bundle.about.parts);
     this.radius = this.box.getBoundingSphere(new THREE.Sphere()).radius;
+  }
+
+  // Where the parts are, which of them is held and which were removed: [{held, pose, removed?}], as in the bundle.
+  // Returns whether another one is held.
+  setParts(parts) {
+    let color = 0;
+    parts.forEach(({ held, pose, removed = false }, i) => {
+      const part = this.parts[i];
+      Object.assign(part, { held, removed, colorName: held ? "--part-held" : `--part-${color++ % fixedColors}` });
+      setPose(part.group, pose);
+      part.group.visible = part.visible && !removed;
+    });
+    const held = this.parts.find((part) => part.held);
+    const another = held !== this.held;
+    if (another) {
+      this.held = held;
+      held.radius = this.geometry[held.mesh].surface.boundingSphere.radius;
+      if (this.ghost) this.world.remove(this.ghost);
+      this.addGhost(this.geometry[held.mesh]);
+    }
+    setPose(this.ghost, parts[this.parts.indexOf(held)].pose);
+    this.ghost.visible = held.visible;
+    this.measure();
     this.applyTheme();
+    return another;
+  }
+
+  // Part number `i`, or none for null, in another light.
+  highlight(i) {
+    this.parts.forEach((part, k) => part.material.emissive.set(k === i ? cssColor("--selected") : "#000000"));
+    this.draw();
   }
 
   // The box of the parts that are shown, as they are now.
@@ -59,7 +82,7 @@ export class Stage {
     this.box = new THREE.Box3();
     for (const part of this.parts) {
       part.group.updateMatrixWorld(true);
-      if (part.visible) this.box.expandByObject(part.group);
+      if (part.group.visible) this.box.expandByObject(part.group);
     }
     return this.box;
   }
@@ -93,7 +116,6 @@ export class Stage {
     this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.13, depthWrite: false });
     this.ghostLines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7 });
     this.ghost.add(new THREE.Mesh(surface, this.ghostMaterial), new THREE.LineSegments(edges, this.ghostLines));
-    setPose(this.ghost, this.held.pose);
     this.ghost.renderOrder = 1;
     this.world.add(this.ghost);
   }
@@ -118,7 +140,8 @@ export class Stage {
   }
 
   setVisible(part, visible) {
-    part.visible = part.group.visible = visible;
+    part.visible = visible;
+    part.group.visible = visible && !part.removed;
     if (part.held) this.ghost.visible = visible;
     this.draw();
   }
@@ -152,7 +175,7 @@ export class Stage {
     const ray = new THREE.Raycaster();
     ray.setFromCamera(
       new THREE.Vector2((2 * (clientX - rect.left)) / rect.width - 1, 1 - (2 * (clientY - rect.top)) / rect.height), this.camera);
-    const shown = this.parts.filter((part) => part.visible);
+    const shown = this.parts.filter((part) => part.group.visible);
     const cut = this.renderer.localClippingEnabled ? this.section : null;
     for (const hit of ray.intersectObjects(shown.map((part) => part.mesh3d), false)) {
       if (cut && cut.distanceToPoint(hit.point) < 0) continue;

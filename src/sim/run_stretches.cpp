@@ -1,0 +1,215 @@
+#include "sim/run_stretches.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "sim/scene_parts.hpp"
+#include "sim/scene_text.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+namespace fs = std::filesystem;
+
+// How long a change waits until the held part can go over to it.
+constexpr std::chrono::seconds kPatience(1);
+constexpr std::chrono::milliseconds kPoll(1);
+
+std::string names_of_suspended(const StartReport& start, const Scene& scene) {
+  std::string names;
+  for (const StartPair& pair : start.pairs)
+    if (pair.state == PairState::suspended) names += (names.empty() ? "" : ", ") + scene.parts[pair.part].name;
+  return names;
+}
+
+/// `path` with a number before its extension, and perhaps with another one.
+fs::path numbered(const fs::path& path, std::uint64_t number, const fs::path& extension) {
+  return path.parent_path() / (path.stem().string() + "." + std::to_string(number) + extension.string());
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text << std::flush;
+  if (!file) throw Error(path + ": cannot be written");
+}
+
+void remove_files(const RunStretch& stretch) noexcept {
+  std::error_code absent;
+  for (const std::string& path : {stretch.recording, recording_info_path(stretch.recording), stretch.scene_file})
+    fs::remove(path, absent);
+}
+
+}  // namespace
+
+Scene in_its_time(Scene scene, bool real_time) {
+  if (!real_time) scene.contact.tick_budget = std::numeric_limits<double>::infinity();
+  return scene;
+}
+
+RunStretches::RunStretches(const SceneFile& file, const RunSettings& settings, HapticLoop& loop)
+    : file_(file), settings_(settings), loop_(loop) {
+  auto first = std::make_unique<RunStretch>();
+  begin(*first, file.scene);
+  now_ = first.get();
+  by_change_[0] = now_;
+  now_->start = loop.start();
+  now_->waiting = loop.report().suspended + loop.report().relieved;
+  if (!settings.record.empty()) record(*now_, now_->start);
+  stretches_.push_back(std::move(first));
+  if (settings.edits == nullptr) return;
+  RunEdits::State& edits = settings.edits->state();
+  const std::lock_guard<std::mutex> lock(edits.mutex);
+  edits.run = this;
+}
+
+RunStretches::~RunStretches() {
+  detach();
+}
+
+void RunStretches::detach() {
+  over_ = true;
+  if (settings_.edits == nullptr) return;
+  RunEdits::State& edits = settings_.edits->state();
+  const std::lock_guard<std::mutex> lock(edits.mutex);
+  if (edits.run == this) edits.run = nullptr;
+}
+
+void RunStretches::begin(RunStretch& stretch, const Scene& scene) const {
+  stretch.number = stretches_.size();
+  stretch.scene = scene;
+  stretch.held = held_part(scene).name;
+  stretch.start.pairs.reserve(scene.parts.size());  // follow() must not allocate
+}
+
+void RunStretches::record(RunStretch& stretch, const StartReport& start) {
+  RecordingInfo info{file_.path, stretch.held, file_.scene.contact.resolver, settings_.program,
+                     names_of_suspended(start, stretch.scene)};
+  stretch.recording = settings_.record;
+  if (stretch.number > 0) {
+    const fs::path first = settings_.record;
+    const fs::path folder = first.parent_path();
+    if (!fs::is_regular_file(first))
+      throw Error(settings_.record + ": is no regular file, beside which recordings of other scenes could be");
+    stretch.recording = numbered(first, stretch.number + 1, first.extension()).string();
+    stretch.scene_file = numbered(first, stretch.number + 1, ".toml").string();
+    info.scene = fs::path(stretch.scene_file).filename().string();
+    std::error_code absent;
+    if (fs::equivalent(stretch.scene_file, file_.path, absent))
+      throw Error(stretch.scene_file + ": is the scene that runs, and would be replaced; record under another name");
+    info.follows = fs::path(stretches_.back()->recording).filename().string();
+    write_text(stretch.scene_file, scene_text(file_, stretch.scene, folder.string()));
+  }
+  try {
+    stretch.recorder.emplace(stretch.recording, settings_.real_time ? RecordMode::threaded : RecordMode::synchronous,
+                             info);
+  } catch (const Error&) {
+    if (stretch.number > 0) fs::remove(stretch.scene_file);
+    throw;
+  }
+}
+
+bool RunStretches::follow() noexcept {
+  const std::uint64_t change = loop_.change_in_force();
+  bool another = false;
+  if (change != change_) {
+    change_ = change;
+    now_ = by_change_[change % kSlots].load(std::memory_order_acquire);
+    now_->start = loop_.start();
+    now_->waiting = static_cast<int>(std::count_if(now_->start.pairs.begin(), now_->start.pairs.end(),
+                                                   [](const StartPair& pair) { return pair.freed != 0; }));
+    another = true;
+  }
+  const int freed = now_->waiting - loop_.report().suspended - loop_.report().relieved;
+  if (freed != now_->freed) now_->start = loop_.start();
+  now_->freed = freed;
+  if (another) followed_.store(change, std::memory_order_release);
+  return another;
+}
+
+bool RunStretches::wait_for(std::uint64_t change) const {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (followed_.load(std::memory_order_acquire) != change) {
+    if (over_ || std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return true;
+}
+
+std::vector<Part> RunStretches::change(std::vector<Part> parts, const std::function<void(std::uint64_t)>& ready) {
+  RunStretch& before = *stretches_.back();
+  Scene scene = before.scene;
+  scene.parts = std::move(parts);
+  for (Part& part : scene.parts)
+    if (part.name == before.held) part.pose = loop_.latest();
+  auto made = std::make_unique<RunStretch>();
+  RunStretch& stretch = *made;
+  const std::uint64_t change =
+      loop_.change(in_its_time(scene, settings_.real_time), [&](std::uint64_t number, const StartReport& start) {
+        begin(stretch, scene);
+        if (!settings_.record.empty()) record(stretch, start);
+        by_change_[number % kSlots].store(&stretch, std::memory_order_release);
+        if (ready) ready(stretch.number);
+      });
+  if (!wait_for(change) && loop_.withdraw()) {
+    stretch.recorder.reset();
+    if (!stretch.recording.empty()) remove_files(stretch);
+    if (over_) throw Error("the run has ended");
+    throw Error("the held part has gone past what was added or moved, or there is no pen; try again");
+  }
+  // What could not be taken back is in force, and followed in the same tick.
+  while (followed_.load(std::memory_order_acquire) != change) std::this_thread::sleep_for(kPoll);
+  stretches_.push_back(std::move(made));
+  finish(before, fs::path(stretch.recording).filename().string());
+  return stretch.scene.parts;
+}
+
+void RunStretches::finish(RunStretch& stretch, const std::string& goes_on) noexcept {
+  stretch.check.shrink();
+  if (!stretch.recorder) return;
+  try {
+    stretch.recorder->close(goes_on);
+  } catch (const Error& e) {
+    if (failure_.empty()) failure_ = e.what();
+  }
+}
+
+void RunStretches::end() {
+  detach();
+  for (const auto& stretch : stretches_) finish(*stretch, {});
+  if (!failure_.empty()) throw Error(failure_);
+}
+
+std::int64_t RunStretches::penetrating(std::atomic<double>* share) const {
+  std::int64_t count = 0;
+  for (const auto& s : stretches_) count += s->check.count_intersecting(s->scene, s->start, share);
+  return count;
+}
+
+std::uint64_t RunStretches::dropped() const {
+  std::uint64_t count = 0;
+  for (const auto& s : stretches_) count += s->recorder ? s->recorder->dropped() : 0;
+  return count;
+}
+
+std::vector<std::string> RunStretches::recordings() const {
+  std::vector<std::string> paths;
+  for (const auto& s : stretches_)
+    if (!s->recording.empty()) paths.push_back(s->recording);
+  return paths;
+}
+
+RunEdits::RunEdits() : state_(std::make_unique<State>()) {}
+RunEdits::~RunEdits() = default;
+
+std::vector<Part> RunEdits::change(std::vector<Part> parts, const std::function<void(std::uint64_t stretch)>& ready) {
+  const std::lock_guard<std::mutex> lock(state_->mutex);
+  if (state_->run == nullptr) throw Error("the run has not begun, or is over");
+  return state_->run->change(std::move(parts), ready);
+}
+
+}  // namespace tegotae

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "tegotae/sim/scene_file.hpp"
+
+namespace tegotae {
+
+/// The text of a scene file for `now`, a scene with parts of `file` in other places, some of them left out, perhaps
+/// with another one held. Its paths are as seen from `folder`; everything else is as in `file`, but for the script,
+/// which is for the part that `file` holds. Throws Error when `file` was not read from a file.
+std::string scene_text(const SceneFile& file, const Scene& now, const std::string& folder);
+
+}  // namespace tegotae
