@@ -221,7 +221,8 @@ void LiveView::lead(const json& command) {
   const Vec3 at = P * center + (wanted * center - Y * center) / space.scale;
   const std::lock_guard<std::mutex> lock(mutex_);
   // What was meant for the part that was held before comes too late.
-  if (space.generation != generation_ || command.value("generation", generation_) != generation_) return;
+  if (space.generation != generation_) return;
+  if (command.contains("generation") && whole_number<std::uint64_t>(command.at("generation")) != generation_) return;
   session_->guide.lead({turned, at - turned * center});
 }
 

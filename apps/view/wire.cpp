@@ -27,8 +27,9 @@ std::string message(Message kind, const void* data, std::size_t bytes) {
 
 void append_frame(const Frame& f, std::vector<float>& out) {
   const std::size_t begin = out.size();
-  append(out, static_cast<double>(f.tick / kTickSplit));
-  append(out, static_cast<double>(f.tick % kTickSplit));
+  const std::uint64_t high = f.tick / kTickSplit, low = f.tick % kTickSplit;
+  append(out, static_cast<double>(high));
+  append(out, static_cast<double>(low));
   append(out, std::floor(f.t));
   append(out, f.t - std::floor(f.t));
   for (const double v : f.x) append(out, v);
