@@ -6,7 +6,7 @@
 #   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
 #   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer)
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
-#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/; --quick: the 12 sources changed last
+#   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
 #   determinism   recordings of runs in virtual time: of builds with -O2 and -O3, idle and busy, the same bytes
 #   docs          every public name has a docstring (doxygen), links of the documents
 #   fuzz          every fuzz target for 20 seconds; --quick: 3
@@ -124,24 +124,11 @@ check_clang() {
   cmake --build build/clang --parallel "$jobs"
 }
 
-# The sources of the library and the programs, those changed last first.
-sources_by_change() {
-  {
-    git diff --name-only HEAD
-    git log --format= --name-only
-    own_files cpp
-  } | grep -E '^(src|apps)/.*\.cpp$' | awk '!seen[$0]++' | while read -r file; do
-    if [ -e "$file" ]; then echo "$file"; fi
-  done
-}
-
 check_tidy() {
-  local most=100000
   needs clang-14 clang-14 clang || return 0
   configure_clang
   needs clang-tidy-14 clang-tidy-14 || return 0  # others warn of more
-  if $quick; then most=12; fi
-  sources_by_change | awk -v most=$most 'NR <= most' | xargs -P "$jobs" -n 4 "$tool" --quiet -p build/clang
+  own_files cpp | grep -E '^(src|apps)/' | xargs -P "$jobs" -n 4 "$tool" --quiet -p build/clang
 }
 
 # Twice of each build, the second time with the machine busy.

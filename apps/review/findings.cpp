@@ -93,6 +93,7 @@ class Finder {
           at->second = {c.part, c.distance, row(i).t, 0.5 * (c.on_held_W + c.on_other_W)};
       }
     std::vector<PartClearance> out;
+    out.reserve(least.size());
     for (const auto& [part, one] : least) out.push_back(one);
     std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
     return out;

@@ -111,8 +111,8 @@ class Judge {
       const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
       const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
       if (f.pair.state == PairState::suspended)
-        bad("Suspended" + until + ", because the part began in it: " + name(f) + ". Nothing kept the part out of it; " +
-            poses + " intersect it.");
+        bad(format("Suspended%s, because the part began in it: %s. Nothing kept the part out of it; %s intersect it.",
+                   until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == PairState::relieved)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
             "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +

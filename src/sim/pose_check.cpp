@@ -4,6 +4,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "narrowphase/fcl_pairs.hpp"
+#include "sim/scene_parts.hpp"
 
 namespace tegotae {
 
@@ -22,16 +23,13 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
 
 std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start,
                                            std::atomic<double>* share) const {
-  const Part* held = nullptr;
+  const Part& held = held_part(scene);
   std::vector<const Part*> fixed;
   BoundingSpheres spheres;
   std::vector<std::uint32_t> freed;  // of each fixed part, in which place it came free
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const Part& part = scene.parts[i];
-    if (part.held) {
-      held = &part;
-      continue;
-    }
+    if (part.held) continue;
     fixed.push_back(&part);
     const auto pair =
         std::find_if(start.pairs.begin(), start.pairs.end(), [i](const StartPair& p) { return p.part == i; });
@@ -39,7 +37,7 @@ std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport
     spheres.add(bounding_sphere(*part.mesh), part.pose);
   }
   FclPairs fcl;  // makes the models of just those meshes that some pose is near to
-  const Sphere ball = bounding_sphere(*held->mesh);
+  const Sphere ball = bounding_sphere(*held.mesh);
   std::vector<std::uint32_t> near;
   std::int64_t count = 0, asked = 0;
   for (const auto& [X, came_free] : poses_) {
@@ -47,7 +45,7 @@ std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport
     spheres.query(X * ball.center, ball.radius, 0.0, near);
     for (const std::uint32_t i : near) {
       if (freed[i] > came_free ||
-          fcl.intersections(*held->mesh, *fixed[i]->mesh, fixed[i]->pose.inverse() * X, 1).empty())
+          fcl.intersections(*held.mesh, *fixed[i]->mesh, fixed[i]->pose.inverse() * X, 1).empty())
         continue;
       ++count;
       break;
