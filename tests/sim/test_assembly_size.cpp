@@ -101,6 +101,11 @@ Ticks run(HapticLoop& loop, int ticks, AfterTick after) {
   return {at(0.5), at(0.99), at(0.999), result.late, us.size()};
 }
 
+/// The one with the smaller median; `a` may be none.
+Ticks better(const Ticks& a, const Ticks& b) {
+  return a.n > 0 && a.median_us < b.median_us ? a : b;
+}
+
 void print(const char* name, const Ticks& t) {
   std::printf("%s: tick in contact %.0f / %.0f / %.0f us (median, p99, p99.9; CPU), %d over 900 us, of %zu\n", name,
               t.median_us, t.p99_us, t.p999_us, t.late, t.n);
@@ -111,13 +116,7 @@ void print(const char* name, const Ticks& t) {
 TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   constexpr int kTicks = 20'000;
   const TempFolder small_folder, folder;
-  Ticks small;
-  {
-    const SceneFile file = load_scene(write_grid(small_folder, 100, 71, 10));
-    HapticLoop loop(file.scene);
-    small = run(loop, kTicks, [](int) {});
-    print("1000 parts of 10 k triangles", small);
-  }
+  HapticLoop small_loop(load_scene(write_grid(small_folder, 100, 71, 10)).scene);
 
   const std::string path = write_grid(folder, 100, 71, 20);
   const double before = seconds(CLOCK_PROCESS_CPUTIME_ID), wall = seconds(CLOCK_MONOTONIC);
@@ -130,7 +129,13 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
               file.scene.parts.size(), 1e-6 * static_cast<double>(triangles), cpu_s, wall_s, peak_gigabytes());
   REQUIRE(triangles > 19'000'000);
   CHECK(cpu_s < 20);
-  const Ticks large = run(loop, kTicks, [](int) {});
+  // By turns and the best of two: other work on the machine takes caches and clock rate, not just time.
+  Ticks small{}, large{};
+  for (int turn = 0; turn < 2; ++turn) {
+    small = better(small, run(small_loop, kTicks, [](int) {}));
+    large = better(large, run(loop, kTicks, [](int) {}));
+  }
+  print("1000 parts of 10 k triangles", small);
   print("2000 parts of 10 k triangles", large);
   // As many triangles near, so the same but for noise.
   CHECK(large.median_us < 1.3 * small.median_us);
