@@ -157,15 +157,30 @@ Header read_header(const std::string& path, std::string_view bytes) {
       if (property.value == Scalar::none) refuse(path, "damaged: unknown type " + word + " in the header");
       if (header.elements.empty()) refuse(path, "damaged: a property before the first element");
       header.elements.back().properties.push_back(property);
+    } else if (word != "ply" && word != "comment" && word != "obj_info" && !word.empty()) {
+      refuse(path, "damaged: unknown word in the header");
     }
   }
   refuse(path, "truncated or damaged header");
+}
+
+bool has_corners(const Property& property) {
+  return property.length != Scalar::none && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// Faces must say their corners: assimp reads texture coordinates of those that do not through a null pointer.
+void check_faces(const std::string& path, const Header& header) {
+  for (const Element& element : header.elements)
+    if (element.name == "face" && element.count > 0 &&
+        std::none_of(element.properties.begin(), element.properties.end(), has_corners))
+      refuse(path, "damaged: its faces have no list vertex_indices or vertex_index");
 }
 
 }  // namespace
 
 void check_ply(const std::string& path, std::string_view bytes) {
   const Header header = read_header(path, bytes);
+  check_faces(path, header);
   std::uint64_t vertices = 0;
   for (const Element& element : header.elements) {
     if (element.name == "vertex") vertices = element.count;
@@ -182,7 +197,7 @@ void check_ply(const std::string& path, std::string_view bytes) {
       const auto place = [&] { return element.name + ' ' + std::to_string(i); };
       for (const Property& property : element.properties) {
         const bool list = property.length != Scalar::none;
-        const bool corners = list && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool corners = has_corners(property);
         double length = 1;
         if (list && !body.next(property.length, length)) refuse(path, "truncated or damaged at " + place());
         for (double k = 0; k < length; ++k) {
