@@ -61,74 +61,97 @@ void check_obj(const std::string& path, std::string_view bytes) {
   if (words < 4) refuse(path, "truncated: the last line is \"" + std::string(line) + '"');
 }
 
-/// Words of an OFF file; comments run from # to the end of the line.
-class OffWords {
+/// An OFF file as assimp reads it: the header by words, with comments from # to the end of the line, then a vertex or
+/// face to a line.
+class OffText {
  public:
-  explicit OffWords(std::string_view bytes) : bytes_(bytes) {}
+  explicit OffText(std::string_view bytes) : bytes_(bytes) {}
 
-  std::string_view next() {
-    skip();
+  std::string_view header_word() {
+    skip_comments();
     const std::size_t begin = at_;
-    while (at_ < bytes_.size() && kBlank.find(bytes_[at_]) == std::string_view::npos) ++at_;
+    at_ = std::min(bytes_.find_first_of(kBlank, at_), bytes_.size());
     return bytes_.substr(begin, at_ - begin);
   }
-  /// Whether the line has another word.
-  bool more_in_line() {
-    while (at_ < bytes_.size() && (bytes_[at_] == ' ' || bytes_[at_] == '\t' || bytes_[at_] == '\r')) ++at_;
-    return at_ < bytes_.size() && bytes_[at_] != '\n' && bytes_[at_] != '#';
+  /// The next line that is not empty; without more lines, an empty one.
+  std::string_view line() {
+    at_ = std::min(bytes_.find_first_not_of("\r\n", at_), bytes_.size());
+    const std::size_t begin = at_;
+    at_ = std::min(bytes_.find_first_of("\r\n", at_), bytes_.size());
+    return bytes_.substr(begin, at_ - begin);
   }
-  bool next_integer(std::int64_t& value) {
-    const std::string_view word = next();
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
+  void skip_comments() {
+    while ((at_ = std::min(bytes_.find_first_not_of(kBlank, at_), bytes_.size())) < bytes_.size() && bytes_[at_] == '#')
+      at_ = std::min(bytes_.find_first_of("\r\n", at_), bytes_.size());
   }
 
  private:
-  void skip() {
-    while (at_ < bytes_.size()) {
-      if (bytes_[at_] == '#') {
-        at_ = std::min(bytes_.find('\n', at_), bytes_.size());
-      } else if (kBlank.find(bytes_[at_]) != std::string_view::npos) {
-        ++at_;
-      } else {
-        return;
-      }
-    }
-  }
   std::string_view bytes_;
   std::size_t at_ = 0;
 };
 
-void check_off(const std::string& path, std::string_view bytes) {
-  OffWords words(bytes);
-  const std::string_view magic = words.next();
-  if (magic.size() < 3 || magic.substr(magic.size() - 3) != "OFF") refuse(path, "damaged: it does not begin with OFF");
-  std::int64_t vertices = 0, faces = 0, edges = 0;
-  if (!words.next_integer(vertices) || !words.next_integer(faces) || !words.next_integer(edges) || vertices < 0 ||
-      faces < 0) {
-    refuse(path, "damaged: the counts of vertices, faces and edges are no numbers (text OFF only)");
+/// Takes the first word of a line as a number.
+template <class T>
+bool take_number(std::string_view& line, T& value) {
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+  line.remove_prefix(word.size());
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error != std::errc::invalid_argument && !word.empty() && end == word.data() + word.size();
+}
+
+void check_off_face(const std::string& path, std::string_view line, std::int64_t face, std::int64_t vertices) {
+  constexpr std::int64_t kMostCorners = 9;  // assimp drops larger faces without a word
+  const std::string name = "face " + std::to_string(face);
+  std::int64_t corners = 0;
+  // assimp reads on past a face without corners and ends in a segmentation fault.
+  if (!take_number(line, corners) || corners < 1) refuse(path, "truncated or damaged at " + name);
+  if (corners > kMostCorners) {
+    refuse(path, name + " has " + std::to_string(corners) + " corners; faces of OFF files are read up to " +
+                     std::to_string(kMostCorners) + ": export the part as triangles");
   }
+  for (std::int64_t k = 0; k < corners; ++k) {
+    std::int64_t index = 0;
+    if (!take_number(line, index)) refuse(path, "truncated or damaged in " + name + ", which takes a line");
+    if (index < 0 || index >= vertices) {
+      refuse(path, "index out of range: " + name + " names vertex " + std::to_string(index) + " of " +
+                       std::to_string(vertices));
+    }
+  }
+}
+
+void check_off(const std::string& path, std::string_view bytes) {
+  constexpr std::size_t kLongestLine = 4000;  // assimp's buffer for a line has 4096 bytes, and it does not mind its end
+  OffText text(bytes);
+  const std::string_view magic = text.header_word();
+  if (magic.size() < 3 || magic.substr(magic.size() - 3) != "OFF") refuse(path, "damaged: it does not begin with OFF");
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 32 && kBlank.find(c) == kBlank.npos; };
+  if (std::any_of(bytes.begin(), bytes.end(), control))
+    refuse(path, "damaged: it has control characters (text OFF only)");
+  std::array<std::int64_t, 3> counts{};  // of vertices, faces, edges
+  for (std::int64_t& count : counts) {
+    std::string_view word = text.header_word();
+    if (!take_number(word, count) || count < 0) {
+      refuse(path, "damaged: the counts of vertices, faces and edges are no numbers (text OFF only)");
+    }
+  }
+  const auto [vertices, faces, edges] = counts;
   const auto room = static_cast<std::int64_t>(bytes.size());
   if (vertices > room || faces > room) refuse(path, "truncated: it announces more elements than it has bytes");
-  for (std::int64_t i = 0; i < vertices; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (words.next().empty()) refuse(path, "truncated: it ends in vertex " + std::to_string(i));
+  text.skip_comments();
+  for (std::int64_t i = 0; i < vertices + faces; ++i) {
+    std::string_view line = text.line();
+    if (line.size() > kLongestLine) refuse(path, "damaged: a line is longer than 4000 characters");
+    if (i >= vertices) {
+      check_off_face(path, line, i - vertices, vertices);
+      continue;
     }
-    while (words.more_in_line()) words.next();
-  }
-  for (std::int64_t i = 0; i < faces; ++i) {
-    std::int64_t corners = 0;
-    // assimp reads on past a face without corners and ends in a segmentation fault.
-    if (!words.next_integer(corners) || corners < 1) refuse(path, "truncated or damaged at face " + std::to_string(i));
-    for (std::int64_t k = 0; k < corners; ++k) {
-      std::int64_t index = 0;
-      if (!words.next_integer(index)) refuse(path, "truncated or damaged in face " + std::to_string(i));
-      if (index < 0 || index >= vertices) {
-        refuse(path, "index out of range: face " + std::to_string(i) + " names vertex " + std::to_string(index) +
-                         " of " + std::to_string(vertices));
+    for (int k = 0; k < 3; ++k) {
+      double x = 0;
+      if (!take_number(line, x)) {
+        refuse(path, "truncated or damaged at vertex " + std::to_string(i) + ", which takes a line of its own");
       }
     }
-    while (words.more_in_line()) words.next();
   }
 }
 

@@ -16,6 +16,9 @@ namespace {
 /// Coordinates beyond this (m) are taken for a damaged file or a wrong unit.
 constexpr double kLargestCoordinate = 1e6;
 
+/// assimp cuts a polygon of n corners into triangles in about n^2 * 1e-8 s: at most ten seconds for a file.
+constexpr double kMostPolygonWork = 1e9;
+
 /// assimp passes some files' indices through unchecked, and its own later steps trust them.
 void require_valid_indices(const aiScene& scene, const std::string& path) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
@@ -28,6 +31,23 @@ void require_valid_indices(const aiScene& scene, const std::string& path) {
         }
       }
     }
+  }
+}
+
+void require_small_polygons(const aiScene& scene, const std::string& path) {
+  double work = 0;
+  unsigned most = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const unsigned corners = mesh.mFaces[f].mNumIndices;
+      if (corners > 3) work += static_cast<double>(corners) * corners;
+      most = std::max(most, corners);
+    }
+  }
+  if (work > kMostPolygonWork) {
+    throw Error(path + ": polygons of up to " + std::to_string(most) +
+                " corners would take too long to cut into triangles: export the part as triangles");
   }
 }
 
@@ -63,6 +83,7 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr) throw Error(path + ": " + importer.GetErrorString());
   require_valid_indices(*scene, path);
+  require_small_polygons(*scene, path);
   unmark_empty_polygons(*scene);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) throw Error(path + ": " + importer.GetErrorString());

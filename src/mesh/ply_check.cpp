@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -32,6 +33,31 @@ Scalar scalar_of(const std::string& name) {
   return Scalar::none;
 }
 
+template <class T>
+bool is_a(double value) {
+  return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
+         value == std::floor(value);
+}
+
+bool fits(Scalar type, double value) {
+  switch (type) {
+    case Scalar::i8:
+      return is_a<std::int8_t>(value);
+    case Scalar::u8:
+      return is_a<std::uint8_t>(value);
+    case Scalar::i16:
+      return is_a<std::int16_t>(value);
+    case Scalar::u16:
+      return is_a<std::uint16_t>(value);
+    case Scalar::i32:
+      return is_a<std::int32_t>(value);
+    case Scalar::u32:
+      return is_a<std::uint32_t>(value);
+    default:
+      return true;
+  }
+}
+
 struct Property {
   Scalar length = Scalar::none;  ///< of a list's count; none for a single value
   Scalar value = Scalar::none;
@@ -50,16 +76,30 @@ class Body {
   enum class Encoding { ascii, little, big };
   Body(std::string_view bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
 
-  /// The next value; false at the end of the bytes or at a word that is no number.
-  bool next(Scalar type, double& value) { return encoding_ == Encoding::ascii ? word(value) : binary(type, value); }
+  /// The next value; false at the end of the bytes or of an ASCII file's line, and at a word that is no number of this
+  /// type.
+  bool next(Scalar type, double& value) {
+    return encoding_ == Encoding::ascii ? word(value) && fits(type, value) : binary(type, value);
+  }
+
+  /// To the next element. False when values are left over on an ASCII file's line: assimp takes a line for an element,
+  /// and would read others than those that were checked.
+  bool end_element() {
+    if (encoding_ != Encoding::ascii) return true;
+    skip_blanks();
+    if (at_ < bytes_.size() && bytes_[at_] != '\n') return false;
+    at_ = std::min(at_ + 1, bytes_.size());
+    return true;
+  }
 
   std::size_t left() const { return bytes_.size() - at_; }
 
  private:
+  void skip_blanks() { at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size()); }
+
   bool word(double& value) {
-    constexpr std::string_view kBlank = " \t\r\n";
-    at_ = std::min(bytes_.find_first_not_of(kBlank, at_), bytes_.size());
-    const std::size_t end = std::min(bytes_.find_first_of(kBlank, at_), bytes_.size());
+    skip_blanks();
+    const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", at_), bytes_.size());
     const auto [stop, error] = std::from_chars(bytes_.data() + at_, bytes_.data() + end, value);
     // A number too large for a double is a number; the coordinates are judged after loading.
     const bool good = end > at_ && error != std::errc::invalid_argument && stop == bytes_.data() + end;
@@ -199,7 +239,8 @@ void check_ply(const std::string& path, std::string_view bytes) {
         const bool list = property.length != Scalar::none;
         const bool corners = has_corners(property);
         double length = 1;
-        if (list && !body.next(property.length, length)) refuse(path, "truncated or damaged at " + place());
+        if (list && (!body.next(property.length, length) || !is_a<std::uint32_t>(length)))
+          refuse(path, "truncated or damaged at " + place());
         for (double k = 0; k < length; ++k) {
           double value = 0;
           if (!body.next(property.value, value)) refuse(path, "truncated or damaged at " + place());
@@ -209,6 +250,7 @@ void check_ply(const std::string& path, std::string_view bytes) {
           }
         }
       }
+      if (!body.end_element()) refuse(path, "damaged: more values on its line than " + place() + " has");
     }
   }
 }

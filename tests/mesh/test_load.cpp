@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -293,6 +294,21 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
   refuse("header.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "header");
   refuse("none.ply", "plx\n" + kPly, "ply");
   refuse("many.ply", replaced(kPly, "face 4", "face 4000000000"), "truncated");
+  refuse("words.ply", replaced(kPly, "3 1 2 3", "3 1 2 3 1"), "more values on its line");
+  refuse("lines.ply", replaced(kPly, "3 1 2 3", "3 1 2\n3"), "truncated or damaged at face");
+  refuse("length.ply", replaced(kPly, "3 1 2 3", "3.5 1 2 3"), "damaged at face");
+  refuse("wide.ply", replaced(kPly, "3 1 2 3", "259 1 2 3"), "damaged at face");
+  std::string round, corners = "f";
+  for (int i = 0; i < 40000; ++i) {
+    round += "v " + std::to_string(std::cos(i * 1e-4)) + ' ' + std::to_string(std::sin(i * 1e-4)) + " 0\n";
+    corners += ' ' + std::to_string(i + 1);
+  }
+  refuse("round.obj", round + corners + '\n', "40000 corners would take too long");
+  refuse("round.off", replaced(kOff, "3 1 2 3", "12 1 2 3 1 2 3 1 2 3 1 2 3"), "has 12 corners");
+  refuse("lines.off", replaced(kOff, "3 1 2 3", "3 1\n2 3"), "takes a line");
+  refuse("two.off", replaced(kOff, "1 0 0\n", "1 0 0 "), "damaged at face 3");
+  refuse("long.off", replaced(kOff, "1 0 0\n", "1 0 0 " + std::string(5000, ' ') + '\n'), "longer than 4000");
+  refuse("feed.off", replaced(kOff, "1 0 0\n", "1 0 0 \f\n"), "control characters");
   refuse("many.off", replaced(kOff, "4 4 6", "400000000 400000000 0"), "truncated");
   std::string many = binary_stl();
   std::memset(&many[80], 0xff, 4);
