@@ -76,6 +76,7 @@ struct Server::Impl {
   ViewSource& source;
   std::unique_ptr<RequestGuard> guard;
   std::string url, log;
+  Address local;  ///< as seen from this machine
   std::atomic<int> watchers{0};
   std::atomic<bool> started{false}, ending{false};
   Rate rate;
@@ -247,17 +248,31 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
   Address listening = address;
   listening.port = ports[0].port;
   impl_->guard = std::make_unique<RequestGuard>(listening);
-  Address shown = listening;
-  if (address.wildcard()) shown.host = address.host == "[::]" ? "[::1]" : "127.0.0.1";
-  impl_->url = "http://" + shown.text() + "/?token=" + impl_->guard->token();
+  impl_->local = listening;
+  if (address.wildcard()) impl_->local.host = address.host == "[::]" ? "[::1]" : "127.0.0.1";
+  impl_->url = "http://" + impl_->local.text() + "/?token=" + impl_->guard->token();
   mg_set_request_handler(
       impl_->context, "**",
       [](mg_connection* connection, void* impl) { return static_cast<Impl*>(impl)->serve(connection); }, impl_.get());
 }
 
+// civetweb's listening thread looks whether it should stop when somebody calls, or every two seconds: so call.
 Server::~Server() {
   impl_->ending = true;
+  std::atomic<bool> stopped{false};
+  std::thread caller([&] {
+    const Address& a = impl_->local;
+    const std::string host = a.host.front() == '[' ? a.host.substr(1, a.host.size() - 2) : a.host;
+    while (!stopped) {
+      char error[100];
+      mg_connection* call = mg_connect_client(host.c_str(), a.port, 0, error, sizeof error);
+      if (call) mg_close_connection(call);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
   mg_stop(impl_->context);
+  stopped = true;
+  caller.join();
 }
 
 const std::string& Server::url() const {
