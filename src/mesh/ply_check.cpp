@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -156,71 +157,116 @@ struct Header {
   std::size_t size = 0;  ///< bytes up to the body
 };
 
+using Words = std::vector<std::string>;
+
+/// The next line of the header, in words; a comment's are not told. Anything that another reader might take for the end
+/// of a line or of the text is refused.
+Words next_line(const std::string& path, std::string_view bytes, std::size_t& at) {
+  const std::size_t end = bytes.find('\n', at);
+  if (end == std::string_view::npos) refuse(path, "truncated or damaged header");
+  std::string line(bytes.substr(at, end - at));
+  at = end + 1;
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::istringstream words(line);
+  Words all{std::istream_iterator<std::string>(words), {}};
+  const bool comment = !all.empty() && (all[0] == "comment" || all[0] == "obj_info");
+  for (const char c : line) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 32 && c != '\t') || (code > 126 && !comment)) refuse(path, "damaged: its header is no plain text");
+  }
+  if (comment) all.resize(1);
+  return all;
+}
+
+/// "format ENCODING 1.0"
+Body::Encoding read_encoding(const std::string& path, const Words& line) {
+  if (line.size() == 3 && line[2] == "1.0") {
+    if (line[1] == "ascii") return Body::Encoding::ascii;
+    if (line[1] == "binary_little_endian") return Body::Encoding::little;
+    if (line[1] == "binary_big_endian") return Body::Encoding::big;
+  }
+  refuse(path, "damaged: its format is not ascii, binary_little_endian or binary_big_endian 1.0");
+}
+
+/// "element NAME COUNT"
+Element read_element(const std::string& path, const Words& line) {
+  Element element;
+  if (line.size() == 3 && line[1] != "tristrips") {  // of strips, assimp believes every length
+    element.name = line[1];
+    const auto [end, error] = std::from_chars(line[2].data(), line[2].data() + line[2].size(), element.count);
+    if (error == std::errc() && end == line[2].data() + line[2].size()) return element;
+  }
+  refuse(path, "damaged or not supported: an element of the header is not \"element NAME COUNT\"");
+}
+
+/// "property TYPE NAME" or "property list TYPE TYPE NAME"
+Property read_property(const std::string& path, const Words& line) {
+  Property property;
+  const bool list = line.size() == 5 && line[1] == "list";
+  if (list) property.length = scalar_of(line[2]);
+  if (list || line.size() == 3) {
+    property.value = scalar_of(line[line.size() - 2]);
+    property.name = line.back();
+  }
+  if (property.value == Scalar::none || (list && property.length == Scalar::none))
+    refuse(path, "damaged: a property of the header has no known type and name");
+  return property;
+}
+
 Header read_header(const std::string& path, std::string_view bytes) {
   Header header;
-  bool first = true, has_format = false;
-  while (header.size < bytes.size()) {
-    const std::size_t end = bytes.find('\n', header.size);
-    if (end == std::string_view::npos) break;
-    std::istringstream line{std::string(bytes.substr(header.size, end - header.size))};
-    header.size = end + 1;
-    std::string word;
-    line >> word;
-    if (first && word != "ply") refuse(path, "damaged: it does not begin with ply");
-    first = false;
-    if (word == "end_header") {
-      if (!has_format) break;
+  if (next_line(path, bytes, header.size) != Words{"ply"}) refuse(path, "damaged: it does not begin with ply");
+  bool has_format = false;
+  for (;;) {
+    const Words line = next_line(path, bytes, header.size);
+    if (line.empty() || line[0] == "comment" || line[0] == "obj_info") continue;
+    if (line[0] == "format" && !has_format) {
+      header.encoding = read_encoding(path, line);
+      has_format = true;
+    } else if (!has_format) {
+      refuse(path, "damaged: its header does not begin with its format");
+    } else if (line == Words{"end_header"}) {
       return header;
-    }
-    if (word == "format") {
-      line >> word;
-      has_format = word == "ascii" || word == "binary_little_endian" || word == "binary_big_endian";
-      header.encoding = word == "ascii"                  ? Body::Encoding::ascii
-                        : word == "binary_little_endian" ? Body::Encoding::little
-                                                         : Body::Encoding::big;
-    } else if (word == "element") {
-      Element element;
-      line >> element.name >> element.count;
-      if (!line) refuse(path, "damaged: an element of the header has no count");
-      header.elements.push_back(element);
-    } else if (word == "property") {
-      Property property;
-      line >> word;
-      if (word == "list") {
-        line >> word;
-        property.length = scalar_of(word);
-        if (property.length == Scalar::none) refuse(path, "damaged: unknown type " + word + " in the header");
-        line >> word;
-      }
-      property.value = scalar_of(word);
-      line >> property.name;
-      if (property.value == Scalar::none) refuse(path, "damaged: unknown type " + word + " in the header");
-      if (header.elements.empty()) refuse(path, "damaged: a property before the first element");
-      header.elements.back().properties.push_back(property);
-    } else if (word != "ply" && word != "comment" && word != "obj_info" && !word.empty()) {
-      refuse(path, "damaged: unknown word in the header");
+    } else if (line[0] == "element") {
+      header.elements.push_back(read_element(path, line));
+    } else if (line[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(read_property(path, line));
+    } else {
+      refuse(path, "damaged: its header has a line that begins with neither element nor property");
     }
   }
-  refuse(path, "truncated or damaged header");
 }
 
 bool has_corners(const Property& property) {
   return property.length != Scalar::none && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// Faces must say their corners: assimp reads texture coordinates of those that do not through a null pointer.
-void check_faces(const std::string& path, const Header& header) {
-  for (const Element& element : header.elements)
+/// What assimp takes for granted of elements and properties that it knows.
+void check_elements(const std::string& path, const Header& header) {
+  for (const Element& element : header.elements) {
+    const auto same = [&](const Element& e) { return e.name == element.name; };
+    if (std::count_if(header.elements.begin(), header.elements.end(), same) > 1)
+      refuse(path, "damaged: its header has element " + element.name + " twice");
+    for (const Property& property : element.properties) {
+      const auto same_name = [&](const Property& p) { return p.name == property.name; };
+      if (std::count_if(element.properties.begin(), element.properties.end(), same_name) > 1)
+        refuse(path, "damaged: its header has property " + property.name + " of " + element.name + " twice");
+    }
+    const auto list = [](const Property& p) { return p.length != Scalar::none; };
+    if (element.name == "vertex" && std::any_of(element.properties.begin(), element.properties.end(), list))
+      refuse(path, "damaged: its vertices have lists");
+    // Texture coordinates of faces without corners are read through a null pointer.
     if (element.name == "face" && element.count > 0 &&
         std::none_of(element.properties.begin(), element.properties.end(), has_corners))
       refuse(path, "damaged: its faces have no list vertex_indices or vertex_index");
+  }
 }
 
 }  // namespace
 
 void check_ply(const std::string& path, std::string_view bytes) {
   const Header header = read_header(path, bytes);
-  check_faces(path, header);
+  check_elements(path, header);
   std::uint64_t vertices = 0;
   for (const Element& element : header.elements) {
     if (element.name == "vertex") vertices = element.count;
