@@ -7,6 +7,8 @@
 #include "apps/run_program.hpp"
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "sim/run_pen.hpp"
+#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/write.hpp"
 #include "tegotae/sim/session.hpp"
@@ -168,4 +170,41 @@ TEST_CASE("a change that cannot be recorded changes nothing", "[change]") {
   CHECK(looker.went_over == 0);
   CHECK(summary.recordings == std::vector<std::string>{folder / "run.csv"});
   CHECK_FALSE(std::filesystem::exists(folder / "run.2.toml"));
+}
+
+// What the servo tells before it has heard of the new part is the old part's: followed, it would throw the new one.
+TEST_CASE("a pen that takes another part tells nothing until its servo has heard of it", "[change]") {
+  const TempFolder folder;
+  const SceneFile file = scene_in(folder);
+  const HapticLoop loop(file.scene);
+  const auto pen = make_local_pen(file, loop, false, nullptr, nullptr);
+  std::int64_t now = 0;
+  PenSample sample;
+  ProxyState proxy;
+  proxy.X = held_part(file.scene).pose;
+  const auto publish = [&] { pen->publish(proxy, {}, 1, sample.state.sequence, now); };
+  const auto servo = [&] {
+    pen->tick_servo(now);
+    pen->advance(1e-3);
+    now += 1'000'000;
+  };
+  pen->start();
+  servo();
+  REQUIRE(pen->read(sample, now));
+  publish();
+  servo();
+  REQUIRE(pen->read(sample, now));
+  CHECK(sample.state.pose.p.isApprox(proxy.X.p, 1e-2));
+
+  proxy.X.p = Vec3(0.08, 0, 0.04);
+  pen->hold(loop.center(), loop.gyration(), proxy.X);
+  CHECK(!pen->read(sample, now));
+  servo();  // it has not heard yet
+  CHECK(!pen->read(sample, now));
+  publish();
+  CHECK(!pen->read(sample, now));
+  servo();
+  REQUIRE(pen->read(sample, now));
+  CHECK((sample.state.pose.p - proxy.X.p).norm() < 1e-3);
+  pen->stop();
 }
