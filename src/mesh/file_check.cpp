@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <type_traits>
 
 #include "mesh/gltf_check.hpp"
 #include "mesh/ply_check.hpp"
@@ -97,7 +98,9 @@ bool take_number(std::string_view& line, T& value) {
   const std::string_view word = line.substr(0, line.find_first_of(kBlank));
   line.remove_prefix(word.size());
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error != std::errc::invalid_argument && !word.empty() && end == word.data() + word.size();
+  // A number too large for a double is a number; the coordinates are judged after loading.
+  const bool number = error == std::errc() || (std::is_floating_point_v<T> && error == std::errc::result_out_of_range);
+  return number && end == word.data() + word.size();
 }
 
 void check_off_face(const std::string& path, std::string_view line, std::int64_t face, std::int64_t vertices) {
