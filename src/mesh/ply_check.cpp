@@ -191,12 +191,15 @@ Body::Encoding read_encoding(const std::string& path, const Words& line) {
 /// "element NAME COUNT"
 Element read_element(const std::string& path, const Words& line) {
   Element element;
-  if (line.size() == 3 && line[1] != "tristrips") {  // of strips, assimp believes every length
-    element.name = line[1];
-    const auto [end, error] = std::from_chars(line[2].data(), line[2].data() + line[2].size(), element.count);
-    if (error == std::errc() && end == line[2].data() + line[2].size()) return element;
-  }
-  refuse(path, "damaged or not supported: an element of the header is not \"element NAME COUNT\"");
+  if (line.size() != 3) refuse(path, "damaged: an element of the header is not \"element NAME COUNT\"");
+  element.name = line[1];
+  const auto [end, error] = std::from_chars(line[2].data(), line[2].data() + line[2].size(), element.count);
+  if (error != std::errc() || end != line[2].data() + line[2].size())
+    refuse(path, "damaged: the count of element " + element.name + " is no number");
+  // Of strips, assimp believes every length; of elements that it does not know it takes the name for the count.
+  if (element.name != "vertex" && element.name != "face" && element.name != "edge" && element.name != "material")
+    refuse(path, "element " + element.name + " is not supported: export vertices and faces alone");
+  return element;
 }
 
 /// "property TYPE NAME" or "property list TYPE TYPE NAME"

@@ -293,6 +293,7 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
 
   refuse("header.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "header");
   refuse("none.ply", "plx\n" + kPly, "ply");
+  refuse("camera.ply", replaced(kPly, "element vertex", "element camera 0\nelement vertex"), "camera is not supported");
   refuse("many.ply", replaced(kPly, "face 4", "face 4000000000"), "truncated");
   refuse("words.ply", replaced(kPly, "3 1 2 3", "3 1 2 3 1"), "more values on its line");
   refuse("lines.ply", replaced(kPly, "3 1 2 3", "3 1 2\n3"), "truncated or damaged at face");
