@@ -1,12 +1,14 @@
 // Against a stand-in for the vendor's library, which checks the order of calls.
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "catch.hpp"
 #include "device/fake_hd/fake_hd.h"
@@ -92,19 +94,28 @@ TEST_CASE("the pen's velocity is that of its motion", "[openhaptics]") {
   const FakeHd fake;
   OpenHapticsDevice pen(settings());
   pen.start();
-  // Up at 100 mm/s and turning at 1 rad/s about up, as long as the filter of 50 Hz takes to follow; by the clock.
+  // Up at 100 mm/s and turning at 1 rad/s about up, as long as the filter of 50 Hz takes to follow; by the clock. The
+  // middle of what is told later counts: where this thread is stopped, the pen seems to stop, and then to jump.
   const auto begin = std::chrono::steady_clock::now();
   double t = 0;
-  while (t < 0.1) {
+  std::vector<double> wrong, wrong_turn;
+  while (t < 0.2) {
     t = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const double c = std::cos(t), s = std::sin(t);
     const double transform[16] = {c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 0, 100 * t, 0, 1};
     std::memcpy(fake.state->transform, transform, sizeof transform);
     fake.run(1);
+    if (t < 0.1) continue;
+    const Twist velocity = pen.read().velocity;
+    wrong.push_back((velocity.v - Vec3(0, 0, 0.1)).norm());
+    wrong_turn.push_back((velocity.w - Vec3(0, 0, 1)).norm());
   }
-  const DeviceState state = pen.read();
-  CHECK((state.velocity.v - Vec3(0, 0, 0.1)).norm() < 0.02);
-  CHECK((state.velocity.w - Vec3(0, 0, 1)).norm() < 0.2);
+  const auto middle = [](std::vector<double>& of) {
+    std::nth_element(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2), of.end());
+    return of[of.size() / 2];
+  };
+  CHECK(middle(wrong) < 0.02);
+  CHECK(middle(wrong_turn) < 0.2);
 }
 
 TEST_CASE("wrenches go out in newtons and millinewton meters, in the device's axes", "[openhaptics]") {

@@ -11,6 +11,7 @@
 #include "alloc_guard.hpp"
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -21,9 +22,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-// Instrumented code is too slow for any budget.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
+#ifdef TEGOTAE_SANITIZED
+constexpr bool kSanitized = true;  // too slow for any budget
 #else
 constexpr bool kSanitized = false;
 #endif

@@ -37,6 +37,8 @@ TEST_CASE("it listens on the loopback alone, unless told otherwise") {
   CHECK(listening(everywhere.port) == std::vector<std::string>{"00000000"});
   CHECK(ask(everywhere.port, get(everywhere, "/scene")) == 200);
   CHECK(ask(everywhere.port, {"GET", "/scene", "", everywhere.host(), "", "", ""}) == 403);
+  check_going_on(s);
+  check_going_on(everywhere);
   check_end(s);
   check_end(everywhere);
 }
