@@ -1,24 +1,20 @@
 #include "mesh/ply_check.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <sstream>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
-#include "tegotae/core/error.hpp"
+#include "mesh/check_text.hpp"
 
 namespace tegotae {
 namespace {
-
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw Error(path + ": " + why);
-}
 
 enum class Scalar { none, i8, u8, i16, u16, i32, u32, f32, f64 };
 
@@ -34,29 +30,38 @@ Scalar scalar_of(const std::string& name) {
   return Scalar::none;
 }
 
-template <class T>
-bool is_a(double value) {
-  return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
-         value == std::floor(value);
-}
-
-bool fits(Scalar type, double value) {
+/// visit() of a zero of the C++ type; of none it is false.
+template <class Visit>
+bool with_type(Scalar type, Visit visit) {
   switch (type) {
     case Scalar::i8:
-      return is_a<std::int8_t>(value);
+      return visit(std::int8_t{});
     case Scalar::u8:
-      return is_a<std::uint8_t>(value);
+      return visit(std::uint8_t{});
     case Scalar::i16:
-      return is_a<std::int16_t>(value);
+      return visit(std::int16_t{});
     case Scalar::u16:
-      return is_a<std::uint16_t>(value);
+      return visit(std::uint16_t{});
     case Scalar::i32:
-      return is_a<std::int32_t>(value);
+      return visit(std::int32_t{});
     case Scalar::u32:
-      return is_a<std::uint32_t>(value);
-    default:
-      return true;
+      return visit(std::uint32_t{});
+    case Scalar::f32:
+      return visit(float{});
+    case Scalar::f64:
+      return visit(double{});
+    case Scalar::none:
+      break;
   }
+  return false;
+}
+
+/// Whether a text may stand for a T: too large for a float is for the judge of coordinates.
+template <class T>
+bool fits(double value, T) {
+  if constexpr (std::is_floating_point_v<T>) return true;
+  return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
+         value == std::floor(value);
 }
 
 struct Property {
@@ -80,14 +85,18 @@ class Body {
   /// The next value; false at the end of the bytes or of an ASCII file's line, and at a word that is no number of this
   /// type.
   bool next(Scalar type, double& value) {
-    return encoding_ == Encoding::ascii ? word(value) && fits(type, value) : binary(type, value);
+    if (encoding_ != Encoding::ascii) return with_type(type, [&](auto zero) { return take(value, zero); });
+    std::string_view rest = bytes_.substr(at_);
+    const bool number = take_number(rest, value);
+    at_ = bytes_.size() - rest.size();
+    return number && with_type(type, [&](auto zero) { return fits(value, zero); });
   }
 
   /// To the next element. False when values are left over on an ASCII file's line: assimp takes a line for an element,
   /// and would read others than those that were checked.
   bool end_element() {
     if (encoding_ != Encoding::ascii) return true;
-    skip_blanks();
+    at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size());
     if (at_ < bytes_.size() && bytes_[at_] != '\n') return false;
     at_ = std::min(at_ + 1, bytes_.size());
     return true;
@@ -96,54 +105,17 @@ class Body {
   std::size_t left() const { return bytes_.size() - at_; }
 
  private:
-  void skip_blanks() { at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size()); }
-
-  bool word(double& value) {
-    skip_blanks();
-    const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", at_), bytes_.size());
-    const auto [stop, error] = std::from_chars(bytes_.data() + at_, bytes_.data() + end, value);
-    // A number too large for a double is a number; the coordinates are judged after loading.
-    const bool good = end > at_ && error != std::errc::invalid_argument && stop == bytes_.data() + end;
-    at_ = end;
-    return good;
-  }
-
   template <class T>
-  bool take(double& value) {
+  bool take(double& value, T number) {
     if (left() < sizeof(T)) return false;
     char raw[sizeof(T)];
     std::copy_n(bytes_.data() + at_, sizeof(T), raw);
     at_ += sizeof(T);
     // The machines this runs on are little-endian.
     if (encoding_ == Encoding::big) std::reverse(raw, raw + sizeof(T));
-    T number;
     std::memcpy(&number, raw, sizeof(T));
     value = static_cast<double>(number);
     return true;
-  }
-
-  bool binary(Scalar type, double& value) {
-    switch (type) {
-      case Scalar::i8:
-        return take<std::int8_t>(value);
-      case Scalar::u8:
-        return take<std::uint8_t>(value);
-      case Scalar::i16:
-        return take<std::int16_t>(value);
-      case Scalar::u16:
-        return take<std::uint16_t>(value);
-      case Scalar::i32:
-        return take<std::int32_t>(value);
-      case Scalar::u32:
-        return take<std::uint32_t>(value);
-      case Scalar::f32:
-        return take<float>(value);
-      case Scalar::f64:
-        return take<double>(value);
-      case Scalar::none:
-        break;
-    }
-    return false;
   }
 
   std::string_view bytes_;
@@ -193,8 +165,8 @@ Element read_element(const std::string& path, const Words& line) {
   Element element;
   if (line.size() != 3) refuse(path, "damaged: an element of the header is not \"element NAME COUNT\"");
   element.name = line[1];
-  const auto [end, error] = std::from_chars(line[2].data(), line[2].data() + line[2].size(), element.count);
-  if (error != std::errc() || end != line[2].data() + line[2].size())
+  std::string_view count = line[2];
+  if (!take_number(count, element.count))
     refuse(path, "damaged: the count of element " + element.name + " is no number");
   // Of strips, assimp believes every length; of elements that it does not know it takes the name for the count.
   if (element.name != "vertex" && element.name != "face" && element.name != "edge" && element.name != "material")
@@ -250,11 +222,13 @@ void check_elements(const std::string& path, const Header& header) {
     const auto same = [&](const Element& e) { return e.name == element.name; };
     if (std::count_if(header.elements.begin(), header.elements.end(), same) > 1)
       refuse(path, "damaged: its header has element " + element.name + " twice");
-    for (const Property& property : element.properties) {
-      const auto same_name = [&](const Property& p) { return p.name == property.name; };
-      if (std::count_if(element.properties.begin(), element.properties.end(), same_name) > 1)
+    // assimp takes lines for elements that have nothing on them.
+    if (element.count > 0 && element.properties.empty())
+      refuse(path, "damaged: element " + element.name + " of its header has no properties");
+    std::set<std::string> names;
+    for (const Property& property : element.properties)
+      if (!names.insert(property.name).second)
         refuse(path, "damaged: its header has property " + property.name + " of " + element.name + " twice");
-    }
     const auto list = [](const Property& p) { return p.length != Scalar::none; };
     if (element.name == "vertex" && std::any_of(element.properties.begin(), element.properties.end(), list))
       refuse(path, "damaged: its vertices have lists");
@@ -265,40 +239,40 @@ void check_elements(const std::string& path, const Header& header) {
   }
 }
 
+/// One property of one element; `place` says which.
+template <class Place>
+void check_values(const std::string& path, const Property& property, double vertices, Body& body, Place place) {
+  const bool corners = has_corners(property);
+  double length = 1, value = 0;
+  if (property.length != Scalar::none && (!body.next(property.length, length) || !fits(length, std::uint32_t{})))
+    refuse(path, "truncated or damaged at " + place());
+  for (double k = 0; k < length; ++k) {
+    if (!body.next(property.value, value)) refuse(path, "truncated or damaged at " + place());
+    if (corners && !(value >= 0 && value < vertices)) {
+      refuse(path, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) + " of " +
+                       std::to_string(std::llround(vertices)));
+    }
+  }
+}
+
 }  // namespace
 
 void check_ply(const std::string& path, std::string_view bytes) {
   const Header header = read_header(path, bytes);
   check_elements(path, header);
-  std::uint64_t vertices = 0;
-  for (const Element& element : header.elements) {
-    if (element.name == "vertex") vertices = element.count;
-  }
+  double vertices = 0;
+  for (const Element& element : header.elements)
+    if (element.name == "vertex") vertices = static_cast<double>(element.count);
   Body body(bytes.substr(header.size), header.encoding);
   for (const Element& element : header.elements) {
     // Every element takes at least a byte, so a count that the file cannot hold is found without counting to it.
-    if (!element.properties.empty() && element.count > body.left()) {
+    if (element.count > body.left()) {
       refuse(path, "truncated: " + std::to_string(element.count) + " of element " + element.name +
                        " are announced, more than the file has bytes");
     }
-    if (element.properties.empty()) continue;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const auto place = [&] { return element.name + ' ' + std::to_string(i); };
-      for (const Property& property : element.properties) {
-        const bool list = property.length != Scalar::none;
-        const bool corners = has_corners(property);
-        double length = 1;
-        if (list && (!body.next(property.length, length) || !is_a<std::uint32_t>(length)))
-          refuse(path, "truncated or damaged at " + place());
-        for (double k = 0; k < length; ++k) {
-          double value = 0;
-          if (!body.next(property.value, value)) refuse(path, "truncated or damaged at " + place());
-          if (corners && !(value >= 0 && value < static_cast<double>(vertices))) {
-            refuse(path, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) +
-                             " of " + std::to_string(vertices));
-          }
-        }
-      }
+      for (const Property& property : element.properties) check_values(path, property, vertices, body, place);
       if (!body.end_element()) refuse(path, "damaged: more values on its line than " + place() + " has");
     }
   }
