@@ -35,13 +35,15 @@ MotionAnswer FclMotionCheck::check(const Pose& X, const Displacement& d, double 
   for (const std::uint32_t part : *near_)
     narrow_.intersections(part, poses_[part].inverse() * end, static_cast<int>(blocking.capacity() - blocking.size()),
                           blocking);
+  free_ = false;
   if (!blocking.empty()) return MotionAnswer::blocked;
   FacePair nearest{};
   for (const std::uint32_t part : *near_) {
     const bool close = narrow_.distance_below(clearance, part, poses_[part].inverse() * end, nearest) < clearance;
     if (close && blocking.size() < blocking.capacity()) blocking.push_back(nearest);
   }
-  return blocking.empty() ? MotionAnswer::free : MotionAnswer::blocked;
+  free_ = blocking.empty();
+  return free_ ? MotionAnswer::free : MotionAnswer::blocked;
 }
 
 MotionAnswer FclMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t) noexcept {

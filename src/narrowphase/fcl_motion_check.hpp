@@ -17,6 +17,7 @@ class FclMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
+  double free_share() const override { return free_ ? 1 : 0; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t) noexcept override;
   Pose near_contact(const Pose& X, const Displacement& d, const std::vector<FacePair>& blocking) noexcept override;
   double longest_motion() const override;
@@ -30,6 +31,7 @@ class FclMotionCheck final : public MotionCheck {
   double back_off_;
   FclNarrowPhase narrow_;
   const std::vector<std::uint32_t>* near_ = nullptr;
+  bool free_ = false;  ///< the last check
 };
 
 }  // namespace tegotae

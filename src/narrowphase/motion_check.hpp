@@ -26,6 +26,8 @@ class MotionCheck {
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;
+  /// Part of the last check()'s motion, from its start, that may be made whatever the answer; in [0, 1].
+  virtual double free_share() const = 0;
   /// Whether A at `X` comes no nearer than `clearance` (m) to fixed part `part`, whether that matters or not; unknown
   /// after `deadline_ns`. To be called before begin(), which the next check() needs anew.
   virtual MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance,

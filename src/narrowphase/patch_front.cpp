@@ -8,9 +8,6 @@
 namespace tegotae {
 namespace {
 
-/// Separations below this times the size of the scene are rounding (double precision, some dozens of operations on
-/// coordinates of that size, and a pose that was composed anew).
-constexpr double kFloor = 1e-12;
 /// Rounding of one gap in single precision: 32 units in the last place of the largest terms (about 20 from turning the
 /// normal and the products, 7 from the sums).
 constexpr double kLaneError = 1.0 / (1 << 19);
@@ -103,24 +100,12 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
   if (report_.status == CertifyStatus::cut && report_.overflow) debt_ = std::max(debt_, pairs() / kFullShare);
   raise();
   report_.pairs = pairs();
+  report_.share = report_.status == CertifyStatus::certified ? 1 : 0;
   return report_;
 }
 
 void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
-  sweep_.dp = d.dp;
-  sweep_.dr = d.dr;
-  sweep_.theta2 = d.dr.squaredNorm();
-  sweep_.axis = sweep_.theta2 > 0 ? Vec3(d.dr / std::sqrt(sweep_.theta2)) : Vec3(Vec3::Zero());
-  sweep_.center_distance = center_.norm();
-  sweep_.start.R = X_BA.q.toRotationMatrix();
-  sweep_.start.t = X_BA * center_ - b_->origin();
-  const Pose end = displaced(X_BA, center_, d);
-  sweep_.end.R = end.q.toRotationMatrix();
-  sweep_.end.t = end * center_ - b_->origin();
-  const double size = sweep_.start.t.norm() + sweep_.end.t.norm() + a_->radius() + offset_a_.norm() + b_->radius() +
-                      b_->origin().norm() + center_.norm();
-  sweep_.floor = std::max(kFloor * size, clearance_);
-  sweep_.start_floor = sweep_.floor - 0.5 * kFloor * size;
+  sweep_ = Sweep(X_BA, d, center_, *b_, a_->radius() + offset_a_.norm(), clearance_);
   motion_ = std::max(kMotionFades * motion_, d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm());
 }
 

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
+#include "narrowphase/certify.hpp"
 #include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/patch_separate.hpp"
 #include "narrowphase/patch_tree.hpp"
-#include "tegotae/core/clock.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae {
@@ -16,29 +16,6 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
-};
-
-/// How much one call may do.
-struct WorkLimit {
-  int searches = 8192;                     ///< searches for a plane; about 0.2 µs each
-  std::uint32_t blocking = 0xffffffffu;    ///< blocking triangle pairs after which to stop
-  std::int64_t deadline_ns = kNoDeadline;  ///< of monotonic_ns()
-};
-
-enum class CertifyStatus : std::uint8_t {
-  certified,  ///< the whole motion is free
-  blocked,    ///< some triangle pairs have no moving plane that separates them: see PatchFront::blocking()
-  cut         ///< work, time or a capacity ran out before anything was found to block
-};
-
-/// What one call of PatchFront::certify did.
-struct CertifyReport {
-  CertifyStatus status = CertifyStatus::certified;
-  bool overflow = false;   ///< a capacity was exceeded
-  bool exhausted = false;  ///< work or time ran out (with `blocked`: the list may lack pairs)
-  int pairs = 0;           ///< pairs in the front after the call
-  int searches = 0;        ///< planes searched
-  int splits = 0, merges = 0;
 };
 
 /// Two triangles that stop a motion.

@@ -1,6 +1,7 @@
 #include "narrowphase/patch_motion_check.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 
 #include "narrowphase/patch_cache.hpp"
@@ -8,12 +9,17 @@
 namespace tegotae {
 namespace {
 
-// Parts that can be near at once.
+// Parts that can have fronts at once.
 constexpr std::size_t kMostFronts = 32;
 // Pairs of all fronts together (about 200 bytes each), and the least and the most of one.
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
+// Cells (about 500 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
+// every part.
+constexpr std::size_t kFewestCells = 1u << 13;
+constexpr double kCellsPerFace = 1.5;
+constexpr std::size_t kCellsPerPart = 16;
 // Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they
 // leave out stops the next trial.
 constexpr std::uint32_t kMostBlocking = 24;
@@ -21,6 +27,10 @@ constexpr std::uint32_t kMostBlocking = 24;
 constexpr int kStandSearches = 1024;
 // A motion carries no point farther than this share of the part's radius: limits are straightened at its start.
 constexpr double kLongestShare = 0.1;
+// A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
+constexpr double kShareKept = 0.999;
+
+const char* g_engine = std::getenv("TEGOTAE_ENGINE");
 
 }  // namespace
 
@@ -29,10 +39,12 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
                                    std::vector<Pose> poses)
     : center_(center), radius_(radius), held_(cached_patch_tree(held)), poses_(std::move(poses)) {
   std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
-  for (const auto& mesh : fixed) {
-    auto& tree = trees[mesh.get()];
-    if (!tree) tree = cached_patch_tree(mesh);
+  std::vector<CellFront::FixedPart> parts;
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    auto& tree = trees[fixed[i].get()];
+    if (!tree) tree = cached_patch_tree(fixed[i]);
     fixed_.push_back(tree);
+    parts.push_back({tree, poses_[i]});
   }
   const std::size_t fronts = std::min(kMostFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
@@ -43,57 +55,95 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   part_of_.assign(fronts, kNobody);
   used_.assign(fronts, 0);
   front_of_.assign(fixed.size(), kNobody);
+  const std::size_t cells = kFewestCells + kCellsPerPart * fixed.size() +
+                            static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
+  cells_ =
+      std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMostBlocking);
+  in_cells_.assign(fixed.size(), g_engine != nullptr);
+  near_fronts_.reserve(fixed.size());
+  near_cells_.reserve(fixed.size());
 }
 
 double PatchMotionCheck::longest_motion() const {
   return kLongestShare * radius_;
 }
 
-std::uint32_t PatchMotionCheck::take_front(std::uint32_t part) noexcept {
+void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   const auto oldest = std::min_element(used_.begin(), used_.end());
-  if (*oldest == now_) return kNobody;
+  if (*oldest == now_) return;
   const auto front = static_cast<std::uint32_t>(oldest - used_.begin());
   if (part_of_[front] != kNobody) front_of_[part_of_[front]] = kNobody;
   part_of_[front] = part;
   front_of_[part] = front;
+  used_[front] = now_;
   fronts_[front].attach(*held_, center_, *fixed_[part]);
-  return front;
+}
+
+void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {
+  const std::uint32_t front = front_of_[part];
+  part_of_[front] = kNobody;
+  front_of_[part] = kNobody;
+  used_[front] = 0;
+  in_cells_[part] = 1;
 }
 
 void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept {
-  near_ = &near;
   limit_.deadline_ns = deadline_ns;
   ++now_;
   overflow_ = false;
+  near_fronts_.clear();
+  near_cells_.clear();
   for (const std::uint32_t part : near)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
   for (const std::uint32_t part : near) {
-    if (front_of_[part] != kNobody) continue;
-    const std::uint32_t front = take_front(part);
-    if (front == kNobody) {
-      overflow_ = true;
-      return;
-    }
-    used_[front] = now_;
+    if (front_of_[part] == kNobody && !in_cells_[part]) take_front(part);
+    (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
   }
+  cells_->set_near(near_cells_);
+}
+
+CertifyReport PatchMotionCheck::ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
+                                          const WorkLimit& limit) noexcept {
+  PatchFront& front = fronts_[front_of_[part]];
+  front.set_clearance(clearance);
+  const Quat q_BW = poses_[part].q.conjugate();
+  return front.certify(poses_[part].inverse() * X, {q_BW * d.dp, q_BW * d.dr}, limit);
 }
 
 MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, double clearance,
                                      std::vector<FacePair>& blocking) noexcept {
-  if (overflow_) return MotionAnswer::unknown;
-  bool all_free = true;
-  for (const std::uint32_t part : *near_) {
-    PatchFront& front = fronts_[front_of_[part]];
-    front.set_clearance(clearance);
-    const Quat q_BW = poses_[part].q.conjugate();
-    const CertifyReport report = front.certify(poses_[part].inverse() * X, {q_BW * d.dp, q_BW * d.dr}, limit_);
+  share_ = 1;
+  bool moved = false;
+  for (const std::uint32_t part : near_fronts_) {
+    const CertifyReport report = ask_front(part, X, d, clearance, limit_);
+    if (report.overflow && report.status == CertifyStatus::cut) {
+      move_to_cells(part);
+      near_cells_.push_back(part);
+      moved = true;
+      continue;
+    }
+    share_ = std::min(share_, report.share);
     if (report.status == CertifyStatus::certified) continue;
-    all_free = false;
-    for (const BlockingPair& pair : front.blocking())
+    for (const BlockingPair& pair : fronts_[front_of_[part]].blocking())
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
     if (report.exhausted && past(limit_.deadline_ns)) break;
   }
-  if (all_free) return MotionAnswer::free;
+  if (moved) {
+    near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
+                                      [this](std::uint32_t part) { return in_cells_[part] != 0; }),
+                       near_fronts_.end());
+    cells_->set_near(near_cells_);
+  }
+  if (!near_cells_.empty()) {
+    cells_->set_clearance(clearance);
+    const CertifyReport report = cells_->certify(X, d, limit_);
+    overflow_ |= report.overflow;
+    share_ = std::min(share_, report.share);
+    for (const FacePair& pair : cells_->blocking())
+      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
+  }
+  if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
+  share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
 }
 
@@ -101,12 +151,16 @@ MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double 
                                       std::int64_t deadline_ns) noexcept {
   one_[0] = part;
   begin(one_, deadline_ns);
-  PatchFront& front = fronts_[front_of_[part]];
-  front.set_clearance(clearance);
   WorkLimit limit = limit_;
   limit.blocking = 1;
   limit.searches = kStandSearches;
-  const CertifyReport report = front.certify(poses_[part].inverse() * X, Displacement{}, limit);
+  CertifyReport report;
+  if (near_cells_.empty()) {
+    report = ask_front(part, X, Displacement{}, clearance, limit);
+  } else {
+    cells_->set_clearance(clearance);
+    report = cells_->certify(X, Displacement{}, limit);
+  }
   if (report.status == CertifyStatus::cut) return MotionAnswer::unknown;
   return report.status == CertifyStatus::certified ? MotionAnswer::free : MotionAnswer::blocked;
 }

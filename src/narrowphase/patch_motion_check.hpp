@@ -2,13 +2,16 @@
 
 #include <memory>
 
+#include "narrowphase/cell_front.hpp"
 #include "narrowphase/motion_check.hpp"
 #include "narrowphase/patch_front.hpp"
 
 namespace tegotae {
 
-/// The path certificate over the near fixed parts: a motion is free only when its whole path is (see PatchFront). Each
-/// near part has a front of its own, kept from tick to tick as long as the part stays near.
+/// The path certificate over the near fixed parts: a motion is free only when its whole path is. A part that meets A in
+/// few places has a PatchFront of its own, kept from tick to tick as long as the part stays near; where the pairs of a
+/// front would be too many, as between surfaces that lie on each other, and for parts beyond the number of fronts, the
+/// CellFront takes over.
 class PatchMotionCheck final : public MotionCheck {
  public:
   /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
@@ -19,6 +22,7 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
+  double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
   double longest_motion() const override;
@@ -27,7 +31,10 @@ class PatchMotionCheck final : public MotionCheck {
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
-  std::uint32_t take_front(std::uint32_t part) noexcept;
+  void take_front(std::uint32_t part) noexcept;
+  void move_to_cells(std::uint32_t part) noexcept;
+  CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
+                          const WorkLimit& limit) noexcept;
 
   Vec3 center_;
   double radius_;
@@ -40,8 +47,12 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
   std::uint64_t now_ = 0;
-  const std::vector<std::uint32_t>* near_ = nullptr;
+  std::unique_ptr<CellFront> cells_;
+  std::vector<std::uint8_t> in_cells_;      ///< of each part: its front was too small while it was near
+  std::vector<std::uint32_t> near_fronts_;  ///< near parts that have fronts
+  std::vector<std::uint32_t> near_cells_;   ///< the others
   WorkLimit limit_;
+  double share_ = 0;
   bool overflow_ = false;
 };
 

@@ -17,6 +17,12 @@ struct Placement {
 /// A rigid motion of A past B, s in [0, 1]. Two paths are meant at once: the center of mass moving linearly, and the
 /// origin of A's file frame moving linearly (as a reader of a recording interpolates), both turning at a constant rate.
 struct Sweep {
+  Sweep() = default;
+  /// The motion of A's file frame from `X_BA` (in B's) by `d` (B's axes) of its center of mass `center` (m, file
+  /// frame). `reach_a` (m) bounds A's points about that center; separations below `clearance` (m) do not count.
+  Sweep(const Pose& X_BA, const Displacement& d, const Vec3& center, const PatchTree& b, double reach_a,
+        double clearance);
+
   Placement start, end;
   Vec3 dp = Vec3::Zero();      ///< of the center of mass, m
   Vec3 dr = Vec3::Zero();      ///< rotation vector, rad

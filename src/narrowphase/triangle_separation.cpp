@@ -195,12 +195,6 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
 
 }  // namespace
 
-Placement Sweep::at(double s) const {
-  if (s <= 0) return start;
-  if (s >= 1) return end;
-  return {rotation(s * dr).toRotationMatrix() * start.R, start.t + s * dp};
-}
-
 TrianglePair::TrianglePair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Placement& from,
                            const Placement& to)
     : q(b) {

@@ -29,6 +29,8 @@ constexpr double kFullShare = 0.99;
 constexpr int kMostResolves = 6;
 // Halvings of a piece that still intersects.
 constexpr int kMostHalvings = 4;
+// Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
+constexpr double kWorthwhile = 0.25;
 // Share of the kept gap by which one that is too small recovers in a piece.
 constexpr double kRecovery = 0.4;
 // Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
@@ -226,15 +228,19 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     }
     found = is_free(trial, report);
     if (found) break;
-    if (late()) {
+    if (blocking_.empty() || late()) {
+      // Out of time or work: what is proved of the motion is made, the rest is for the next tick.
       trust_ = 0.5 * std::min(trust_, size(trial.d));
-      return 0;
+      scale(trial, at_.check->free_share());
+      if (!(size(trial.d) > kRest)) return 0;
+      trust_ = std::max(trust_, size(trial.d));
+      break;
     }
     if (at_.contacts->seed(blocking_, at_.check->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
         at_.contacts->cut(blocking_, trial.d, kGapFloor, deadline_ns_) == 0)
       break;
   }
-  if (!found) {
+  if (!found && !blocking_.empty() && !late()) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }
@@ -302,10 +308,19 @@ bool ContactLoop::is_free(const Trial& trial, TickReport& report) {
   return answer == MotionAnswer::free;
 }
 
+void ContactLoop::scale(Trial& trial, double share) const {
+  trial.d = share * trial.d;
+  trial.X = displaced(X_, center_, trial.d);
+}
+
 bool ContactLoop::shorten(Trial& trial, TickReport& report) {
+  const double share = at_.check->free_share();
+  if (share > kWorthwhile) {
+    scale(trial, share);
+    return true;
+  }
   for (int i = 0; i < kMostHalvings && !late(); ++i) {
-    trial.d = 0.5 * trial.d;
-    trial.X = displaced(X_, center_, trial.d);
+    scale(trial, 0.5);
     if (is_free(trial, report)) return true;
   }
   return false;

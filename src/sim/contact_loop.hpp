@@ -41,6 +41,8 @@ class ContactLoop final : public ProxyLoop {
   /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
   bool is_free(const Trial& trial, TickReport& report);
   bool shorten(Trial& trial, TickReport& report);
+  /// Shortens the trial to `share` of it.
+  void scale(Trial& trial, double share) const;
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;

@@ -3,57 +3,20 @@
 #include "catch.hpp"
 #include "narrowphase/patch_front.hpp"
 #include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
-struct Scene {
-  const char* name;
-  MeshPtr a, b;
-  Vec3 center;
-  Pose start;
-  double move, turn;  ///< m, rad
-};
-
-std::vector<Scene> scenes() {
-  std::mt19937 rng(5);
-  return {
-      {"knots", knot(0.05, 0.006, 800), knot(0.05, 0.006, 900), Vec3(0.01, 0, 0.005),
-       Pose{rotation(Vec3(0.3, 0.2, 0.1)), Vec3(0.13, 0, 0)}, 0.01, 0.3},
-      {"peg in hole", peg(0.0098, 0.04, 600), hole(0.01, 0.04, 700), Vec3(0, 0, 0.02),
-       Pose{Quat::Identity(), Vec3(0, 0, -0.02)}, 0.0005, 0.01},
-      {"soups", soup(rng, 150, 0.05, 0.01), soup(rng, 150, 0.05, 0.01), Vec3::Zero(),
-       Pose{Quat::Identity(), Vec3(0.11, 0, 0)}, 0.01, 0.5},
-      {"box on a plate", box({0.02, 0.015, 0.01}), box({0.1, 0.1, 0.001}), Vec3::Zero(),
-       Pose{Quat::Identity(), Vec3(0, 0, 0.02)}, 0.01, 0.3},
-      {"offset file frame", box({0.02, 0.015, 0.01}), knot(0.05, 0.006, 800), Vec3(0.15, 0.1, 0),
-       Pose{Quat::Identity(), Vec3(-0.08, 0, 0)}, 0.01, 0.3},
-  };
-}
 
 /// Every pair of triangles is under exactly one pair of the front.
 void require_cover(const PatchFront& front, const PatchTree& a, const PatchTree& b) {
-  auto faces = [](const PatchTree& t, std::uint32_t node, bool is_face) {
-    if (is_face) return std::vector<std::uint32_t>{node};
-    std::vector<std::uint32_t> out, stack{node};
-    while (!stack.empty()) {
-      const PatchNode& n = t.nodes()[stack.back()];
-      stack.pop_back();
-      if (n.leaf()) {
-        out.insert(out.end(), t.order().begin() + n.first, t.order().begin() + n.first + n.count);
-      } else {
-        stack.push_back(n.first);
-        stack.push_back(n.first + 1);
-      }
-    }
-    return out;
-  };
   const std::size_t na = a.order().size(), nb = b.order().size();
   std::vector<std::uint8_t> count(na * nb, 0);
   front.for_each_pair([&](std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
-    const auto fb = faces(b, j, face_j);
-    for (std::uint32_t f : faces(a, i, face_i)) {
+    const auto fb = faces_under(b, j, face_j);
+    for (std::uint32_t f : faces_under(a, i, face_i)) {
       for (std::uint32_t g : fb) ++count[f * nb + g];
     }
   });

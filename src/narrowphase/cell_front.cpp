@@ -1,0 +1,363 @@
+#include "narrowphase/cell_front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tegotae {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Lengths that were added up are rounded by less (relative, and m).
+constexpr double kSumSlack = 1e-9, kLengthSlack = 1e-11;
+/// Normals are kept in single precision: a gap along one is no more than this part too long.
+constexpr double kUnit = 1 - 1e-6;
+/// What is farther from a piece than this part of its size, or so many motions, needs no plane.
+constexpr double kWantedShare = 0.3, kWantedMotions = 4;
+/// The pieces of B that a cell lists are enough for a new search while the rest is this part of that away.
+constexpr double kKnownShare = 0.3;
+/// Cells looked at between two looks at the clock; nodes of B that count as one search.
+constexpr int kClockStride = 32, kVisitsPerSearch = 8;
+/// Cells that allow less than this share of the motion are searched first.
+constexpr double kFirstShare = 0.25;
+/// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
+constexpr int kFewestRaises = 4, kSearchesPerRaise = 3, kMostLooks = 256;
+/// A cell for both children together must last for so many of the longest motions of late, or this share of what the
+/// children's cells last for.
+constexpr double kRaiseMotions = 8, kRaiseShare = 0.5, kMotionFades = 0.9;
+/// Children that could not be put together are tried again after A has come this share of their size.
+constexpr double kRetryShare = 0.1;
+
+}  // namespace
+
+CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std::vector<FixedPart> fixed,
+                     std::uint32_t capacity, std::uint32_t blocking)
+    : a_(std::move(a)),
+      center_(center),
+      offset_a_(a_->origin() - center),
+      reach_(0),
+      fixed_(std::move(fixed)),
+      capacity_(capacity),
+      nodes_(2 * std::size_t{capacity} + 2),
+      slots_(capacity),
+      expiry_(capacity),
+      root_(fixed_.size(), kNobody),
+      asked_(fixed_.size(), 0),
+      sweeps_(fixed_.size()),
+      stamped_(fixed_.size(), 0),
+      failures_(capacity) {
+  for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
+  stack_.reserve(capacity);
+  blocking_.reserve(blocking);
+}
+
+std::size_t CellFront::bytes() const {
+  return nodes_.size() * sizeof(Node) + slots_.size() * (sizeof(Slot) + sizeof(double) + sizeof(Failure));
+}
+
+void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
+  ++now_;
+  for (const std::uint32_t part : near) {
+    asked_[part] = now_;
+    if (root_[part] != kNobody || count_ == capacity_) continue;
+    const std::uint32_t id = allocate();
+    if (id == kNobody) continue;
+    root_[part] = id;
+    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0};
+    enter(id, Slot{id, -kInfinity, {}}, -kInfinity);
+  }
+}
+
+CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const WorkLimit& limit) noexcept {
+  report_ = {};
+  limit_ = limit;
+  blocking_.clear();
+  visits_at_start_ = search_.visits();
+  start_motion(X, d);
+  report_.exhausted = !collect_failures();
+  const auto end = failures_.begin() + static_cast<std::ptrdiff_t>(failure_count_);
+  std::partition(failures_.begin(), end, [](const Failure& f) { return f.share < kFirstShare; });
+  bool done = report_.exhausted;
+  for (auto f = failures_.begin(); f != end; ++f) {
+    const Outcome outcome = done ? Outcome::out_of_work : settle(f->node);
+    if (outcome == Outcome::free) continue;
+    report_.share = std::min(report_.share, f->share);
+    if (done) continue;
+    done = outcome == Outcome::out_of_work || blocking_.size() >= limit_.blocking ||
+           blocking_.size() == blocking_.capacity();
+    report_.exhausted |= outcome == Outcome::out_of_work;
+  }
+  report_.searches = static_cast<int>((search_.visits() - visits_at_start_) / kVisitsPerSearch);
+  if (!blocking_.empty()) {
+    report_.status = CertifyStatus::blocked;
+  } else if (report_.exhausted) {
+    report_.status = CertifyStatus::cut;
+  }
+  if (report_.status == CertifyStatus::certified) report_.share = 1;
+  raise();
+  report_.pairs = cells();
+  return report_;
+}
+
+void CellFront::start_motion(const Pose& X, const Displacement& d) {
+  if (started_ && (X.p != X_.p || X.q.coeffs() != X_.q.coeffs())) {
+    const Displacement moved = displacement(X_, X, center_);
+    travel_ += (moved.dp.norm() + reach_ * moved.dr.norm()) * (1 + kSumSlack) + kLengthSlack;
+  }
+  started_ = true;
+  X_ = X;
+  d_ = d;
+  ++call_;
+  const double theta2 = d.dr.squaredNorm();
+  const double carried = d.dp.norm() + reach_ * std::sqrt(theta2) + center_.norm() * theta2 / 8;
+  motion_ = std::max(kMotionFades * motion_, carried);
+  need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
+  report_.share = 1;
+}
+
+const Sweep& CellFront::sweep_of(std::uint32_t part) {
+  if (stamped_[part] != call_) {
+    stamped_[part] = call_;
+    const FixedPart& B = fixed_[part];
+    const Quat q_BW = B.pose.q.conjugate();
+    sweeps_[part] = Sweep(B.pose.inverse() * X_, {q_BW * d_.dp, q_BW * d_.dr}, center_, *B.tree,
+                          a_->radius() + offset_a_.norm(), clearance_);
+  }
+  return sweeps_[part];
+}
+
+MovingHull CellFront::hull(const Node& node, const Sweep& sweep) const {
+  MovingHull out;
+  if (node.face_a) {
+    std::array<Vec3, 3> p, start, end;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = a_->corner(node.a, k) - center_;
+      start[k] = sweep.start.R * p[k] + sweep.start.t;
+      end[k] = sweep.end.R * p[k] + sweep.end.t;
+      out.reach = std::max(out.reach, p[k].norm());
+    }
+    out.start = Hull::triangle(start);
+    out.end = Hull::triangle(end);
+    const Vec3 middle = out.start.middle();
+    for (const Vec3& v : start) out.radius = std::max(out.radius, (v - middle).norm());
+    return out;
+  }
+  const PatchNode& n = a_->nodes()[node.a];
+  const Vec3 c = n.center_vec() + offset_a_;
+  std::array<Vec3, 3> start, end;
+  std::array<double, 3> half;
+  double half2 = 0;
+  for (int i = 0; i < 3; ++i) {
+    half[i] = n.half[i];
+    half2 += half[i] * half[i];
+    start[i] = sweep.start.R * n.axis_vec(i);
+    end[i] = sweep.end.R * n.axis_vec(i);
+  }
+  out.start = Hull::box(sweep.start.R * c + sweep.start.t, start, half);
+  out.end = Hull::box(sweep.end.R * c + sweep.end.t, end, half);
+  out.radius = std::sqrt(half2) / kUnit;
+  out.reach = c.norm() + out.radius;
+  return out;
+}
+
+double CellFront::wanted(const MovingHull& a) const {
+  return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.radius});
+}
+
+bool CellFront::collect_failures() {
+  failure_count_ = 0;
+  const double bound = travel_ + need_, floor = clearance_ + kLengthSlack;
+  bool in_time = true;
+  int looked = 0;
+  for (std::uint32_t slot = 0; slot < count_; ++slot) {
+    if (!(expiry_[slot] < bound)) continue;
+    if (asked_[nodes_[slots_[slot].node].part] != now_) continue;
+    if (in_time && ++looked % kClockStride == 0 && past(limit_.deadline_ns)) in_time = false;
+    if (in_time && look_at(slot)) continue;
+    const double left = expiry_[slot] - travel_ - floor;
+    double share = left > 0 ? std::min(1.0, left / (need_ - floor)) : 0;
+    if (in_time) {
+      failures_[failure_count_ - 1].share = std::max(failures_[failure_count_ - 1].share, share);
+    } else {
+      report_.share = std::min(report_.share, share);
+    }
+  }
+  return in_time;
+}
+
+/// Whether the cell holds for the motion; it is a failure otherwise, with the share that its planes allow.
+bool CellFront::look_at(std::uint32_t slot) {
+  Slot& s = slots_[slot];
+  const Node& node = nodes_[s.node];
+  const Sweep& sweep = sweep_of(node.part);
+  const double clear = s.clear_until - travel_;
+  if (!(clear > 0)) {
+    failures_[failure_count_++] = {s.node, 0};
+    return false;
+  }
+  const CellVerdict v = check_cell(s.cell, hull(node, sweep), sweep);
+  expiry_[slot] = std::max(expiry_[slot], std::min(s.clear_until, travel_ + kUnit * v.margin));
+  if (v.free && clear >= need_) return true;
+  const double floor = clearance_ + kLengthSlack;
+  const double far = clear > floor ? std::min(1.0, (clear - floor) / (need_ - floor)) : 0;
+  failures_[failure_count_++] = {s.node, std::min(v.share, far)};
+  return false;
+}
+
+bool CellFront::out_of_work(bool look_at_clock) {
+  if ((search_.visits() - visits_at_start_) / kVisitsPerSearch > limit_.searches) return true;
+  return look_at_clock && past(limit_.deadline_ns);
+}
+
+CellSearch::Outcome CellFront::search(std::uint32_t id) {
+  const Node& node = nodes_[id];
+  const Sweep& sweep = sweep_of(node.part);
+  const MovingHull a = hull(node, sweep);
+  if (node.face_a)
+    for (int k = 0; k < 3; ++k) face_[k] = a_->corner(node.a, k) - center_;
+  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, need_, wanted(a)};
+  if (node.children == 0) {
+    const Slot& s = slots_[node.slot];
+    query.clear = s.clear_until - travel_;
+    if (s.cell.items > 0 && query.clear >= kKnownShare * query.wanted) query.known = &s.cell;
+  }
+  return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
+}
+
+void CellFront::keep(std::uint32_t id) {
+  const std::uint32_t slot = nodes_[id].slot;
+  Slot& s = slots_[slot];
+  s.cell = found_;
+  s.clear_until = travel_ + kUnit * found_.clear;
+  expiry_[slot] = std::min(s.clear_until, travel_ + kUnit * search_.margin());
+}
+
+CellFront::Outcome CellFront::settle(std::uint32_t top) {
+  const std::size_t before = blocking_.size();
+  stack_.clear();
+  stack_.push_back(top);
+  while (!stack_.empty()) {
+    const std::uint32_t id = stack_.back();
+    stack_.pop_back();
+    if (out_of_work(true)) return Outcome::out_of_work;
+    switch (search(id)) {
+      case CellSearch::Outcome::found:
+        keep(id);
+        break;
+      case CellSearch::Outcome::passing:
+        break;
+      case CellSearch::Outcome::blocked:
+        for (const std::uint32_t face : search_.blocking()) {
+          blocking_.push_back({nodes_[id].part, nodes_[id].a, face});
+          if (blocking_.size() >= limit_.blocking || blocking_.size() == blocking_.capacity()) return Outcome::blocked;
+        }
+        break;
+      case CellSearch::Outcome::divide:
+        if (!split(id)) {
+          report_.overflow = true;
+          return Outcome::out_of_work;
+        }
+        ++report_.splits;
+        for (std::uint32_t k = 0; k < nodes_[id].children; ++k) stack_.push_back(nodes_[id].child + k);
+    }
+  }
+  return blocking_.size() > before ? Outcome::blocked : Outcome::free;
+}
+
+std::uint32_t CellFront::allocate() {
+  if (free_nodes_ != kNobody) {
+    const std::uint32_t id = free_nodes_;
+    free_nodes_ = nodes_[id].child;
+    return id;
+  }
+  if (nodes_used_ + 2 > nodes_.size()) return kNobody;
+  nodes_used_ += 2;
+  return nodes_used_ - 2;
+}
+
+void CellFront::release(std::uint32_t child) {
+  nodes_[child].child = free_nodes_;
+  free_nodes_ = child;
+}
+
+void CellFront::enter(std::uint32_t id, const Slot& inherited, double expiry) {
+  nodes_[id].slot = count_;
+  slots_[count_] = inherited;
+  slots_[count_].node = id;
+  expiry_[count_++] = expiry;
+}
+
+void CellFront::leave(std::uint32_t slot) {
+  const std::uint32_t last = --count_;
+  if (slot == last) return;
+  slots_[slot] = slots_[last];
+  expiry_[slot] = expiry_[last];
+  nodes_[slots_[slot].node].slot = slot;
+}
+
+bool CellFront::split(std::uint32_t id) {
+  const Node p = nodes_[id];
+  const bool of_a = !p.face_a;
+  const PatchNode& whole = of_a ? a_->nodes()[p.a] : fixed_[p.part].tree->nodes()[p.b];
+  const PatchTree& tree = of_a ? *a_ : *fixed_[p.part].tree;
+  const std::uint32_t children = whole.leaf() ? whole.count : 2;
+  if (count_ + children > capacity_) return false;
+  const std::uint32_t child = allocate();
+  if (child == kNobody) return false;
+  // What was known of the whole holds for its parts.
+  Slot known = slots_[p.slot];
+  if (!of_a) known.cell.items = 0;  // they are of both parts
+  const double expiry = expiry_[p.slot];
+  leave(p.slot);
+  nodes_[id].child = child;
+  nodes_[id].children = static_cast<std::uint8_t>(children);
+  for (std::uint32_t k = 0; k < children; ++k) {
+    Node c = p;
+    c.parent = id;
+    c.children = 0;
+    c.retry = travel_;
+    const std::uint32_t place = whole.leaf() ? tree.order()[whole.first + k] : whole.first + k;
+    (of_a ? c.a : c.b) = place;
+    (of_a ? c.face_a : c.face_b) = whole.leaf();
+    nodes_[child + k] = c;
+    enter(child + k, known, expiry);
+  }
+  return true;
+}
+
+void CellFront::raise() {
+  const int most = kFewestRaises + report_.searches / kSearchesPerRaise;
+  int tries = 0;
+  for (int looks = std::min<int>(kMostLooks, cells()); looks > 0 && tries < most; --looks) {
+    if (++cursor_ >= count_) cursor_ = 0;
+    const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
+    if (parent == kNobody || nodes_[parent].child != id || nodes_[parent].retry > travel_) continue;
+    const Node& p = nodes_[parent];
+    if (nodes_[p.child + p.children - 1].children > 0) continue;
+    if (out_of_work(true)) return;
+    ++tries;
+    if (try_raise(parent)) ++report_.merges;
+  }
+}
+
+bool CellFront::try_raise(std::uint32_t id) {
+  const Node& p = nodes_[id];
+  const bool near = asked_[p.part] == now_;
+  double lasts = kInfinity;
+  for (std::uint32_t k = 0; k < p.children; ++k) lasts = std::min(lasts, expiry_[nodes_[p.child + k].slot] - travel_);
+  const double enough = std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts));
+  if (near && (search(id) != CellSearch::Outcome::found || search_.margin() < enough)) {
+    const Sweep& sweep = sweep_of(p.part);
+    nodes_[id].retry = travel_ + kRetryShare * hull(p, sweep).radius;
+    return false;
+  }
+  for (std::uint32_t k = 0; k < p.children; ++k) leave(nodes_[p.child + k].slot);
+  release(p.child);
+  nodes_[id].children = 0;
+  nodes_[id].child = kNobody;
+  enter(id, Slot{id, -kInfinity, {}}, -kInfinity);
+  if (near) keep(id);
+  return true;
+}
+
+}  // namespace tegotae

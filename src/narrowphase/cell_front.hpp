@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "narrowphase/certify.hpp"
+#include "narrowphase/face_pair.hpp"
+#include "narrowphase/free_cell.hpp"
+#include "narrowphase/patch_tree.hpp"
+
+namespace tegotae {
+
+/// The path certificate of the held part A past all fixed parts, in the order of one free cell for a piece of A's
+/// surface (mutable scratch; the trees are shared). A cut through A's hierarchy for each near part; every node of it
+/// has a cell in which it may be, and the travel of A up to which nobody has to look at the cell again: what is known
+/// free at a pose stays known, and a motion costs the pieces whose margin it uses up. No call but the constructor
+/// allocates.
+class CellFront {
+ public:
+  struct FixedPart {
+    std::shared_ptr<const PatchTree> tree;
+    Pose pose;
+  };
+
+  /// `center` (m, file frame) is A's center of mass. At most `capacity` cells, `blocking` triangle pairs a call.
+  CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std::vector<FixedPart> fixed,
+            std::uint32_t capacity, std::uint32_t blocking);
+
+  /// Fixed parts that certify() is about until the next call.
+  void set_near(const std::vector<std::uint32_t>& near) noexcept;
+  /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.
+  void set_clearance(double clearance) noexcept { clearance_ = clearance; }
+
+  /// Is the motion s -> displaced(X, center, s·d), s in [0, 1], of A free of intersecting triangles, and likewise the
+  /// one between the same two poses whose file-frame origin moves linearly? `X` is A's file frame in the world, `d` in
+  /// the world. Never says certified wrongly, and CertifyReport::share is certified whatever the status; a motion of
+  /// length zero asks whether the start is free.
+  CertifyReport certify(const Pose& X, const Displacement& d, const WorkLimit& limit = {}) noexcept;
+
+  /// What stopped the last motion, when its status was `blocked`.
+  const std::vector<FacePair>& blocking() const { return blocking_; }
+  /// Calls f(part, a, a_is_face, b, b_is_face) for every cell: nodes of the trees, or faces.
+  template <typename F>
+  void for_each_cell(F f) const {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const Node& n = nodes_[slots_[i].node];
+      f(n.part, n.a, n.face_a, n.b, n.face_b);
+    }
+  }
+
+  int cells() const { return static_cast<int>(count_); }
+  std::size_t bytes() const;
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+
+  /// A pair of a piece of A and a subtree of a fixed part; those without children have a cell.
+  struct Node {
+    std::uint32_t a, b;  ///< nodes of the trees, or faces
+    std::uint32_t part;
+    std::uint32_t parent, child;  ///< of two at most, in a row
+    std::uint32_t slot;           ///< of its cell, while it has no children
+    std::uint8_t children;
+    bool face_a, face_b;
+    double retry;  ///< travel before which the children are not put together again
+  };
+  struct Slot {
+    std::uint32_t node;
+    double clear_until;  ///< travel up to which what no plane stands for does not matter
+    FreeCell cell;
+  };
+  struct Failure {
+    std::uint32_t node;
+    double share;  ///< of the motion that its cell still allows
+  };
+  enum class Outcome : std::uint8_t { free, blocked, out_of_work };
+
+  void start_motion(const Pose& X, const Displacement& d);
+  const Sweep& sweep_of(std::uint32_t part);
+  bool collect_failures();
+  bool look_at(std::uint32_t slot);
+  Outcome settle(std::uint32_t top);
+  CellSearch::Outcome search(std::uint32_t id);
+  void keep(std::uint32_t id);
+  bool split(std::uint32_t id);
+  void enter(std::uint32_t id, const Slot& inherited, double expiry);
+  void leave(std::uint32_t slot);
+  std::uint32_t allocate();
+  void release(std::uint32_t child);
+  void raise();
+  bool try_raise(std::uint32_t id);
+  bool out_of_work(bool look_at_clock);
+  MovingHull hull(const Node& node, const Sweep& sweep) const;
+  double wanted(const MovingHull& a) const;
+
+  std::shared_ptr<const PatchTree> a_;
+  Vec3 center_, offset_a_;
+  double reach_;  ///< of A about its center of mass, m
+  std::vector<FixedPart> fixed_;
+  std::uint32_t capacity_;
+  double clearance_ = 0;
+
+  std::vector<Node> nodes_;
+  std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
+  std::vector<Slot> slots_;
+  std::vector<double> expiry_;  ///< of each slot: travel up to which its cell needs no look
+  std::uint32_t count_ = 0;
+  std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
+  std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
+  std::uint64_t now_ = 1;
+
+  Pose X_;
+  bool started_ = false;
+  Displacement d_;
+  double travel_ = 0;  ///< bound on how far any point of A has come since the front began, m
+  double need_ = 0;    ///< bound on how far the motion carries any point, and the clearance, m
+  double motion_ = 0;  ///< longest motion of late, m
+  Pose end_;
+  std::vector<Sweep> sweeps_;  ///< of each part, valid when stamped with the call
+  std::vector<std::uint64_t> stamped_;
+  std::uint64_t call_ = 0;
+
+  CellSearch search_;
+  FreeCell found_;
+  std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
+  std::vector<Failure> failures_;
+  std::size_t failure_count_ = 0;
+  std::vector<std::uint32_t> stack_;
+  std::vector<FacePair> blocking_;
+  std::uint32_t cursor_ = 0;
+  std::int64_t visits_at_start_ = 0;
+  WorkLimit limit_;
+  CertifyReport report_;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,244 @@
+// The certificate by free cells against sampled poses, on the scenes of the pair front and on surfaces that lie on each
+// other.
+#include "alloc_guard.hpp"
+#include "catch.hpp"
+#include "narrowphase/cell_front.hpp"
+#include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+CellFront cells_of(const Scene& scene, std::uint32_t capacity = 1u << 15) {
+  return CellFront(std::make_shared<PatchTree>(scene.a), scene.center, {{std::make_shared<PatchTree>(scene.b), Pose{}}},
+                   capacity, 32);
+}
+
+std::vector<Scene> all_scenes() {
+  std::vector<Scene> out = scenes();
+  out.push_back({"sheet on its die", wave(0.1, 0.002, 0.05, 20), wave(0.1, 0.002, 0.05, 20), Vec3::Zero(),
+                 Pose{Quat::Identity(), Vec3(0, 0, 2e-4)}, 3e-4, 0.004});
+  return out;
+}
+
+/// Every pair of triangles of A and the one part is under exactly one cell.
+void require_cover(const CellFront& front, const PatchTree& a, const PatchTree& b) {
+  const std::size_t nb = b.order().size();
+  std::vector<std::uint8_t> count(a.order().size() * nb, 0);
+  front.for_each_cell([&](std::uint32_t, std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
+    const auto fb = faces_under(b, j, face_j);
+    for (const std::uint32_t f : faces_under(a, i, face_i))
+      for (const std::uint32_t g : fb) ++count[f * nb + g];
+  });
+  REQUIRE(std::all_of(count.begin(), count.end(), [](std::uint8_t n) { return n == 1; }));
+}
+
+}  // namespace
+
+TEST_CASE("a motion certified by cells has no intersecting pose, nor has the share of one that is not", "[patch]") {
+  for (const Scene& scene : all_scenes()) {
+    CAPTURE(scene.name);
+    const PatchTree a(scene.a), b(scene.b);
+    const Oracle oracle(scene.a, scene.b);
+    CellFront front = cells_of(scene);
+    front.set_near({0});
+    std::mt19937 rng(17);
+    Pose X = scene.start;
+    REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+    int certified = 0, partly = 0;
+    for (int i = 0; i < 150; ++i) {
+      const double size = std::pow(10.0, uniform(rng, -3, 0));
+      Displacement d{random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)};
+      d.dp -= 0.5 * size * scene.move * (X * a.origin()).normalized();  // back to B
+      WorkLimit limit;
+      if (i % 3 == 0) limit.searches = static_cast<int>(uniform(rng, 0, 60));
+      const CertifyReport report = front.certify(X, d, limit);
+      const double share = 0.999999 * report.share;
+      if (report.status == CertifyStatus::certified) {
+        REQUIRE(report.share == 1);
+        ++certified;
+      } else if (share > 0) {
+        ++partly;
+      }
+      if (share > 0) REQUIRE(oracle.hits(X, scene.center, share * d, i % 4 == 0 ? 32 : 8) == 0);
+      X = displaced(X, scene.center, share * d);
+      if (i % 30 == 0) require_cover(front, a, b);
+    }
+    require_cover(front, a, b);
+    INFO(certified << " certified, " << partly << " in part");
+    CHECK(certified >= 30);
+    CHECK(partly >= 2);
+  }
+}
+
+TEST_CASE("a motion with room around it is certified by cells", "[patch]") {
+  for (const Scene& scene : all_scenes()) {
+    CAPTURE(scene.name);
+    const Oracle oracle(scene.a, scene.b);
+    double reach = 0;
+    for (const Vec3& v : scene.a->vertices) reach = std::max(reach, (v - scene.center).norm());
+    CellFront front = cells_of(scene);
+    front.set_near({0});
+    std::mt19937 rng(23);
+    const double room = oracle.distance(scene.start);
+    int asked = 0;
+    for (int i = 0; i < 40; ++i) {
+      const double size = 4 * room * std::pow(10.0, uniform(rng, -2, 0));
+      const Displacement d{random_in_ball(rng, size), random_in_ball(rng, size / reach)};
+      const double motion = d.dp.norm() + (reach + scene.center.norm()) * d.dr.norm();
+      if (oracle.path_distance(scene.start, scene.center, d, 16) < motion / 8) continue;
+      ++asked;
+      REQUIRE(front.certify(scene.start, d, {1000000}).status == CertifyStatus::certified);
+    }
+    CHECK(asked >= 10);
+  }
+}
+
+TEST_CASE("a certified motion keeps the clearance", "[patch]") {
+  const Scene scene = all_scenes().back();
+  const Oracle oracle(scene.a, scene.b);
+  CellFront front = cells_of(scene);
+  constexpr double kClearance = 2e-5;
+  front.set_near({0});
+  front.set_clearance(kClearance);
+  std::mt19937 rng(29);
+  Pose X = scene.start;
+  int near_misses = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double size = std::pow(10.0, uniform(rng, -2, 0));
+    Displacement d{random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)};
+    d.dp.z() -= 0.5 * size * scene.move;
+    const CertifyReport report = front.certify(X, d);
+    const Displacement made = 0.999999 * report.share * d;
+    const double least = oracle.path_distance(X, scene.center, made, 8);
+    REQUIRE(least >= kClearance * (1 - 1e-6));
+    near_misses += least < 2 * kClearance;
+    X = displaced(X, scene.center, made);
+  }
+  CHECK(near_misses > 50);
+}
+
+TEST_CASE("a sheet comes down on its die whatever the work that a call may do", "[patch]") {
+  // The argument of docs/decisions: as long as there is room, calls that run out of work get on.
+  const Scene scene = all_scenes().back();
+  for (const int searches : {20, 200, 1 << 20}) {
+    CAPTURE(searches);
+    CellFront front = cells_of(scene);
+    front.set_near({0});
+    front.set_clearance(1.1e-6);
+    Pose X = scene.start;
+    int calls = 0;
+    for (; X.p.z() > 5e-6 && calls < 4000; ++calls) {
+      const Displacement d{Vec3(0, 0, 3e-6 - X.p.z()), Vec3::Zero()};
+      const CertifyReport report = front.certify(X, d, {searches});
+      X = displaced(X, scene.center, 0.999 * report.share * d);
+    }
+    INFO("after " << calls << " calls at " << X.p.z());
+    CHECK(X.p.z() <= 5e-6);
+    CHECK(front.cells() < 4 * static_cast<int>(scene.a->triangles.size()));
+  }
+}
+
+TEST_CASE("a part at rest costs no search", "[patch]") {
+  const Scene scene = all_scenes().back();
+  CellFront front = cells_of(scene);
+  front.set_near({0});
+  front.set_clearance(1.1e-6);
+  Pose X = scene.start;
+  X.p.z() = 1e-5;
+  REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+  for (int i = 0; i < 50; ++i) {
+    const CertifyReport report = front.certify(X, {});
+    REQUIRE(report.status == CertifyStatus::certified);
+    if (i > 20) REQUIRE(report.splits == 0);
+  }
+  CHECK(front.certify(X, {}).searches == 0);
+}
+
+TEST_CASE("blocking triangles of cells stand in the way", "[patch]") {
+  const Scene scene = scenes()[3];
+  const Oracle oracle(scene.a, scene.b);
+  CellFront front = cells_of(scene);
+  front.set_near({0});
+  const Displacement d{Vec3(0, 0, -0.02), Vec3::Zero()};
+  const CertifyReport report = front.certify(scene.start, d);
+  REQUIRE(report.status == CertifyStatus::blocked);
+  REQUIRE(!front.blocking().empty());
+  CHECK(report.share < 1);
+  // The box is 9 mm above the plate.
+  REQUIRE(oracle.hits(scene.start, scene.center, 0.999999 * report.share * d, 16) == 0);
+  for (const FacePair& p : front.blocking()) {
+    double low_a = 1, high_b = -1;
+    for (int k = 0; k < 3; ++k) {
+      low_a = std::min(low_a, (scene.start * scene.a->vertices[scene.a->triangles[p.a][k]]).z());
+      high_b = std::max(high_b, scene.b->vertices[scene.b->triangles[p.b][k]].z());
+    }
+    REQUIRE(low_a > high_b);
+    REQUIRE(low_a + d.dp.z() <= high_b);
+  }
+}
+
+TEST_CASE("cells of several parts, near and not", "[patch]") {
+  const auto a = std::make_shared<PatchTree>(box({0.02, 0.02, 0.001})),
+             post = std::make_shared<PatchTree>(peg(0.001, 0.01, 200));
+  std::vector<CellFront::FixedPart> parts;
+  for (int i = 0; i < 100; ++i)
+    parts.push_back(
+        {post, Pose{rotation(Vec3(0, 0, 0.1 * i)), Vec3(0.004 * (i % 10) - 0.018, 0.004 * (i / 10) - 0.018, -0.011)}});
+  CellFront front(a, Vec3::Zero(), parts, 8192, 32);
+  std::vector<std::uint32_t> all(100), none;
+  for (std::uint32_t i = 0; i < 100; ++i) all[i] = i;
+  front.set_near(all);
+  const Pose X{Quat::Identity(), Vec3(0, 0, 0.001)};
+  // The plate's underside is 1 mm above the posts.
+  CHECK(front.certify(X, {Vec3(0, 0, -0.9e-3), Vec3::Zero()}).status == CertifyStatus::certified);
+  CHECK(front.certify(X, {Vec3(0, 0, -1.1e-3), Vec3::Zero()}).status == CertifyStatus::blocked);
+  for (const FacePair& p : front.blocking()) CHECK(p.part < 100);
+  front.set_near({7});
+  CHECK(front.certify(X, {Vec3(0, 0, -1.1e-3), Vec3::Zero()}).status == CertifyStatus::blocked);
+  for (const FacePair& p : front.blocking()) CHECK(p.part == 7);
+  front.set_near(none);
+  CHECK(front.certify(X, {Vec3(0, 0, -5e-3), Vec3::Zero()}).status == CertifyStatus::certified);
+  front.set_near(all);
+  CHECK(front.certify(X, {Vec3(0, 0, -1.1e-3), Vec3::Zero()}).status == CertifyStatus::blocked);
+}
+
+TEST_CASE("a front that is full says so and lets go what is free", "[patch]") {
+  const Scene scene = all_scenes().back();
+  CellFront front = cells_of(scene, 40);
+  front.set_near({0});
+  Pose X = scene.start;
+  X.p.z() = 0.02;
+  REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+  const Displacement d{Vec3(0, 0, -0.0199), Vec3::Zero()};
+  const CertifyReport report = front.certify(X, d);
+  CHECK(report.overflow);
+  CHECK(report.status != CertifyStatus::certified);
+  CHECK(report.share > 0);
+  CHECK(front.certify(X, {Vec3(0, 0, 0.01), Vec3::Zero()}).status == CertifyStatus::certified);
+}
+
+TEST_CASE("cells allocate nothing and repeat", "[patch]") {
+  const Scene scene = all_scenes().back();
+  const auto run = [&] {
+    CellFront front = cells_of(scene);
+    const std::vector<std::uint32_t> near{0};
+    std::mt19937 rng(41);
+    std::vector<int> log;
+    log.reserve(2000);
+    const AllocGuard guard;
+    front.set_near(near);
+    for (int i = 0; i < 300; ++i) {
+      const double size = std::pow(10.0, uniform(rng, -4, 0.5));
+      const CertifyReport r = front.certify(
+          scene.start, {random_in_ball(rng, size * scene.move), random_in_ball(rng, size * scene.turn)}, {2000});
+      for (const int x : {static_cast<int>(r.status), r.pairs, r.searches, r.splits, r.merges}) log.push_back(x);
+    }
+    const auto allocations = guard.count();
+    REQUIRE(allocations == 0);
+    return log;
+  };
+  REQUIRE(run() == run());
+}
