@@ -40,6 +40,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       capacity_(capacity),
       nodes_(2 * std::size_t{capacity} + 2),
       slots_(capacity),
+      items_(capacity),
       expiry_(capacity),
       root_(fixed_.size(), kNobody),
       asked_(fixed_.size(), 0),
@@ -48,11 +49,13 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       failures_(capacity) {
   for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
   stack_.reserve(capacity);
+  freed_.reserve(capacity);
   blocking_.reserve(blocking);
 }
 
 std::size_t CellFront::bytes() const {
-  return nodes_.size() * sizeof(Node) + slots_.size() * (sizeof(Slot) + sizeof(double) + sizeof(Failure));
+  return nodes_.size() * sizeof(Node) +
+         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + sizeof(Failure));
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -63,8 +66,8 @@ void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
     const std::uint32_t id = allocate();
     if (id == kNobody) continue;
     root_[part] = id;
-    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0};
-    enter(id, Slot{id, -kInfinity, {}}, -kInfinity);
+    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0};
+    enter(id, Slot{id, -kInfinity, {}}, {}, -kInfinity);
   }
 }
 
@@ -79,6 +82,9 @@ CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const Wor
   std::partition(failures_.begin(), end, [](const Failure& f) { return f.share < kFirstShare; });
   bool done = report_.exhausted;
   for (auto f = failures_.begin(); f != end; ++f) {
+    // A cell for the piece and its neighbors may have taken its place.
+    if (nodes_[f->node].failed != call_) continue;
+    if (!done && f->far && climb(f->node)) continue;
     const Outcome outcome = done ? Outcome::out_of_work : settle(f->node);
     if (outcome == Outcome::free) continue;
     report_.share = std::min(report_.share, f->share);
@@ -160,6 +166,12 @@ MovingHull CellFront::hull(const Node& node, const Sweep& sweep) const {
   return out;
 }
 
+double CellFront::radius(const Node& node) const {
+  if (node.face_a) return (a_->corner(node.a, 0) - a_->corner(node.a, 1)).norm();
+  const PatchNode& n = a_->nodes()[node.a];
+  return std::hypot(double{n.half[0]}, double{n.half[1]}, double{n.half[2]});
+}
+
 double CellFront::wanted(const MovingHull& a) const {
   return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.radius});
 }
@@ -192,7 +204,7 @@ bool CellFront::look_at(std::uint32_t slot) {
   const Sweep& sweep = sweep_of(node.part);
   const double clear = s.clear_until - travel_;
   if (!(clear > 0)) {
-    failures_[failure_count_++] = {s.node, 0};
+    fail(slot, true, 0);
     return false;
   }
   const CellVerdict v = check_cell(s.cell, hull(node, sweep), sweep);
@@ -200,8 +212,13 @@ bool CellFront::look_at(std::uint32_t slot) {
   if (v.free && clear >= need_) return true;
   const double floor = clearance_ + kLengthSlack;
   const double far = clear > floor ? std::min(1.0, (clear - floor) / (need_ - floor)) : 0;
-  failures_[failure_count_++] = {s.node, std::min(v.share, far)};
+  fail(slot, v.free, std::min(v.share, far));
   return false;
+}
+
+void CellFront::fail(std::uint32_t slot, bool far, double share) {
+  nodes_[slots_[slot].node].failed = call_;
+  failures_[failure_count_++] = {slots_[slot].node, far, share};
 }
 
 bool CellFront::out_of_work(bool look_at_clock) {
@@ -219,7 +236,7 @@ CellSearch::Outcome CellFront::search(std::uint32_t id) {
   if (node.children == 0) {
     const Slot& s = slots_[node.slot];
     query.clear = s.clear_until - travel_;
-    if (s.cell.items > 0 && query.clear >= kKnownShare * query.wanted) query.known = &s.cell;
+    if (items_[node.slot].count > 0 && query.clear >= kKnownShare * query.wanted) query.known = &items_[node.slot];
   }
   return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
 }
@@ -228,6 +245,7 @@ void CellFront::keep(std::uint32_t id) {
   const std::uint32_t slot = nodes_[id].slot;
   Slot& s = slots_[slot];
   s.cell = found_;
+  items_[slot] = search_.items();
   s.clear_until = travel_ + kUnit * found_.clear;
   expiry_[slot] = std::min(s.clear_until, travel_ + kUnit * search_.margin());
 }
@@ -258,6 +276,7 @@ CellFront::Outcome CellFront::settle(std::uint32_t top) {
           return Outcome::out_of_work;
         }
         ++report_.splits;
+        nodes_[id].retry = travel_ + kRetryShare * radius(nodes_[id]);
         for (std::uint32_t k = 0; k < nodes_[id].children; ++k) stack_.push_back(nodes_[id].child + k);
     }
   }
@@ -280,10 +299,11 @@ void CellFront::release(std::uint32_t child) {
   free_nodes_ = child;
 }
 
-void CellFront::enter(std::uint32_t id, const Slot& inherited, double expiry) {
+void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, double expiry) {
   nodes_[id].slot = count_;
   slots_[count_] = inherited;
   slots_[count_].node = id;
+  items_[count_] = items;
   expiry_[count_++] = expiry;
 }
 
@@ -291,6 +311,7 @@ void CellFront::leave(std::uint32_t slot) {
   const std::uint32_t last = --count_;
   if (slot == last) return;
   slots_[slot] = slots_[last];
+  items_[slot] = items_[last];
   expiry_[slot] = expiry_[last];
   nodes_[slots_[slot].node].slot = slot;
 }
@@ -305,22 +326,25 @@ bool CellFront::split(std::uint32_t id) {
   const std::uint32_t child = allocate();
   if (child == kNobody) return false;
   // What was known of the whole holds for its parts.
-  Slot known = slots_[p.slot];
-  if (!of_a) known.cell.items = 0;  // they are of both parts
+  const Slot known = slots_[p.slot];
+  // The pieces of B that are listed are of both its parts.
+  const CellItems items = of_a ? items_[p.slot] : CellItems{};
   const double expiry = expiry_[p.slot];
   leave(p.slot);
   nodes_[id].child = child;
   nodes_[id].children = static_cast<std::uint8_t>(children);
+  nodes_[id].failed = 0;
   for (std::uint32_t k = 0; k < children; ++k) {
     Node c = p;
     c.parent = id;
     c.children = 0;
     c.retry = travel_;
+    c.failed = 0;
     const std::uint32_t place = whole.leaf() ? tree.order()[whole.first + k] : whole.first + k;
     (of_a ? c.a : c.b) = place;
     (of_a ? c.face_a : c.face_b) = whole.leaf();
     nodes_[child + k] = c;
-    enter(child + k, known, expiry);
+    enter(child + k, known, items, expiry);
   }
   return true;
 }
@@ -331,32 +355,68 @@ void CellFront::raise() {
   for (int looks = std::min<int>(kMostLooks, cells()); looks > 0 && tries < most; --looks) {
     if (++cursor_ >= count_) cursor_ = 0;
     const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
-    if (parent == kNobody || nodes_[parent].child != id || nodes_[parent].retry > travel_) continue;
-    const Node& p = nodes_[parent];
-    if (nodes_[p.child + p.children - 1].children > 0) continue;
+    if (parent == kNobody || nodes_[parent].child != id || !may_raise(parent)) continue;
     if (out_of_work(true)) return;
     ++tries;
-    if (try_raise(parent)) ++report_.merges;
+    try_raise(parent);
+  }
+}
+
+bool CellFront::may_raise(std::uint32_t id) const {
+  const Node& p = nodes_[id];
+  if (p.retry > travel_) return false;
+  for (std::uint32_t k = 0; k < p.children; ++k)
+    if (nodes_[p.child + k].children > 0) return false;
+  return true;
+}
+
+/// Whether a cell was found for the piece together with its neighbors, the more of them the better: what a part that
+/// leaves needs.
+bool CellFront::climb(std::uint32_t id) {
+  bool found = false;
+  for (int levels = 1;; levels *= 2) {
+    std::uint32_t up = id;
+    for (int k = 0; k < levels && nodes_[up].parent != kNobody; ++k) up = nodes_[up].parent;
+    if (up == id || nodes_[up].retry > travel_ || out_of_work(true) || !merge(up, need_)) return found;
+    id = up;
+    found = true;
   }
 }
 
 bool CellFront::try_raise(std::uint32_t id) {
   const Node& p = nodes_[id];
-  const bool near = asked_[p.part] == now_;
   double lasts = kInfinity;
   for (std::uint32_t k = 0; k < p.children; ++k) lasts = std::min(lasts, expiry_[nodes_[p.child + k].slot] - travel_);
-  const double enough = std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts));
+  return merge(id, std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts)));
+}
+
+/// Puts together all pieces under the node if one cell for all of them lasts for `enough` (m), or none is asked for.
+bool CellFront::merge(std::uint32_t id, double enough) {
+  const bool near = asked_[nodes_[id].part] == now_;
   if (near && (search(id) != CellSearch::Outcome::found || search_.margin() < enough)) {
-    const Sweep& sweep = sweep_of(p.part);
-    nodes_[id].retry = travel_ + kRetryShare * hull(p, sweep).radius;
+    nodes_[id].retry = travel_ + kRetryShare * radius(nodes_[id]);
     return false;
   }
-  for (std::uint32_t k = 0; k < p.children; ++k) leave(nodes_[p.child + k].slot);
-  release(p.child);
-  nodes_[id].children = 0;
+  stack_.clear();
+  freed_.clear();
+  stack_.push_back(id);
+  while (!stack_.empty()) {
+    Node& p = nodes_[stack_.back()];
+    stack_.pop_back();
+    p.failed = 0;
+    if (p.children == 0) {
+      leave(p.slot);
+      continue;
+    }
+    for (std::uint32_t k = 0; k < p.children; ++k) stack_.push_back(p.child + k);
+    freed_.push_back(p.child);
+    p.children = 0;
+  }
+  for (const std::uint32_t child : freed_) release(child);
   nodes_[id].child = kNobody;
-  enter(id, Slot{id, -kInfinity, {}}, -kInfinity);
+  enter(id, Slot{id, -kInfinity, {}}, {}, -kInfinity);
   if (near) keep(id);
+  ++report_.merges;
   return true;
 }
 

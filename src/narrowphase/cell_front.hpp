@@ -63,7 +63,8 @@ class CellFront {
     std::uint32_t slot;           ///< of its cell, while it has no children
     std::uint8_t children;
     bool face_a, face_b;
-    double retry;  ///< travel before which the children are not put together again
+    double retry;          ///< travel before which the children are not put together again
+    std::uint64_t failed;  ///< the call in which its cell did not allow the motion
   };
   struct Slot {
     std::uint32_t node;
@@ -72,6 +73,7 @@ class CellFront {
   };
   struct Failure {
     std::uint32_t node;
+    bool far;      ///< what failed is `clear`, not a plane
     double share;  ///< of the motion that its cell still allows
   };
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
@@ -84,14 +86,19 @@ class CellFront {
   CellSearch::Outcome search(std::uint32_t id);
   void keep(std::uint32_t id);
   bool split(std::uint32_t id);
-  void enter(std::uint32_t id, const Slot& inherited, double expiry);
+  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, double expiry);
   void leave(std::uint32_t slot);
   std::uint32_t allocate();
   void release(std::uint32_t child);
   void raise();
+  bool may_raise(std::uint32_t id) const;
   bool try_raise(std::uint32_t id);
+  bool climb(std::uint32_t id);
+  bool merge(std::uint32_t id, double enough);
+  void fail(std::uint32_t slot, bool far, double share);
   bool out_of_work(bool look_at_clock);
   MovingHull hull(const Node& node, const Sweep& sweep) const;
+  double radius(const Node& node) const;
   double wanted(const MovingHull& a) const;
 
   std::shared_ptr<const PatchTree> a_;
@@ -104,7 +111,8 @@ class CellFront {
   std::vector<Node> nodes_;
   std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
   std::vector<Slot> slots_;
-  std::vector<double> expiry_;  ///< of each slot: travel up to which its cell needs no look
+  std::vector<CellItems> items_;  ///< of each slot
+  std::vector<double> expiry_;    ///< of each slot: travel up to which its cell needs no look
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
@@ -126,7 +134,7 @@ class CellFront {
   std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
   std::vector<Failure> failures_;
   std::size_t failure_count_ = 0;
-  std::vector<std::uint32_t> stack_;
+  std::vector<std::uint32_t> stack_, freed_;
   std::vector<FacePair> blocking_;
   std::uint32_t cursor_ = 0;
   std::int64_t visits_at_start_ = 0;

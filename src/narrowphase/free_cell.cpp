@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "narrowphase/moving_plane.hpp"
+#include "narrowphase/patch_lanes.hpp"
 
 namespace tegotae {
 namespace {
@@ -51,10 +52,10 @@ bool stays_positive(double alpha, double beta, double b) {
 
 CellVerdict check_cell(const FreeCell& cell, const MovingHull& a, const Sweep& sweep) noexcept {
   CellVerdict out{true, kInfinity, 1};
-  for (int k = 0; k < cell.planes; ++k) {
+  for (std::uint32_t k = 0; k < cell.planes; ++k) {
     const Vec3 n = cell.plane[k].normal();
-    const double start = a.start.lowest(n) - cell.plane[k].offset;
-    const double alpha = start - sweep.start_floor, beta = a.end.lowest(n) - cell.plane[k].offset - sweep.floor;
+    const double start = a.start.lowest(n) - double{cell.plane[k].offset};
+    const double alpha = start - sweep.start_floor, beta = a.end.lowest(n) - double{cell.plane[k].offset} - sweep.floor;
     const double b = bulge_along(n, a.reach, sweep);
     out.margin = std::min(out.margin, start);
     if (stays_positive(alpha, beta, b)) continue;
@@ -72,16 +73,7 @@ CellSearch::CellSearch() {
   blocking_.reserve(kMostBlocking);
 }
 
-CellSearch::Entry CellSearch::entry(std::uint32_t node, bool is_face) const {
-  if (is_face) {
-    Vec3 lo = query_.tree->corner(node, 0), hi = lo;
-    for (int k = 1; k < 3; ++k) {
-      lo = lo.cwiseMin(query_.tree->corner(node, k));
-      hi = hi.cwiseMax(query_.tree->corner(node, k));
-    }
-    const Vec3 center = 0.5 * (lo + hi) - query_.tree->origin();
-    return {node, true, (center - middle_).norm() - 0.5 * (hi - lo).norm() - a_->radius};
-  }
+CellSearch::Entry CellSearch::entry(std::uint32_t node) const {
   const PatchNode& b = query_.tree->nodes()[node];
   const double radius =
       std::sqrt(double{b.half[0]} * b.half[0] + double{b.half[1]} * b.half[1] + double{b.half[2]} * b.half[2]);
@@ -202,18 +194,18 @@ bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least
 }
 
 void CellSearch::list(const Entry& e) {
-  if (items_ < kCellItems) item_[items_] = e.is_face ? e.node | kFaceItem : e.node;
-  ++items_;
+  listed_ = listed_ && items_.count < kCellItems;
+  if (listed_) items_.item[items_.count++] = e.is_face ? e.node | CellItems::kFace : e.node;
 }
 
 void CellSearch::open(const Entry& e) {
   const PatchNode& b = query_.tree->nodes()[e.node];
   if (b.leaf()) {
-    for (std::uint32_t i = 0; i < b.count; ++i) stack_.push_back(entry(query_.tree->order()[b.first + i], true));
+    for (std::uint32_t i = 0; i < b.count; ++i) stack_.push_back({query_.tree->order()[b.first + i], true, e.distance});
     return;
   }
   // The nearer child is on top.
-  const Entry one = entry(b.first, false), two = entry(b.first + 1, false);
+  const Entry one = entry(b.first), two = entry(b.first + 1);
   stack_.push_back(one.distance > two.distance ? one : two);
   stack_.push_back(one.distance > two.distance ? two : one);
 }
@@ -274,22 +266,22 @@ void CellSearch::begin(const Query& query) {
   query_ = query;
   middle_ = a_->start.middle();
   normal_of_a_ = a_->start.is_triangle() ? unit_normal(a_->start) : Vec3(Vec3::Zero());
-  planes_ = items_ = 0;
+  planes_ = 0;
+  items_.count = 0;
+  listed_ = true;
   margin_ = clear_ = kInfinity;
   passing_ = full_ = false;
   blocking_.clear();
   stack_.clear();
   if (query.known == nullptr) {
-    stack_.push_back(entry(query.node, query.is_face));
+    stack_.push_back(query.is_face ? Entry{query.node, true, -kInfinity} : entry(query.node));
     return;
   }
   clear_ = query.clear;
-  const FreeCell& known = *query.known;
-  for (int i = 0; i < known.items; ++i)
-    stack_.push_back(entry(known.item[i] & ~kFaceItem, (known.item[i] & kFaceItem) != 0));
-  // The nearest is looked at first: the others need not be known better.
-  const auto nearest = [](const Entry& x, const Entry& y) { return x.distance > y.distance; };
-  std::iter_swap(stack_.end() - 1, std::max_element(stack_.begin(), stack_.end(), nearest));
+  for (std::uint32_t i = 0; i < query.known->count; ++i) {
+    const std::uint32_t item = query.known->item[i], face = item & ~CellItems::kFace;
+    stack_.push_back(item == face ? entry(item) : Entry{face, true, -kInfinity});
+  }
 }
 
 CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3, 3>* face_of_a, const Query& query,
@@ -308,13 +300,12 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   }
   if (!blocking_.empty()) return Outcome::blocked;
   if (passing_) return Outcome::passing;
-  cell.planes = static_cast<std::uint8_t>(planes_);
-  cell.items = static_cast<std::uint8_t>(items_ <= kCellItems ? items_ : 0);
-  std::copy_n(item_.begin(), cell.items, cell.item.begin());
+  if (!listed_) items_.count = 0;
+  cell.planes = static_cast<std::uint32_t>(planes_);
   cell.clear = clear_;
   for (int k = 0; k < planes_; ++k) {
     for (int i = 0; i < 3; ++i) cell.plane[k].n[i] = static_cast<float>(normal_[k][i]);
-    cell.plane[k].offset = top_[k];
+    cell.plane[k].offset = round_up<float>(top_[k]);
   }
   return Outcome::found;
 }

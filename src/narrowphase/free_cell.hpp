@@ -9,7 +9,7 @@
 namespace tegotae {
 
 /// Most planes of a free cell.
-inline constexpr int kCellPlanes = 12;
+inline constexpr int kCellPlanes = 16;
 
 /// A convex set of points: a box, or a triangle.
 class Hull {
@@ -60,28 +60,30 @@ struct MovingHull {
 };
 
 /// A plane that has all of B that it stands for below it: n · x <= offset. `n` (B's axes) is of unit length up to
-/// single precision.
+/// single precision, the offset rounded up.
 struct CellPlane {
   std::array<float, 3> n;
-  double offset;
+  float offset;
 
   Vec3 normal() const { return {double{n[0]}, double{n[1]}, double{n[2]}}; }
 };
 
-/// A node of B's tree or, with the highest bit set, a face.
-using CellItem = std::uint32_t;
-inline constexpr CellItem kFaceItem = 0x80000000u;
-/// Most items that a free cell lists.
-inline constexpr int kCellItems = 28;
-
-/// Where a piece of A's surface may be without meeting B: above every plane. The planes stand for the pieces of B that
-/// are listed; the rest of B is at least `clear` (m) from the piece of A as it was when the cell was found.
+/// Where a piece of A's surface may be without meeting B: above every plane. What of B no plane stands for is at least
+/// `clear` (m) from the piece as it was when the cell was found.
 struct FreeCell {
   double clear = 0;
-  std::uint8_t planes = 0;
-  std::uint8_t items = 0;  ///< 0 with planes: more than fit
+  std::uint32_t planes = 0;
   std::array<CellPlane, kCellPlanes> plane;
-  std::array<CellItem, kCellItems> item;
+};
+
+/// Most pieces of B that a cell's list has room for.
+inline constexpr int kCellItems = 31;
+
+/// The pieces of B that the planes of a cell stand for: nodes of its tree or, with the highest bit set, faces.
+struct CellItems {
+  static constexpr std::uint32_t kFace = 0x80000000u;
+  std::uint32_t count = 0;  ///< 0: not known, or more than fit
+  std::array<std::uint32_t, kCellItems> item;
 };
 
 /// What a free cell says of a motion.
@@ -107,22 +109,23 @@ class CellSearch {
     const PatchTree* tree = nullptr;  ///< of B
     std::uint32_t node = 0;           ///< of `tree`, or face
     bool is_face = false;
-    double need = 0;    ///< what is farther from the piece (m) does not matter to the motion
-    double wanted = 0;  ///< what is farther (m) needs no plane; at least `need`
-    /// A cell found before, whose items are all that is nearer to the piece than `clear`; null: look at all.
-    const FreeCell* known = nullptr;
+    double need = 0;                   ///< what is farther from the piece (m) does not matter to the motion
+    double wanted = 0;                 ///< what is farther (m) needs no plane; at least `need`
+    const CellItems* known = nullptr;  ///< all of B that is nearer to the piece than `clear` (m); null: look at all
     double clear = 0;
   };
 
   CellSearch();
 
   /// Looks for a cell of `a` (`face_of_a`: its corners, A's axes from the center of mass, when it is a triangle)
-  /// against the subtree. `cell` is set when found; its margin at the start is margin().
+  /// against the subtree. `cell` is set when found; its margin at the start is margin(), its pieces of B items().
   Outcome find(const MovingHull& a, const std::array<Vec3, 3>* face_of_a, const Query& query, const Sweep& sweep,
                FreeCell& cell) noexcept;
 
   /// Of the last find(): least distance of the piece at the start from B that was proved, m.
   double margin() const { return std::min(margin_, clear_); }
+  /// Of the last find() that found a cell.
+  const CellItems& items() const { return items_; }
   /// Of the last find(): faces of B that stop the triangle.
   const std::vector<std::uint32_t>& blocking() const { return blocking_; }
   /// Nodes and faces of B visited by all calls.
@@ -132,13 +135,13 @@ class CellSearch {
   struct Entry {
     std::uint32_t node;
     bool is_face;
-    double distance;  ///< lower bound at the start
+    double distance;  ///< lower bound at the start; of a face that of its leaf
   };
 
   Outcome settle(const Entry& e);
   Outcome settle_face(const Entry& e, const Hull& b, const Vec3& best);
   void open(const Entry& e);
-  Entry entry(std::uint32_t node, bool is_face) const;
+  Entry entry(std::uint32_t node) const;
   Hull hull_of(const Entry& e) const;
   bool under_known_plane(const Hull& b, double good);
   /// The normal of a face of either box or triangle along which `b` is farthest below the piece at the start.
@@ -159,8 +162,8 @@ class CellSearch {
   std::array<Vec3, kCellPlanes> normal_;
   std::array<double, kCellPlanes> low_start_, low_end_, top_;
   double margin_ = 0, clear_ = 0;
-  int items_ = 0;  ///< more than kCellItems: they are not all listed
-  std::array<CellItem, kCellItems> item_;
+  CellItems items_;
+  bool listed_ = true;  ///< items_ has them all
   bool passing_ = false;
   bool full_ = false;  ///< a plane more was needed than a cell has
   std::vector<Entry> stack_;
