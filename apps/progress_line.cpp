@@ -43,6 +43,8 @@ void ProgressLine::print() const {
   if (std::isfinite(duration)) std::printf("/ %.1f ", duration);
   std::printf("s   depth %6.1f mm   %3d contacts   %5.2f N", 1e3 * (progress_.depth.load() + depth_offset_),
               progress_.contacts.load(), progress_.force.load());
+  const LagReason lag = progress_.lag_reason.load();
+  if (lag != LagReason::none && lag != LagReason::contact) std::printf("   held back: %s", to_string(lag));
   if (!progress_.device.load()) std::printf("   no device, waiting");
   std::fflush(stdout);
 }

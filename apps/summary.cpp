@@ -25,6 +25,24 @@ std::string force_off_lines(const ServoStatistics& servo) {
   return text;
 }
 
+/// Why the part lagged, and how often. Contact is what a run is for.
+std::string lag_lines(const LagSummary& lag) {
+  std::string text;
+  const auto line = [&text](LagReason reason, std::int64_t ticks, const char* what) {
+    if (ticks > 0)
+      text += format("  %-12s %lld ticks for %s: %s\n", "held back", static_cast<long long>(ticks), to_string(reason),
+                     what);
+  };
+  const auto ticks = [&lag](LagReason reason) { return lag.ticks[static_cast<std::size_t>(reason)]; };
+  line(LagReason::time, ticks(LagReason::time), "the tick ended before the part was there");
+  line(LagReason::capacity, ticks(LagReason::capacity), "no motion could be proved free");
+  line(LagReason::suspended, ticks(LagReason::suspended), "the loop did not follow the pen");
+  if (lag.unexplained > 0)
+    text += format("  %-12s %lld ticks held back for long without a contact (docs/limits.md)\n", "UNEXPLAINED",
+                   static_cast<long long>(lag.unexplained));
+  return text;
+}
+
 }  // namespace
 
 std::string json_line(const RunSummary& s, const SceneFile& file) {
@@ -36,6 +54,10 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["completed"] = s.completed;
   j["depth_m"] = s.depth_m;
   j["contacts_max"] = s.contacts_max;
+  nlohmann::ordered_json lag = {{"max_m", s.lag.max_m}, {"unexplained_ticks", s.lag.unexplained}};
+  for (int i = 1; i < kLagReasons; ++i)
+    lag["ticks"][to_string(static_cast<LagReason>(i))] = s.lag.ticks[static_cast<std::size_t>(i)];
+  j["lag"] = lag;
   j["penetrating"] = s.penetrating;
   j["deepest_m"] = s.deepest_m;
   j["start"] = start_json(s.start, file.scene);
@@ -63,6 +85,7 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   std::string text = goal + ": " + verdict + "\n";
   text += format("  %-12s %.1f mm\n", "depth", 1e3 * s.depth_m);
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);
+  text += lag_lines(s.lag);
   text += format("  %-12s %lld of %lld ticks\n", "intersecting", static_cast<long long>(s.penetrating),
                  static_cast<long long>(s.ticks));
   text += start_text(s.start, file.scene);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/experiment_list.hpp"
+#include "experiments/trial.hpp"
 #include "run_options.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -55,10 +56,13 @@ int run(const Options& options) {
     if (options.name != "all" && options.name != e.name) continue;
     const std::int64_t start = monotonic_ns();
     Outcome outcome;
+    unexplained_lag_ticks() = 0;
     {
       const apps::StatusLine status;
       outcome = e.run({options, status});
     }
+    const auto unexplained = static_cast<double>(unexplained_lag_ticks());
+    outcome.claims.push_back(at_most("held back for long without a contact", unexplained, 0, "ticks"));
     write_outcome(outcome, e.name, command(e.name, options), options.out + "/" + e.name);
     all = tell(e.name, outcome, 1e-9 * static_cast<double>(monotonic_ns() - start)) && all;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "experiments/trial.hpp"
 #include "models/random_bodies.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
@@ -51,6 +52,7 @@ Held hold_case(const std::string& resolver, unsigned seed) {
     loop.step(Y, 0.001);
   }
   for (int tick = 0; tick < kSettleTicks; ++tick) loop.step(Y, 0.001);
+  unexplained_lag_ticks() += loop.report().unexplained_lag_ticks;
   const ProxyState rest = loop.report().proxy;
   Held held;
   held.touching = rest.touching;

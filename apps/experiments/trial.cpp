@@ -53,7 +53,13 @@ std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_se
     device.advance(kPeriod);
   }
   device.stop();
+  unexplained_lag_ticks() += loop.report().unexplained_lag_ticks;
   return samples;
+}
+
+std::atomic<std::int64_t>& unexplained_lag_ticks() {
+  static std::atomic<std::int64_t> ticks{0};
+  return ticks;
 }
 
 std::vector<std::string> resolvers() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,6 +27,9 @@ struct Sample {
 /// so.
 std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen, HandIntent& hand, Operator* op,
                               double seconds, const std::function<bool(const Sample&)>& done);
+
+/// Sum of TickReport::unexplained_lag_ticks over all loops that experiments have run in this process. Any thread adds.
+std::atomic<std::int64_t>& unexplained_lag_ticks();
 
 /// Names of the resolvers that the library knows, the default first, then the paper's, then its rivals.
 std::vector<std::string> resolvers();

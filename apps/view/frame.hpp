@@ -23,6 +23,7 @@ inline constexpr std::size_t kMostPairs = 128;
 struct Frame {
   /// `waiting`: what turned the force off is over, and it comes on again when it is small.
   enum Flag : std::uint32_t { touching = 1, cut = 2, overflow = 4, force_on = 8, waiting = 16 };
+  static constexpr int kLagShift = 8;  ///< the bits from here on are the LagReason
 
   std::uint64_t tick = 0;
   double t = 0;              ///< s

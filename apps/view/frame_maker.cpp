@@ -20,7 +20,8 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   frame.limits = static_cast<std::uint32_t>(limits.size());
   frame.gap = report.gap;
   frame.flags = (report.proxy.touching ? Frame::touching : 0u) | (report.cut ? Frame::cut : 0u) |
-                (report.overflow ? Frame::overflow : 0u);
+                (report.overflow ? Frame::overflow : 0u) |
+                static_cast<std::uint32_t>(report.lag_reason) << Frame::kLagShift;
   frame.pair_count = 0;
   const Vec3 center = report.proxy.X * loop.center();
   for (const bool touching : {true, false})

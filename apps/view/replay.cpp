@@ -41,7 +41,8 @@ void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& ma
   frame.tick_us = row.tick_us;
   frame.servo_late_us = std::numeric_limits<double>::quiet_NaN();
   frame.contacts = static_cast<std::uint32_t>(row.contacts);
-  frame.flags = row.contacts > 0 ? Frame::touching : 0u;
+  frame.flags = (row.contacts > 0 ? Frame::touching : 0u) | static_cast<std::uint32_t>(row.lag_reason)
+                                                                << Frame::kLagShift;
 }
 
 /// All in the bundle, and a review that is made when it is first asked for.

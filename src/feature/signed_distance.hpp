@@ -3,8 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/surface.hpp"
-#include "narrowphase/patch_tree.hpp"
+#include "feature/nearest_face.hpp"
 
 namespace tegotae {
 
@@ -29,18 +28,10 @@ class SignedDistance {
   const Surface& surface() const { return *surface_; }
 
  private:
-  struct Best {
-    double squared = 0;
-    Vec3 point = Vec3::Zero();
-    std::uint32_t face = 0;
-    unsigned mask = 0;  ///< corners of the face that carry the point
-  };
-  void try_face(const Vec3& p, std::uint32_t face, Best& best) const;
-  double squared_bound(const Vec3& p, const PatchNode& node) const;
-  Vec3 feature_normal(const Best& best, bool& rim) const;
+  Vec3 feature_normal(const NearFace& best, bool& rim) const;
 
   std::shared_ptr<const Surface> surface_;
-  std::shared_ptr<const PatchTree> tree_;
+  NearestFace nearest_;
   std::vector<Vec3> vertex_normals_;  ///< angle-weighted, not of unit length
   std::vector<std::uint8_t> vertex_rim_;
 };

@@ -76,11 +76,15 @@ FeaturePair walk_to_minimum(const Surface& A, const Surface& B, const Pose& X_BA
     if (!(distance < last)) return pair;
     last = distance;
     pair = {ra, rb, c.a, c.b, distance};
-    if (distance == 0 || move == most) return pair;
+    if (distance == 0) return pair;
     const Vec3 to_b = (c.b - c.a) / distance;
     const Neighbor na = steepest_neighbor(A, ra, R.transpose() * to_b, tolerance);
     const Neighbor nb = steepest_neighbor(B, rb, -to_b, tolerance);
     if (na.lean == 0 && nb.lean == 0) return pair;
+    if (move == most) {
+      pair.ended = false;
+      return pair;
+    }
     // The steeper side moves: after a part slid by more than the gap, a corner first finds the face it is over now; if
     // it moved along its own edges instead, it would give up its place for a point back there.
     const bool move_a = na.lean > nb.lean;

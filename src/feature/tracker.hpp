@@ -10,6 +10,7 @@ struct FeaturePair {
   Vec3 p_a = Vec3::Zero();  ///< closest point on `a`
   Vec3 p_b = Vec3::Zero();  ///< closest point on `b`
   double distance = 0;      ///< m
+  bool ended = true;        ///< at a minimum; false when the walk had made all its moves before it came to one
 };
 
 /// How far a neighboring feature may lean towards the other part (rad) before a walk follows it. Zero finds strict
@@ -23,9 +24,9 @@ struct WalkTolerance {
 /// Walks from the features `a`, `b` over adjacent features down to a local minimum of their distance (Lin and Canny, "A
 /// fast algorithm for incremental distance calculation", 1991, on surfaces that need not be convex): as long as the
 /// closest point lies outside the Voronoi region of its feature, the neighbor on whose side it lies takes over. Each
-/// move shortens the distance, so the walk ends; it also ends, where it is, after `most` moves. Between closed convex
-/// bodies the minimum is their distance, if the walk starts on sides that face each other (a face seen from behind,
-/// through the solid, is a minimum of its own).
+/// move shortens the distance, so the walk ends; it also ends, where it is, after `most` moves (FeaturePair::ended).
+/// Between closed convex bodies the minimum is their distance, if the walk starts on sides that face each other (a face
+/// seen from behind, through the solid, is a minimum of its own).
 FeaturePair walk_to_minimum(const Surface& A, const Surface& B, const Pose& X_BA, Feature a, Feature b,
                             const WalkTolerance& tolerance = {}, int most = 64);
 

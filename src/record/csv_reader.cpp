@@ -11,6 +11,8 @@ namespace tegotae {
 
 namespace {
 
+constexpr const char* kLagReasonColumn = "lag_reason";  // the last of kRecordHeader
+
 /// Calls `cell(number, text)` for every cell of a line.
 template <class Cell>
 void split(std::string_view line, Cell cell) {
@@ -70,6 +72,8 @@ class CsvReader {
     columns_ = found.size();
     for (const std::string& name : names_) {
       const auto at = std::find(found.begin(), found.end(), name);
+      // Recordings of earlier versions do not tell why the part lagged.
+      if (at == found.end() && name == kLagReasonColumn) continue;
       if (at == found.end()) fail(name, "this column is missing; is this a recording?");
       place_.push_back(static_cast<std::size_t>(at - found.begin()));
     }
@@ -112,6 +116,12 @@ class CsvReader {
     next(f.contacts);
     next(f.gap);
     next(f.tick_us);
+    if (column < place_.size()) {
+      int reason = 0;
+      next(reason);
+      if (reason < 0 || reason >= kLagReasons) fail(kLagReasonColumn, std::to_string(reason) + " is no reason");
+      f.lag_reason = static_cast<LagReason>(reason);
+    }
     return f;
   }
 

@@ -6,7 +6,7 @@ namespace tegotae {
 
 const char* const kRecordHeader =
     "tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,"
-    "fx,fy,fz,tx,ty,tz,contacts,gap,tick_us\n";
+    "fx,fy,fz,tx,ty,tz,contacts,gap,tick_us,lag_reason\n";
 
 namespace {
 
@@ -36,7 +36,7 @@ class Row {
 std::size_t format_row(const RecordFrame& f, char* row) noexcept {
   Row out(row);
   out << f.tick << f.substep << f.t << f.y << f.x << f.wrench.force << f.wrench.torque << f.contacts << f.gap
-      << f.tick_us;
+      << f.tick_us << static_cast<int>(f.lag_reason);
   return out.finish();
 }
 

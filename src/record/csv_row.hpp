@@ -9,7 +9,7 @@ namespace tegotae {
 /// The header row, with its end of line.
 extern const char* const kRecordHeader;
 
-/// No row is longer: three integers of at most 20 characters, 24 numbers of at most 24, commas and the end of line.
+/// No row is longer: four integers of at most 20 characters, 24 numbers of at most 24, commas and the end of line.
 inline constexpr std::size_t kMaxRecordRow = 1024;
 
 /// Writes `frame` as a row with its end of line into `row` (kMaxRecordRow characters) and returns its length. Numbers

@@ -32,7 +32,9 @@ constexpr const char* kTickSchema =
     R"({"title":"tegotae.Tick","type":"object","properties":{"tick":{"type":"integer"},)"
     R"("substep":{"type":"integer","description":"number of the certified piece in its tick"},)"
     R"("t":{"type":"number","description":"s since the start"},)"
-    R"("tick_us":{"type":"number","description":"time the tick took; 0 in virtual time"}}})";
+    R"("tick_us":{"type":"number","description":"time the tick took; 0 in virtual time"},)"
+    R"("lag_reason":{"type":"string","description":"why the part is not where the pen wants it",)"
+    R"("enum":["none","contact","time","capacity","suspended"]}}})";
 #undef TEGOTAE_XYZ
 
 json xyz(const Vec3& v) {
@@ -45,6 +47,16 @@ double number(const json& j) {
 }
 Vec3 vector(const json& j) {
   return {number(j.at("x")), number(j.at("y")), number(j.at("z"))};
+}
+
+/// Recordings of earlier versions do not tell.
+LagReason lag_reason(const json& message) {
+  const auto found = message.find("lag_reason");
+  if (found == message.end()) return LagReason::none;
+  const auto word = found->get<std::string>();
+  for (int i = 0; i < kLagReasons; ++i)
+    if (word == to_string(static_cast<LagReason>(i))) return static_cast<LagReason>(i);
+  throw json::type_error::create(302, "lag_reason: \"" + word + "\" is no reason", &message);
 }
 
 json pose_message(const RecordFrame& frame, const Pose& X) {
@@ -80,7 +92,12 @@ std::uint64_t log_time(const RecordFrame& frame) {
 std::string message_text(const RecordFrame& f, std::size_t i) {
   switch (i) {
     case 0:
-      return json{{"tick", f.tick}, {"substep", f.substep}, {"t", f.t}, {"tick_us", f.tick_us}}.dump();
+      return json{{"tick", f.tick},
+                  {"substep", f.substep},
+                  {"t", f.t},
+                  {"tick_us", f.tick_us},
+                  {"lag_reason", to_string(f.lag_reason)}}
+          .dump();
     case 1:
       return pose_message(f, f.y).dump();
     case 2:
@@ -99,6 +116,7 @@ void take_message(const json& m, std::size_t i, RecordFrame& f) {
       f.substep = whole_number<std::uint32_t>(m.at("substep"));
       f.t = number(m.at("t"));
       f.tick_us = number(m.at("tick_us"));
+      f.lag_reason = lag_reason(m);
       return;
     case 1:
       f.y = pose(m);

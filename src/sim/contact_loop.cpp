@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/lag.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
@@ -121,7 +122,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   if (at_.look_at_start(X_)) tracked_ = false;
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
-  bool held_back = false;
+  held_by_contacts_ = false;
+  allowed_ = wanted;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -138,7 +140,6 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
-      held_back = length == 0 && !at_.contacts->limits().empty();
       // A piece shorter than it could be is the resolver's own end.
       if (length < kFullShare * cap) break;
       made += length;
@@ -147,19 +148,22 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (!late()) track();
   }
   at_.tell(keep_ / kKeepShare, report);
+  // Where the kept gap has shrunk, contacts may hold the part a little above it.
+  if (report.contacts == 0 && wanted > keep_ && report.gap <= settings_.l_min) at_.tell(settings_.l_min, report);
   // Out of time, the limits may be those of an earlier pose.
   report.planes.count = 0;
   if (tracked_) {
     metric_.set_orientation(X_.q);
     planes_.pick(at_.contacts->limits(), metric_, X_, Y, center_, keep_, report.planes);
   }
-  const double left = size(displacement(X_, Y, center_));
-  // A part that limits hold back a little above their gap is felt like one that rests on them.
-  report.proxy.touching = report.contacts > 0 || (held_back && left > keep_);
-  report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
-  report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
+  const double left = size(displacement(X_, Y, center_));
+  report.lag_reason = reason_for(left, report);
+  // Whatever holds the part back, the hand feels it.
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && left > keep_);
+  report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
+  report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
   report.cut |= late();
   was_cut_ = report.cut;
@@ -223,6 +227,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   for (int i = 0; i < kMostResolves && !found; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
+      held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
       return 0;
     }
@@ -244,16 +249,39 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }
-  if (!worth_it(wanted, trial, goal)) return 0;
+  if (!worth_it(wanted, trial, goal)) {
+    held_by_contacts_ = !cutting();
+    return 0;
+  }
   X_ = trial.X;
   tracked_ = false;
+  allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
+}
+
+bool ContactLoop::cutting() const {
+  const auto& limits = at_.contacts->limits();
+  return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kCutAge; });
+}
+
+LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
+  TickEnd end;
+  end.lag = lag;
+  end.bound = lag_bound(at_.radius);
+  end.contacts = report.contacts;
+  end.held_by_contacts = held_by_contacts_;
+  end.allowed = allowed_;
+  end.late = late();
+  end.moved = moved_ > kRest;
+  return lag_reason(end);
 }
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
   Vec6 motion = wanted;
   if (!at_.contacts->limits().empty()) {
     if (!solve(wanted, report, motion)) return false;
+    // Cutting planes stand for what the certificate failed at, and explain no lag.
+    if (!cutting()) allowed_ = size(metric_.unwhiten(motion));
     const double far = size(metric_.unwhiten(wanted));
     // Of a shorter way a programme that does not project may take a part where of the whole it takes nothing.
     if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
@@ -296,7 +324,10 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     if (r.status != ResolveStatus::solved) continue;
     // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery == 0 || !away || size(metric_.unwhiten(r.motion)) < kMostRecovery * keep_) return true;
+    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMostRecovery * keep_) continue;
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) at_.contacts->carries(i);
+    return true;
   }
   return false;
 }

@@ -52,6 +52,9 @@ class ContactLoop final : public ProxyLoop {
   bool wedged() const;
   /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
   bool track();
+  /// Whether a cutting plane, which is no contact, limits the motion.
+  bool cutting() const;
+  LagReason reason_for(double lag, const TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
 
@@ -74,8 +77,10 @@ class ContactLoop final : public ProxyLoop {
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
-  bool tracked_ = false;  ///< the contacts are those of X_
-  bool was_cut_ = false;  ///< the last tick
+  bool tracked_ = false;           ///< the contacts are those of X_
+  bool was_cut_ = false;           ///< the last tick
+  bool held_by_contacts_ = false;  ///< see TickEnd
+  double allowed_ = 0;             ///< see TickEnd, m
   std::int64_t deadline_ns_ = 0;
 };
 

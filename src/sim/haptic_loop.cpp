@@ -10,6 +10,7 @@
 
 #include "device/mailbox.hpp"
 #include "sim/handover.hpp"
+#include "sim/lag.hpp"
 #include "sim/running_scene.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -30,6 +31,7 @@ struct HapticLoop::State {
   Handover<RunningScene> next;
   Pose Y;
   TickReport report;
+  LagCounter lag;
   Mailbox<std::array<double, 7>> latest;  // p, q
   std::atomic<std::uint64_t> change_in_force{0};
   std::mutex changing;  // of those who change; the loop's thread never waits for it, and does not touch the next two
@@ -45,6 +47,27 @@ struct HapticLoop::State {
   void tell() noexcept {
     const Pose& X = report.proxy.X;
     latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
+  }
+
+  /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
+  const TickReport& finish() noexcept {
+    const Displacement d = displacement(report.proxy.X, Y, now->mass.center);
+    report.lag = d.dp.norm() + now->radius * d.dr.norm();
+    lag.add(report.lag, tegotae::lag_bound(now->radius), report.lag_reason);
+    report.unexplained_lag_ticks = lag.ticks();
+    return report;
+  }
+
+  /// A tick that does not follow the pen: X stays.
+  const TickReport& suspend() noexcept {
+    report.pieces.clear();
+    report.pieces.push_back(report.proxy.X);
+    report.proxy.velocity = {};
+    report.resolves = report.iterations = 0;
+    report.status = ResolveStatus::not_needed;
+    report.cut = false;
+    report.lag_reason = LagReason::suspended;
+    return finish();
   }
 
   /// The report before the first tick with a held part.
@@ -92,13 +115,13 @@ HapticLoop::~HapticLoop() = default;
 
 const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   State& s = *state_;
-  if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.report;
+  if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.suspend();
   const std::int64_t now_ns = monotonic_ns();
-  if (s.adopt(now_ns)) return s.report;
+  if (s.adopt(now_ns)) return s.suspend();
   s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
   s.tell();
-  return s.report;
+  return s.finish();
 }
 
 std::uint64_t HapticLoop::change(const Scene& next,
@@ -158,6 +181,9 @@ const Vec3& HapticLoop::center() const {
 }
 Mat3 HapticLoop::gyration() const {
   return state_->now->mass.inertia / state_->now->mass.mass;
+}
+double HapticLoop::lag_bound() const {
+  return tegotae::lag_bound(state_->now->radius);
 }
 const ContactSettings& HapticLoop::contact() const {
   return state_->now->settings;

@@ -64,7 +64,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.status = ResolveStatus::not_needed;
   report.cut = false;
   report.candidate_parts = 0;
-  collided_ = false;
+  collided_ = stuck_ = false;
   deadline_ns_ = deadline_ns;
   if (at_.look_at_start(X_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
@@ -136,6 +136,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
         continue;
       }
       if (outcome == Advance::stuck) {
+        stuck_ = true;
         // What cannot go on is at rest. With its speed kept the coupling would pull it up in every sub-step, to a meter
         // a second of a part that stands still, and no number of impulses would take that off.
         if (!late()) V_ = {};
@@ -222,7 +223,14 @@ void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const
   report.cut |= late();
   const double left = size(displacement(X_, Y, mass_.center));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
-  report.proxy.touching = report.contacts > 0 || collided_;
+  // A part with inertia trails in free space, which needs no reason; one that cannot go on has none to trail for.
+  const bool held = report.contacts > 0 || collided_;
+  report.lag_reason = left <= kRest ? LagReason::none
+                      : held        ? LagReason::contact
+                      : report.cut  ? LagReason::time
+                      : stuck_      ? LagReason::capacity
+                                    : LagReason::none;
+  report.proxy.touching = held || report.lag_reason != LagReason::none;
   report.proxy.X = X_;
   report.proxy.velocity = V_;
 }

@@ -67,6 +67,7 @@ class ImpulseLoop final : public ProxyLoop {
   std::vector<FacePair> blocking_;
   bool tracked_ = false;
   bool collided_ = false;  ///< in this tick
+  bool stuck_ = false;     ///< likewise: it could not go on
   std::int64_t deadline_ns_ = 0;
 };
 

@@ -158,7 +158,10 @@ void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.pieces.push_back(X_);
   const double left = size(displacement(X_, Y, center_));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
-  report.proxy.touching = report.contacts > 0;
+  report.lag_reason = left <= kRest         ? LagReason::none
+                      : report.contacts > 0 ? LagReason::contact
+                                            : LagReason::time;  // a step or a tick has its longest motion
+  report.proxy.touching = report.lag_reason == LagReason::contact || report.cut;
   report.proxy.X = X_;
   const Displacement moved = displacement(X_before, X_, center_);
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};

@@ -68,6 +68,7 @@ RunningScene::RunningScene(const Scene& scene)
       held_mesh(held_part(scene).mesh),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
+      radius(radius_about(*held_mesh, mass.center)),
       loop(make_proxy_loop(scene, settings, mass)) {
   std::vector<Obstacle> list;
   for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});

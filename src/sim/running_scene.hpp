@@ -28,6 +28,7 @@ struct RunningScene {
   bool keeps_out;  ///< no tick leaves the held part nearer to an obstacle than kGapFloor, pairs of start() aside
   ContactSettings settings;  ///< nothing left open
   MassProperties mass;       ///< of the held part
+  double radius;             ///< of the held part about its center of mass, m
   std::unique_ptr<ProxyLoop> loop;
   RunningScene* done_before = nullptr;  ///< see Handover
 

@@ -82,7 +82,7 @@ class Session {
     summary_.tick_us = tegotae::summary(tick_times_);
     const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
     summary_.depth_m = goal_.depth(X_);
-    summary_.completed = script_over && holds_first_ && goal_.reached(X_);
+    summary_.completed = script_over && holds_first_ && goal_.reached(X_) && !lagging_;
     summary_.start = stretches_.start();
     summary_.penetrating = stretches_.penetrating(settings_.progress ? &settings_.progress->checked : nullptr);
     return summary_;
@@ -137,6 +137,7 @@ class Session {
     tick_times_.add(took);
     summary_.deepest_m = std::max(summary_.deepest_m, report.depth);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
+    count_lag(report);
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     RunStretch& stretch = stretches_.now();
@@ -180,11 +181,22 @@ class Session {
     frame.contacts = report.contacts;
     frame.gap = report.gap;
     frame.tick_us = tick_us;
+    frame.lag_reason = report.lag_reason;
     for (const Pose& X : report.pieces) {
       frame.x = X;
       stretches_.now().recorder->push(frame);
       ++frame.substep;
     }
+  }
+
+  void count_lag(const TickReport& report) {
+    LagSummary& lag = summary_.lag;
+    const bool lags = report.lag > loop_.lag_bound();
+    const bool contact = report.lag_reason == LagReason::none || report.lag_reason == LagReason::contact;
+    lagging_ = lags && !contact;
+    lag.max_m = std::max(lag.max_m, report.lag);
+    if (lags) ++lag.ticks[static_cast<std::size_t>(report.lag_reason)];
+    lag.unexplained = report.unexplained_lag_ticks;
   }
 
   void show(double t, const PenSample& pen, const TickReport& report) {
@@ -193,6 +205,7 @@ class Session {
     p.depth.store(goal_.depth(X_), std::memory_order_relaxed);
     p.contacts.store(report.contacts, std::memory_order_relaxed);
     p.force.store(pen.wrench.force.norm(), std::memory_order_relaxed);
+    p.lag_reason.store(report.lag > loop_.lag_bound() ? report.lag_reason : LagReason::none, std::memory_order_relaxed);
     p.device.store(true, std::memory_order_relaxed);
   }
 
@@ -205,6 +218,7 @@ class Session {
   RunStretches stretches_;
   Pose X_ = loop_.report().proxy.X;  // of the part that the file holds
   bool holds_first_ = true;          // that part is held
+  bool lagging_ = false;             // at the end of the last tick, over the bound and not for a contact
   std::uint64_t sequence_ = 0;       // of the pen's sample that the last tick answered
   LatencyHistogram tick_times_;
   std::string missing_;  // of real time, for the contact loop

@@ -53,7 +53,7 @@ TEST_CASE("a run in free space follows the pen", "[programs]") {
   CHECK(j.at("force_max_n") == 0.0);
   const std::string text = read_text(record);
   CHECK(text.rfind("tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,"
-                   "fx,fy,fz,tx,ty,tz,contacts,gap,tick_us",
+                   "fx,fy,fz,tx,ty,tz,contacts,gap,tick_us,lag_reason",
                    0) == 0);
   CHECK(std::count(text.begin(), text.end(), '\n') >= 1101);
 }

@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "contact/contact_set.hpp"
+#include "models/shapes.hpp"
 #include "tegotae/core/clock.hpp"
 
 using namespace tegotae;
@@ -92,4 +95,90 @@ TEST_CASE("capacity is kept and its overflow counted", "[contact]") {
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
   REQUIRE(set.limits().size() == 2);
   REQUIRE(set.overflow() > 0);
+}
+
+TEST_CASE("of too many pairs those that hold the part to all sides are followed, and dropped ones come back",
+          "[contact]") {
+  // A cylinder stands upright on a floor: 400 corners of its rim are at the same height.
+  constexpr int n = 400;
+  constexpr std::size_t most = 48;
+  const auto A = surface(shapes::cylinder(0.04, 0.02, n)), B = surface(box({0.4, 0.4, 0.02}));
+  ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 4096, most);
+  const Pose X{Quat::Identity(), {0.01, 0.02, 0.01 + 5e-6}};
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  const std::vector<FacePair> triangles = all_pairs(*A, *B);
+  int found = 0;
+  while (const int fresh = set.seed(triangles, X, kNoDeadline)) found += fresh;
+  REQUIRE(found >= n);
+  const int overflow_before = set.overflow();
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  CHECK(set.followed() == most);
+  CHECK(set.overflow() - overflow_before == found - static_cast<int>(most));
+  // In every direction there is a corner that stands farther out than 0.95 of the radius.
+  for (int k = 0; k < 64; ++k) {
+    const Vec3 out(std::cos(2 * M_PI * k / 64), std::sin(2 * M_PI * k / 64), 0);
+    double farthest = 0;
+    for (const Contact& c : set.limits()) farthest = std::max(farthest, c.r.dot(out));
+    CHECK(farthest > 0.95 * 0.02);
+  }
+  // Chosen once more from the same pairs, nothing changes; what was dropped can be started again.
+  const std::vector<Contact> limits = set.limits();
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  REQUIRE(set.limits().size() == limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) CHECK(set.limits()[i].r == limits[i].r);
+  CHECK(set.overflow() == 0);
+  CHECK(set.seed(triangles, X, kNoDeadline) > 0);
+}
+
+TEST_CASE("pairs that carry force are followed however many are nearer", "[contact]") {
+  constexpr std::size_t most = 16;
+  const auto A = surface(shapes::cylinder(0.04, 0.02, 200)), B = surface(box({0.4, 0.4, 0.02}));
+  ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 4096, most);
+  // Leaning by a milliradian: the rim is up to 40 µm higher on one side.
+  const Pose X{rotation({0.001, 0, 0}), {0, 0, 0.01 + 3e-5}};
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  while (set.seed(all_pairs(*A, *B), X, kNoDeadline) > 0) {
+  }
+  std::vector<Vec3> farthest;
+  for (int i = 0; i < 5; ++i) {
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < set.limits().size(); ++k) {
+      const Vec3& r = set.limits()[k].r;
+      const bool taken = std::any_of(farthest.begin(), farthest.end(), [&r](const Vec3& q) { return q == r; });
+      if (!taken && (at == 0 || set.limits()[k].gap > set.limits()[at].gap)) at = k;
+    }
+    set.carries(at);
+    farthest.push_back(set.limits()[at].r);
+  }
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  CHECK(set.followed() == most);
+  for (const Vec3& r : farthest)
+    CHECK(std::any_of(set.limits().begin(), set.limits().end(), [&r](const Contact& c) { return c.r == r; }));
+}
+
+TEST_CASE("a face in the middle of a large flat region leads to the corners of the region", "[contact]") {
+  // The one pair that was in the way lies in the middle of both: no corner, no rim.
+  const auto A = surface(shapes::box({0.04, 0.04, 0.04}, {20, 20, 1})),
+             B = surface(shapes::box({0.4, 0.4, 0.02}, {40, 40, 1}));
+  ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 256);
+  const Pose X{Quat::Identity(), {0.003, 0.002, 0.02001}};
+  const auto in_the_middle = [](const Surface& s, const Pose& pose, double z) {
+    for (std::uint32_t f = 0; f < s.mesh->triangles.size(); ++f) {
+      Vec3 sum = Vec3::Zero();
+      for (const std::uint32_t v : s.mesh->triangles[f]) sum += pose * s.mesh->vertices[v] / 3;
+      if (std::abs(sum.z() - z) < 1e-9 && (sum - Vec3(0.003, 0.002, z)).norm() < 0.008) return f;
+    }
+    return kNone;
+  };
+  const FacePair t{0, in_the_middle(*A, X, 1e-5), in_the_middle(*B, {Quat::Identity(), {0, 0, -0.01}}, 0)};
+  REQUIRE(t.a != kNone);
+  REQUIRE(t.b != kNone);
+  REQUIRE(set.track(X, 0.001, kNoDeadline));
+  REQUIRE(set.seed({t}, X, kNoDeadline) == 4);
+  REQUIRE(set.limits().size() == 4);
+  for (const Contact& c : set.limits()) {
+    CHECK(std::abs(c.r.x()) == Approx(0.02));
+    CHECK(std::abs(c.r.y()) == Approx(0.02));
+    CHECK(c.gap == Approx(1e-5));
+  }
 }

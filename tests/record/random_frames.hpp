@@ -59,6 +59,7 @@ inline RecordFrame random_frame(std::mt19937_64& rng) {
   f.contacts = static_cast<int>(rng());
   f.gap = number();
   f.tick_us = number();
+  f.lag_reason = static_cast<LagReason>(rng() % kLagReasons);
   return f;
 }
 

@@ -51,7 +51,7 @@ std::vector<double> numbers_of(const RecordFrame& f) {
 
 const char* const kHeader =
     "tick,substep,t,y_px,y_py,y_pz,y_qw,y_qx,y_qy,y_qz,x_px,x_py,x_pz,x_qw,x_qx,x_qy,x_qz,fx,fy,fz,tx,ty,tz,contacts,"
-    "gap,tick_us";
+    "gap,tick_us,lag_reason";
 
 /// Limits the size of files that this process writes, and takes it back.
 struct FileSizeLimit {
@@ -88,7 +88,7 @@ TEST_CASE("what is read from a recording are the same bits", "[record]") {
   REQUIRE(lines[0] == kHeader);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::vector<std::string> cells = split(lines[i + 1]);
-    REQUIRE(cells.size() == 26);
+    REQUIRE(cells.size() == 27);
     REQUIRE(std::strtoull(cells[0].c_str(), nullptr, 10) == frames[i].tick);
     REQUIRE(std::strtoull(cells[1].c_str(), nullptr, 10) == frames[i].substep);
     const std::vector<double> expected = numbers_of(frames[i]);
@@ -101,6 +101,7 @@ TEST_CASE("what is read from a recording are the same bits", "[record]") {
     REQUIRE(std::atoi(cells[23].c_str()) == frames[i].contacts);
     REQUIRE(std::strtod(cells[24].c_str(), nullptr) == frames[i].gap);
     REQUIRE(std::strtod(cells[25].c_str(), nullptr) == frames[i].tick_us);
+    REQUIRE(std::atoi(cells[26].c_str()) == static_cast<int>(frames[i].lag_reason));
   }
   CHECK(split(lines[2])[24] == "inf");
 }
@@ -170,5 +171,5 @@ TEST_CASE("a killed process leaves whole rows, but for the last one", "[record]"
   std::vector<std::string> lines = lines_of(file.path);
   if (text.back() != '\n') lines.pop_back();
   REQUIRE(lines.size() > 100);
-  for (std::size_t i = 1; i < lines.size(); ++i) REQUIRE(split(lines[i]).size() == 26);
+  for (std::size_t i = 1; i < lines.size(); ++i) REQUIRE(split(lines[i]).size() == 27);
 }

@@ -23,7 +23,7 @@ bool same(const RecordFrame& a, const RecordFrame& b) {
   return a.tick == b.tick && a.substep == b.substep && a.t == b.t && a.y.p == b.y.p &&
          a.y.q.coeffs() == b.y.q.coeffs() && a.x.p == b.x.p && a.x.q.coeffs() == b.x.q.coeffs() &&
          a.wrench.force == b.wrench.force && a.wrench.torque == b.wrench.torque && a.contacts == b.contacts &&
-         a.gap == b.gap && a.tick_us == b.tick_us;
+         a.gap == b.gap && a.tick_us == b.tick_us && a.lag_reason == b.lag_reason;
 }
 
 std::string contents(const std::string& path) {
@@ -88,6 +88,21 @@ TEST_CASE("columns are found by name; comments, other columns and Windows line e
   CHECK(f.contacts == 3);
   CHECK(f.gap == std::numeric_limits<double>::infinity());
   CHECK(f.tick_us == 21.5);
+}
+
+TEST_CASE("why the part lagged is a number of its own, and recordings of before are read without it", "[recording]") {
+  const TemporaryFile file(".csv");
+  const auto with = [](const std::string& reason) {
+    return std::string(kHeader) + ",lag_reason\n" + kRow + "," + reason + "\n";
+  };
+  write(file.path, with("3"));
+  CHECK(read_recording(file.path).frames.at(0).lag_reason == LagReason::capacity);
+  write(file.path, std::string(kHeader) + "\n" + kRow + "\n");
+  CHECK(read_recording(file.path).frames.at(0).lag_reason == LagReason::none);
+  for (const char* reason : {"5", "-1"}) {
+    write(file.path, with(reason));
+    CHECK_THROWS_WITH(read_recording(file.path), Catch::Contains(std::string(":2: lag_reason: ") + reason + " is no"));
+  }
 }
 
 TEST_CASE("what is wrong with a CSV recording is told with its line and column", "[recording]") {

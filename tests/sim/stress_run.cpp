@@ -37,6 +37,7 @@ double radius(const TriangleMesh& mesh, const Vec3& center) {
 void StressResult::add(const StressResult& o) {
   scripts += o.scripts, ticks += o.ticks, pieces += o.pieces, poses += o.poses, intersecting += o.intersecting;
   touching += o.touching, cut += o.cut, overflow += o.overflow, infeasible += o.infeasible, stalled += o.stalled;
+  out_of_time += o.out_of_time, out_of_capacity += o.out_of_capacity, unexplained += o.unexplained;
   late_unreported += o.late_unreported, seconds_loop += o.seconds_loop, seconds_check += o.seconds_check;
   if (first_intersecting.empty()) first_intersecting = o.first_intersecting;
 }
@@ -78,6 +79,10 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
     result.overflow += r.overflow;
     result.infeasible += r.status == ResolveStatus::infeasible;
     result.stalled += r.status == ResolveStatus::stalled;
+    if (r.lag > loop.lag_bound()) {
+      result.out_of_time += r.lag_reason == LagReason::time;
+      result.out_of_capacity += r.lag_reason == LagReason::capacity;
+    }
     result.late_unreported +=
         options.budget > 0 && !r.cut && 1e-9 * static_cast<double>(took - kAfterLastLook) > options.budget;
     result.seconds_loop += 1e-9 * static_cast<double>(took);
@@ -94,6 +99,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
     result.seconds_check += 1e-9 * static_cast<double>(cpu_ns() - checking);
   }
   if (record) record->close();
+  result.unexplained = loop.report().unexplained_lag_ticks;
   return result;
 }
 

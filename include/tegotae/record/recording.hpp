@@ -5,21 +5,23 @@
 #include <vector>
 
 #include "tegotae/core/export.hpp"
+#include "tegotae/core/lag_reason.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
 
 /// One row of a recording: one certified piece of a tick of the contact loop.
 struct RecordFrame {
-  std::uint64_t tick = 0;     ///< number of the contact loop's tick
-  std::uint32_t substep = 0;  ///< number of the piece in its tick, from 0
-  double t = 0;               ///< s
-  Pose y;                     ///< where the pen wants the held part's file frame
-  Pose x;                     ///< the held part's file frame, in the world
-  Wrench wrench;              ///< on the pen, at the held part's center of mass, N and N·m
-  int contacts = 0;           ///< TickReport::contacts
-  double gap = 0;             ///< smallest known gap, m; +inf when nothing is near
-  double tick_us = 0;         ///< time that the tick took; 0 in virtual time
+  std::uint64_t tick = 0;                  ///< number of the contact loop's tick
+  std::uint32_t substep = 0;               ///< number of the piece in its tick, from 0
+  double t = 0;                            ///< s
+  Pose y;                                  ///< where the pen wants the held part's file frame
+  Pose x;                                  ///< the held part's file frame, in the world
+  Wrench wrench;                           ///< on the pen, at the held part's center of mass, N and N·m
+  int contacts = 0;                        ///< TickReport::contacts
+  double gap = 0;                          ///< smallest known gap, m; +inf when nothing is near
+  double tick_us = 0;                      ///< time that the tick took; 0 in virtual time
+  LagReason lag_reason = LagReason::none;  ///< TickReport::lag_reason; none in recordings that do not tell
 };
 
 /// What a recording says of itself, so that it can be shown with its parts. Unknown texts are empty.

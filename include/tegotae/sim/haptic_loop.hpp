@@ -7,6 +7,7 @@
 
 #include "tegotae/contact/contact.hpp"
 #include "tegotae/core/export.hpp"
+#include "tegotae/core/lag_reason.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
@@ -34,7 +35,25 @@ struct TickReport {
   int suspended = 0;      ///< pairs that overlapped at the start and have not come free: nothing keeps them apart
   int relieved = 0;       ///< pairs that touched at the start and have not come free (StartPair::relief)
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
+  /// How far X is behind the pen after the tick: distance of the two centers of mass plus the held part's radius times
+  /// the angle between them, m.
+  double lag = 0;
+  LagReason lag_reason = LagReason::none;  ///< why
+  /// Ticks since the loop began in which X was held back without a contact that explains it: the lag was over
+  /// kMaxUnexplainedLag (scaled, see lag_bound) for a reason other than contact, as it had been in the kLagPatience
+  /// ticks before without a break.
+  std::int64_t unexplained_lag_ticks = 0;
 };
+
+/// Lag (m) that needs a reason in contact, of a part with a radius of at least kLagRadius (m) about its center of mass;
+/// a smaller part's is smaller in proportion.
+inline constexpr double kMaxUnexplainedLag = 3e-4, kLagRadius = 0.03;
+/// Ticks in a row for which a lag may be over that.
+inline constexpr int kLagPatience = 20;
+/// The bound (m) for a part of `radius` (m) about its center of mass: 0.3 mm, or 1 % of the radius where that is less.
+constexpr double lag_bound(double radius) {
+  return kMaxUnexplainedLag * (radius < kLagRadius ? radius / kLagRadius : 1.0);
+}
 
 /// The contact loop: follows the pen with the held part so that it never intersects a fixed part, but for pairs that
 /// start() names.
@@ -86,6 +105,7 @@ class HapticLoop {
   const Vec3& center() const;              ///< center of mass of the held part, m, file frame
   Mat3 gyration() const;                   ///< its inertia over its mass about that center, m², file axes
   const ContactSettings& contact() const;  ///< the settings in use, nothing left open
+  double lag_bound() const;                ///< lag_bound() of the held part, m
 
  private:
   struct State;

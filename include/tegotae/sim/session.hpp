@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -19,12 +20,13 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
 struct RunProgress {
-  std::atomic<double> t{0};         ///< s since the start
-  std::atomic<double> duration{0};  ///< s the run will take; infinite: until it is ended
-  std::atomic<double> depth{0};     ///< m, as RunSummary::depth_m
-  std::atomic<int> contacts{0};     ///< TickReport::contacts of the newest tick
-  std::atomic<double> force{0};     ///< N
-  std::atomic<bool> device{true};   ///< the device is there
+  std::atomic<double> t{0};                            ///< s since the start
+  std::atomic<double> duration{0};                     ///< s the run will take; infinite: until it is ended
+  std::atomic<double> depth{0};                        ///< m, as RunSummary::depth_m
+  std::atomic<int> contacts{0};                        ///< TickReport::contacts of the newest tick
+  std::atomic<double> force{0};                        ///< N
+  std::atomic<LagReason> lag_reason{LagReason::none};  ///< of the newest tick; none while the lag is under its bound
+  std::atomic<bool> device{true};                      ///< the device is there
   std::atomic<double> checked{-1};  ///< after the last tick: share of the poses that FCL was asked about; before: < 0
 };
 
@@ -102,17 +104,27 @@ struct RunSettings {
   const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording is kept
 };
 
+/// How the held part lagged behind the pen in a run.
+struct LagSummary {
+  double max_m = 0;  ///< largest TickReport::lag of a tick
+  /// Ticks with a lag over lag_bound(), by LagReason.
+  std::array<std::int64_t, kLagReasons> ticks{};
+  std::int64_t unexplained = 0;  ///< TickReport::unexplained_lag_ticks at the end: 0 in a run without silent walls
+};
+
 /// How a run went.
 struct RunSummary {
   std::int64_t ticks = 0;  ///< of the contact loop
   double seconds = 0;      ///< simulated time; in real time also the time it took
   /// The run went past the end of the script (with the device of another process: whenever it ended) and the part that
   /// the scene file holds rests where the script ends: its center within 2 % of the way plus the part's radius and what
-  /// friction and resolution leave of the pen, its rotation within 0.1 rad.
+  /// friction and resolution leave of the pen, its rotation within 0.1 rad. A part that lags at the end by more than
+  /// lag_bound() for another reason than contact is not where it should be.
   bool completed = false;
   /// How far (m) that part's center has gone along the straight line from where the script starts to where it ends.
   double depth_m = 0;
   int contacts_max = 0;  ///< most TickReport::contacts of a tick
+  LagSummary lag;        ///< how far it was behind the pen, and why
   /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
   /// an evenly spread part is asked. Pairs that `start` names do not count until they have come free.
   std::int64_t penetrating = 0;

@@ -1,7 +1,10 @@
-// Whether the force is on, and if not, why and what to do.
+// Whether the force is on, and if not, why and what to do; and what holds the part back that is no contact.
+import { lagReasons } from "./frame.js";
+
 // Reasons that explain nothing: none was seen; nobody had asked for a force yet, as when a run begins.
 const [none, software] = [0, 4];
 const patienceMs = 400; // every run begins without a force, for some milliseconds
+const contact = 1; // of lagReasons
 
 // In a few words, for the numbers.
 export function forceState(frame, reasons) {
@@ -9,18 +12,23 @@ export function forceState(frame, reasons) {
   return `Force is off: ${frame.waiting ? "waiting for a small force" : reasons[frame.reason] ?? "unknown"}`;
 }
 
-// What to do, over the parts; hidden while the force is on.
+// What to do, over the parts; hidden while the force is on and nothing but contacts holds the part back.
 export class ForceNotice {
   constructor(place) {
     this.place = place;
     this.off = null; // since when
+    this.late = null;
   }
 
   // hand: what leads the part from here (hand.js).
   show(frame, reasons, hand, now = performance.now()) {
     if (frame.forceOn || !reasons) this.off = null;
     else this.off ??= now;
-    const text = this.off === null || now - this.off < patienceMs ? "" : this.text(frame, reasons, hand);
+    if (frame.lagReason > contact) this.late ??= now;
+    else this.late = null;
+    const lasts = (since) => since !== null && now - since >= patienceMs;
+    const late = lasts(this.late) ? `The part is held back, and not by a contact: ${lagReasons[frame.lagReason]}.` : "";
+    const text = lasts(this.off) ? this.text(frame, reasons, hand) : late;
     if (this.place.textContent !== text) this.place.textContent = text;
   }
 

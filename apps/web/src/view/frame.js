@@ -2,6 +2,10 @@
 export const frameFloats = 33;
 export const pairFloats = 8;
 
+// As LagReason (tegotae/core/lag_reason.hpp) numbers them, in the flags from this bit on.
+export const lagReasons = ["", "held by contacts", "out of time", "no motion proved free", "not following the pen"];
+const lagShift = 8;
+
 const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8, waiting: 16 };
 
 export function readFrame(row, pairs) {
@@ -21,6 +25,7 @@ export function readFrame(row, pairs) {
     limits: row[28],
     reason: row[30],
     generation: row[32],
+    lagReason: flags >> lagShift,
     pairs: [],
   };
   for (const [name, bit] of Object.entries(flagNames)) frame[name] = (flags & bit) !== 0;

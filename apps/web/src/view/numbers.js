@@ -1,7 +1,7 @@
 // The newest values as text, slower than frames come, so that one can read them.
 import { element } from "../common/dom.js";
 import { forceState } from "./force.js";
-import { distance, norm } from "./frame.js";
+import { distance, lagReasons, norm } from "./frame.js";
 
 const periodMs = 120;
 const signed = (v, digits) => (Number(v.toFixed(digits)) < 0 ? "−" : "\u2007") + Math.abs(v).toFixed(digits);
@@ -11,7 +11,7 @@ const rows = [
   ["force", "Force", "N", (f) => norm(f.force).toFixed(2), (f) => triple(f.force, 1, 2)],
   ["torque", "Torque", "N·mm", (f) => norm(f.torque.map((v) => 1e3 * v)).toFixed(1), (f) => triple(f.torque, 1e3, 1)],
   ["position", "Part at", "mm", () => "", (f) => triple(f.x.slice(0, 3), 1e3, 2)],
-  ["lag", "Pen to part", "mm", (f) => (1e3 * distance(f.x, f.y)).toFixed(2), () => ""],
+  ["lag", "Pen to part", "mm", (f) => (1e3 * distance(f.x, f.y)).toFixed(2), (f) => lagReasons[f.lagReason] ?? ""],
   ["gap", "Smallest gap", "µm", (f) => (Number.isFinite(f.gap) ? (1e6 * f.gap).toFixed(1) : "–"), () => ""],
   ["contacts", "Contacts", "", (f) => String(f.contacts), (f) => `of ${f.limits} near pairs`],
   ["tick", "Tick", "µs", (f) => (f.tickUs > 0 ? f.tickUs.toFixed(0) : "–"), (f) => (f.cut ? "cut short" : "")],

@@ -1,0 +1,278 @@
+// Where contacts come from: the triangle pairs that were in the way of a motion.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contact/contact_set.hpp"
+#include "feature/simplex_distance.hpp"
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae {
+namespace {
+
+// Fresh pairs after which a call ends: the next trial asks again, and each pair is to be followed before it.
+constexpr int kMaxFresh = 64;
+// Normals of contacts that speak for each other differ by less (as a cosine: 0.02 rad). So does the slope of the gap
+// between them; gaps closer than the last (m) are the same.
+constexpr double kSameNormal = 0.9998, kSlope = 0.02, kSameGap = 1e-6;
+// Flat regions that lie on each other are parallel up to this (as a cosine: 0.03 rad, as far as walks go along).
+constexpr double kParallel = 0.99955;
+// Points that are nearer to a line through the middle than this share of their distance lie on it.
+constexpr double kOnLine = 1e-6;
+
+/// The corners of a flat region, or of a face that is one of its own, in order around it; file frame.
+struct Outline {
+  std::array<Vec3, kMaxRegionCorners> p;
+  std::size_t size = 0;
+};
+
+/// Some of the faces around a feature: of a corner where very many meet, the first.
+struct FacesAround {
+  std::array<std::uint32_t, 16> faces;
+  std::size_t size = 0;
+};
+
+FacesAround faces_around(const Surface& s, Feature f) {
+  FacesAround out;
+  const auto add = [&out](std::uint32_t face) {
+    if (face != kNone && out.size < out.faces.size()) out.faces[out.size++] = face;
+  };
+  const Topology& t = s.topology;
+  if (f.kind == FeatureKind::face) add(f.index);
+  if (f.kind == FeatureKind::edge)
+    for (const std::uint32_t face : t.edges[f.index].f) add(face);
+  if (f.kind == FeatureKind::vertex)
+    for (std::uint32_t k = t.vertex_face_begin[f.index]; k < t.vertex_face_begin[f.index + 1]; ++k)
+      add(t.vertex_faces[k]);
+  return out;
+}
+
+/// False when there are fewer than two.
+bool outline(const Surface& s, std::uint32_t face, Outline& out) {
+  const auto add = [&](std::uint32_t v) { out.p[out.size++] = s.mesh->vertices[v]; };
+  const FlatRegions& r = s.regions;
+  if (const std::uint32_t region = r.of_face[face]; region == kNone)
+    for (const std::uint32_t v : s.mesh->triangles[face]) add(v);
+  else
+    for (std::uint32_t i = r.corner_begin[region]; i < r.corner_begin[region + 1]; ++i) add(r.corners[i]);
+  return out.size > 1;
+}
+
+/// Whether the middle (the origin) lies among points of a plane that are told one after the other: in their hull, or
+/// between two of them. Keeps the narrowest cone that holds all.
+class Surrounded {
+ public:
+  /// True once it does.
+  bool add(double x, double y) {
+    const double length = std::hypot(x, y);
+    if (length < kSameGap) return true;
+    const double p[2] = {x / length, y / length};
+    if (!any_) {
+      any_ = true;
+      for (int i = 0; i < 2; ++i) right_[i] = left_[i] = p[i];
+      return false;
+    }
+    const double of_right = cross(right_, p), of_left = cross(left_, p);
+    if ((std::abs(of_right) < kOnLine && dot(right_, p) < 0) || (std::abs(of_left) < kOnLine && dot(left_, p) < 0))
+      return true;
+    if (of_right < 0 && of_left > 0) return true;
+    if (of_right < 0) std::copy(p, p + 2, right_);
+    if (of_left > 0) std::copy(p, p + 2, left_);
+    return false;
+  }
+
+ private:
+  static double cross(const double* a, const double* b) { return a[0] * b[1] - a[1] * b[0]; }
+  static double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1]; }
+
+  bool any_ = false;
+  double right_[2] = {}, left_[2] = {};  ///< the two sides of the cone, less than half a turn apart
+};
+
+}  // namespace
+
+int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns) {
+  int fresh = 0;
+  for (const FacePair& t : triangles) {
+    if (past(deadline_ns) || fresh >= kMaxFresh) break;
+    if (static_cast<int>(next_.size()) >= capacity_) {
+      ++overflow_;
+      break;
+    }
+    // A collapsed face has no features of its own; its corners and edges are those of the faces around.
+    if (held_->topology.face_edges[t.a][0] == kNone || fixed_[t.part].surface->topology.face_edges[t.b][0] == kNone)
+      continue;
+    fresh += seed_pair(t, X_near);
+  }
+  if (fresh > 0) pairs_.assign(next_.begin(), next_.end());
+  return fresh;
+}
+
+int ContactSet::seed_pair(const FacePair& t, const Pose& X_near) {
+  const FixedSurface& B = fixed_[t.part];
+  const Feature fa{FeatureKind::face, t.a}, fb{FeatureKind::face, t.b};
+  const Pose X_BW = B.X_WB.inverse(), near_BA = X_BW * X_near;
+  Simplex sa = corners(*held_, fa);
+  for (Vec3& p : sa.p) p = near_BA * p;
+  const ClosestPoints c = closest_points(sa, corners(*B.surface, fb));
+  const FeaturePair at = walk_to_minimum(*held_, *B.surface, X_BW * X_, subfeature(*held_, fa, c.mask_a),
+                                         subfeature(*B.surface, fb, c.mask_b));
+  int fresh = take(t.part, at, false);
+  if (fresh > 0) fresh += seed_regions_at(t.part, at);
+  if (try_first_time(t)) fresh += seed_regions(t) + seed_crossings(t);
+  if (fresh == 0) fresh = seed_corners(t) + seed_rims(t);
+  return fresh > 0 ? fresh : take(t.part, at, true);
+}
+
+bool ContactSet::try_first_time(const FacePair& t) {
+  const FlatRegions &ra = held_->regions, &rb = fixed_[t.part].surface->regions;
+  if (ra.of_face[t.a] == kNone && rb.of_face[t.b] == kNone) return false;
+  // Regions and single faces are numbered apart.
+  const auto name = [](const FlatRegions& r, std::uint32_t face) {
+    return r.of_face[face] == kNone ? 2 * std::uint64_t{face} : 2 * std::uint64_t{r.of_face[face]} + 1;
+  };
+  const TriedRegions pair{t.part, name(ra, t.a), name(rb, t.b)};
+  const auto end = tried_.begin() + static_cast<std::ptrdiff_t>(tried_count_);
+  if (tried_count_ == tried_.size() || std::find(tried_.begin(), end, pair) != end) return false;
+  tried_[tried_count_++] = pair;
+  return true;
+}
+
+int ContactSet::seed_regions_at(std::uint32_t part, const FeaturePair& at) {
+  // A corner touched first: of the regions that meet there it is the two that lie on each other that hold the part.
+  const Surface& B = *fixed_[part].surface;
+  const FacesAround a = faces_around(*held_, at.a), b = faces_around(B, at.b);
+  const Mat3 R = pose_in(part).q.toRotationMatrix();
+  int fresh = 0;
+  for (std::size_t i = 0; i < a.size; ++i)
+    for (std::size_t j = 0; j < b.size; ++j) {
+      const FacePair t{part, a.faces[i], b.faces[j]};
+      const double cosine = (R * held_->topology.face_normals[t.a]).dot(B.topology.face_normals[t.b]);
+      if (std::abs(cosine) > kParallel && try_first_time(t)) fresh += seed_regions(t) + seed_crossings(t);
+    }
+  return fresh;
+}
+
+int ContactSet::seed_regions(const FacePair& t) {
+  const FlatRegions &ra = held_->regions, &rb = fixed_[t.part].surface->regions;
+  int fresh = 0;
+  const std::uint32_t a = ra.of_face[t.a], b = rb.of_face[t.b];
+  if (a != kNone)
+    for (std::uint32_t i = ra.corner_begin[a]; i < ra.corner_begin[a + 1]; ++i)
+      fresh += seed_vertex_of_a(t.part, ra.corners[i], t.b) + seed_parallel(t, ra.corners[i]);
+  if (b != kNone)
+    for (std::uint32_t i = rb.corner_begin[b]; i < rb.corner_begin[b + 1]; ++i)
+      fresh += seed_vertex_of_b(t.part, t.a, rb.corners[i]);
+  return fresh;
+}
+
+int ContactSet::seed_parallel(const FacePair& t, std::uint32_t vertex) {
+  // A plane may be several regions (T-junctions, islands): the corner stands on the one that is under it.
+  const Surface& B = *fixed_[t.part].surface;
+  const Vec3& n = B.topology.face_normals[t.b];
+  NearFace near;
+  near.squared = reach_ * reach_;
+  near_fixed_[t.part].find(pose_in(t.part) * held_->mesh->vertices[vertex], near, [&B, &n](std::uint32_t face) {
+    return std::abs(n.dot(B.topology.face_normals[face])) > kParallel;
+  });
+  if (near.face == kNone) return 0;
+  return start(t.part, {FeatureKind::vertex, vertex}, subfeature(B, {FeatureKind::face, near.face}, near.mask));
+}
+
+int ContactSet::seed_crossings(const FacePair& t) {
+  Outline a, b;
+  if (!outline(*held_, t.a, a) || !outline(*fixed_[t.part].surface, t.b, b)) return 0;
+  const Pose X_BA = pose_in(t.part);
+  for (std::size_t i = 0; i < a.size; ++i) a.p[i] = X_BA * a.p[i];
+  int fresh = 0;
+  for (std::size_t i = 0; i < a.size; ++i)
+    for (std::size_t j = 0; j < b.size; ++j) {
+      const ClosestPoints c =
+          closest_points({2, {a.p[i], a.p[(i + 1) % a.size]}}, {2, {b.p[j], b.p[(j + 1) % b.size]}});
+      if (c.mask_a != 3 || c.mask_b != 3 || c.squared_distance > reach_ * reach_) continue;
+      // The outline may be many edges of the mesh, or pass by a bay: the faces that are there now.
+      NearFace on_a, on_b;
+      on_a.squared = on_b.squared = reach_ * reach_;
+      near_held_.find_in_region(X_BA.inverse() * c.a, t.a, on_a);
+      near_fixed_[t.part].find_in_region(c.b, t.b, on_b);
+      if (on_a.face != kNone && on_b.face != kNone) fresh += seed_rims({t.part, on_a.face, on_b.face});
+    }
+  return fresh;
+}
+
+int ContactSet::seed_corners(const FacePair& t) {
+  int fresh = 0;
+  for (const std::uint32_t v : held_->mesh->triangles[t.a]) fresh += seed_vertex_of_a(t.part, v, t.b);
+  for (const std::uint32_t v : fixed_[t.part].surface->mesh->triangles[t.b]) fresh += seed_vertex_of_b(t.part, t.a, v);
+  return fresh;
+}
+
+int ContactSet::seed_vertex_of_a(std::uint32_t part, std::uint32_t vertex, std::uint32_t face_b) {
+  if (held_->topology.vertex_flat[vertex] != 0) return 0;
+  NearFace near;
+  near.squared = reach_ * reach_;
+  near_fixed_[part].find_in_region(pose_in(part) * held_->mesh->vertices[vertex], face_b, near);
+  if (near.face == kNone) return 0;
+  const Feature a{FeatureKind::vertex, vertex};
+  return start(part, a, subfeature(*fixed_[part].surface, {FeatureKind::face, near.face}, near.mask));
+}
+
+int ContactSet::seed_vertex_of_b(std::uint32_t part, std::uint32_t face_a, std::uint32_t vertex) {
+  const Surface& B = *fixed_[part].surface;
+  if (B.topology.vertex_flat[vertex] != 0) return 0;
+  NearFace near;
+  near.squared = reach_ * reach_;
+  near_held_.find_in_region(pose_in(part).inverse() * B.mesh->vertices[vertex], face_a, near);
+  if (near.face == kNone) return 0;
+  return start(part, subfeature(*held_, {FeatureKind::face, near.face}, near.mask), {FeatureKind::vertex, vertex});
+}
+
+int ContactSet::seed_rims(const FacePair& t) {
+  const Surface& B = *fixed_[t.part].surface;
+  const Pose X_BA = pose_in(t.part);
+  const auto rim = [](const Surface& s, std::uint32_t edge) { return s.topology.edges[edge].kind != EdgeKind::flat; };
+  int fresh = 0;
+  for (const std::uint32_t ea : held_->topology.face_edges[t.a]) {
+    if (!rim(*held_, ea)) continue;
+    const Feature a{FeatureKind::edge, ea};
+    Simplex sa = corners(*held_, a);
+    for (int k = 0; k < sa.size; ++k) sa.p[static_cast<std::size_t>(k)] = X_BA * sa.p[static_cast<std::size_t>(k)];
+    for (const std::uint32_t eb : B.topology.face_edges[t.b]) {
+      if (!rim(B, eb)) continue;
+      const Feature b{FeatureKind::edge, eb};
+      const ClosestPoints c = closest_points(sa, corners(B, b));
+      if (c.mask_a == 3 && c.mask_b == 3 && c.squared_distance <= reach_ * reach_) fresh += start(t.part, a, b);
+    }
+  }
+  return fresh;
+}
+
+int ContactSet::start(std::uint32_t part, Feature a, Feature b) {
+  if (known(part, a, b)) return 0;
+  return take(part, walk_to_minimum(*held_, *fixed_[part].surface, pose_in(part), a, b), false);
+}
+
+int ContactSet::take(std::uint32_t part, const FeaturePair& at, bool support) {
+  if (at.distance > reach_ || known(part, at.a, at.b) || next_.size() == next_.capacity()) return 0;
+  if (redundant(part, at.a, at.b) != support) return 0;
+  if (support && spoken_for(limit_of(part, at, 0), part, limits_, owners_)) return 0;
+  remember({part, at.a, at.b, 0, support, false});
+  add_limits(static_cast<std::uint32_t>(next_.size() - 1), at, limits_, owners_);
+  return 1;
+}
+
+bool ContactSet::spoken_for(const Contact& limit, std::uint32_t part, const std::vector<Contact>& limits,
+                            const std::vector<std::uint32_t>& owners) const {
+  const Vec3 u = limit.n.unitOrthogonal(), v = limit.n.cross(u);
+  Surrounded surrounded;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const Contact& c = limits[i];
+    if (owners[i] == kNone || next_[owners[i]].part != part || c.n.dot(limit.n) < kSameNormal) continue;
+    const Vec3 away = c.r - limit.r;
+    if (c.gap > limit.gap + kSlope * away.norm() + kSameGap) continue;
+    if (surrounded.add(away.dot(u), away.dot(v))) return true;
+  }
+  return false;
+}
+
+}  // namespace tegotae

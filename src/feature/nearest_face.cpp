@@ -1,0 +1,53 @@
+#include "feature/nearest_face.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace tegotae {
+namespace {
+
+// Boxes are stored in single precision, their axes are unit vectors up to rounding.
+constexpr double kBoxRounding = 1 - 1e-5;
+
+}  // namespace
+
+bool NearestFace::complete() const {
+  std::vector<std::pair<std::uint32_t, std::size_t>> stack{{0, 1}};
+  while (!stack.empty()) {
+    const auto [i, depth] = stack.back();
+    stack.pop_back();
+    if (depth > kDeepest) return false;
+    if (tree_->nodes()[i].leaf()) continue;
+    stack.push_back({tree_->nodes()[i].first, depth + 1});
+    stack.push_back({tree_->nodes()[i].first + 1, depth + 1});
+  }
+  return true;
+}
+
+void NearestFace::try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept {
+  if (surface_->topology.face_normals[face].isZero(0)) return;  // collapsed: its corners belong to others too
+  const ClosestPoints c =
+      closest_points({1, {p}}, {3, {tree_->corner(face, 0), tree_->corner(face, 1), tree_->corner(face, 2)}});
+  if (c.squared_distance < best.squared) best = {c.squared_distance, c.b, face, c.mask_b};
+}
+
+void NearestFace::find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept {
+  const std::vector<std::uint32_t>& of_face = surface_->regions.of_face;
+  const std::uint32_t region = of_face[face];
+  if (region == kNone)
+    try_face(p, face, best);
+  else
+    find(p, best, [&of_face, region](std::uint32_t f) { return of_face[f] == region; });
+}
+
+double NearestFace::squared_bound(const Vec3& p, const PatchNode& node) const noexcept {
+  const Vec3 d = p - tree_->origin() - node.center_vec();
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double out = std::max(0.0, std::abs(d.dot(node.axis_vec(i))) - double{node.half[i]});
+    sum += out * out;
+  }
+  return kBoxRounding * sum;
+}
+
+}  // namespace tegotae

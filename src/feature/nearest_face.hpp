@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "feature/simplex_distance.hpp"
+#include "narrowphase/patch_tree.hpp"
+
+namespace tegotae {
+
+/// A nearest point of a surface; file frame.
+struct NearFace {
+  double squared = 0;          ///< distance, m²
+  Vec3 point = Vec3::Zero();   ///< m
+  std::uint32_t face = kNone;  ///< that has the point; kNone: no face was near enough
+  unsigned mask = 0;           ///< corners of the face that carry the point (see ClosestPoints)
+};
+
+/// Nearest faces of a surface to points, by its hierarchy. Immutable.
+class NearestFace {
+ public:
+  NearestFace(std::shared_ptr<const Surface> surface, std::shared_ptr<const PatchTree> tree)
+      : surface_(std::move(surface)), tree_(std::move(tree)) {}
+
+  const Surface& surface() const { return *surface_; }
+  /// Whether find() looks at all of the hierarchy; of a deeper one it leaves out what lies deepest.
+  bool complete() const;
+
+  /// Replaces `best` by what is nearer to `p` among the faces that `wanted(face)` accepts. O(log triangles) where the
+  /// surface is near; never allocates.
+  template <typename Wanted>
+  void find(const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
+    struct Entry {
+      std::uint32_t node;
+      double bound;
+    };
+    std::array<Entry, kDeepest + 2> stack;
+    std::size_t top = 0;
+    stack[top++] = {0, 0};
+    while (top > 0) {
+      const Entry e = stack[--top];
+      if (e.bound >= best.squared) continue;
+      const PatchNode& node = tree_->nodes()[e.node];
+      if (node.leaf()) {
+        for (std::uint32_t i = 0; i < node.count; ++i)
+          if (const std::uint32_t face = tree_->order()[node.first + i]; wanted(face)) try_face(p, face, best);
+        continue;
+      }
+      Entry near{node.first, squared_bound(p, tree_->nodes()[node.first])};
+      Entry far{node.first + 1, squared_bound(p, tree_->nodes()[node.first + 1])};
+      if (near.bound > far.bound) std::swap(near, far);
+      if (top + 2 > stack.size()) continue;
+      stack[top++] = far;
+      stack[top++] = near;
+    }
+  }
+  /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
+  void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
+  /// Replaces `best` by the nearest point of one face if that is nearer.
+  void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
+
+ private:
+  static constexpr std::size_t kDeepest = 500;
+
+  double squared_bound(const Vec3& p, const PatchNode& node) const noexcept;
+
+  std::shared_ptr<const Surface> surface_;
+  std::shared_ptr<const PatchTree> tree_;
+};
+
+}  // namespace tegotae
