@@ -9,8 +9,10 @@
 #include <limits>
 
 #include "families/judges.hpp"
+#include "families/touch_line.hpp"
 #include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::test {
 namespace {
@@ -21,6 +23,8 @@ constexpr int kRestTicks = 100, kRestTicksRealTime = 300;
 // Poses asked of FCL in a case; where large surfaces mate it takes a second for one.
 constexpr int kAsked = 16, kAskedLarge = 6;
 constexpr int kLarge = 50000;  // triangles
+// Nearer than this (m) a part at the end is taken to touch.
+constexpr double kApart = 1e-7;
 
 double cpu_seconds() {
   timespec t;
@@ -48,7 +52,7 @@ struct Box {
 /// Committed poses that intersect, asked of FCL about an even sample.
 class Sample {
  public:
-  Sample(const Scene& scene, int ticks, int asked) : oracle_(scene), stride_(std::max(1, ticks / asked)) {}
+  Sample(const FclOracle& oracle, int ticks, int asked) : oracle_(oracle), stride_(std::max(1, ticks / asked)) {}
   void look(int tick, const Pose& X) {
     if (tick % stride_ != 0) return;
     ++asked_;
@@ -61,7 +65,7 @@ class Sample {
   }
 
  private:
-  FclOracle oracle_;
+  const FclOracle& oracle_;
   int stride_, asked_ = 0, intersecting_ = 0, first_ = 0;
 };
 
@@ -92,8 +96,9 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
   const CasePen pen(c, options.real_time ? kRestTicksRealTime : kRestTicks);
   const Box box(*c.scene.parts.back().mesh);
   const double before = cpu_seconds();
-  Judges judges(c, options, find_truth(c));
-  Sample sample(c.scene, pen.ticks(), result.triangles > kLarge ? kAskedLarge : kAsked);
+  const FclOracle oracle(c.scene);
+  Judges judges(c, options, find_truth(c, oracle));
+  Sample sample(oracle, pen.ticks(), result.triangles > kLarge ? kAskedLarge : kAsked);
   result.seconds_judges += cpu_seconds() - before;
   Trace trace(options.trace);
   const Vec3 middle = box.middle(), seat = c.seat * middle;
@@ -118,7 +123,7 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
     result.seconds_loop += done - start;
     result.seconds_judges += cpu_seconds() - done;
   }
-  result.findings = judges.findings();
+  result.findings = judges.findings(travel(oracle, loop.report().proxy.X, -c.approach, c.start, kApart));
   sample.judge(result.findings);
 }
 

@@ -68,6 +68,7 @@ void add_fixed(FamilyCase& c, std::shared_ptr<const TriangleMesh> mesh, const Po
 
 void add_held(FamilyCase& c, std::shared_ptr<const TriangleMesh> mesh) {
   c.scene.parts.push_back({"held", std::move(mesh), {c.seat.q, c.seat.p - c.start * c.approach}, true});
+  c.press += c.deepest();
   c.parameters.near = static_cast<int>(c.scene.parts.size()) - 1;
 }
 

@@ -1,6 +1,7 @@
 // Families of parts that mate over an area, each made from a few numbers.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ struct FamilyCase {
     double low, high;
   };
   std::optional<Range> rest;
+  /// The deepest place where the part may rest, m beyond `seat`: facets stand off their surfaces.
+  double deepest() const { return (rest ? std::max(rest->high, 0.0) : 0.0) + 4 * sagitta; }
 };
 
 /// All names.

@@ -40,7 +40,8 @@ inline std::shared_ptr<const TriangleMesh> welded(const TriangleMesh& mesh) {
 FamilyCase case_for(const FamilyParameters& parameters);
 
 void add_fixed(FamilyCase& c, std::shared_ptr<const TriangleMesh> mesh, const Pose& pose = {});
-/// Sets the scene's held part `start` before the seat: to be called last.
+/// Puts the held part `start` before the seat, and lets the pen press by as much beyond the deepest place where the
+/// part may rest: to be called last.
 void add_held(FamilyCase& c, std::shared_ptr<const TriangleMesh> mesh);
 
 /// Adds the surface `z` over a square of side `size` as `near` fixed parts (a square number of tiles, the next smaller

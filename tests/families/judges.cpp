@@ -24,14 +24,11 @@ std::string text(const char* format, double a) {
 
 }  // namespace
 
-Truth find_truth(const FamilyCase& c) {
+Truth find_truth(const FamilyCase& c, const FclOracle& oracle) {
   Truth t;
-  const TouchLine line(c.scene);
   const Pose from = {c.seat.q, c.seat.p - c.start * c.approach};
   const double most = c.start + c.press;
-  t.touch =
-      (c.guided ? line.travel_bisected(from, c.approach, most, kNear) : line.travel(from, c.approach, most, kNear)) -
-      c.start;
+  t.touch = (c.guided ? travel_bisected : travel)(oracle, from, c.approach, most, kNear) - c.start;
   t.slack = c.gain * (2 * kMostKept + kNear);
   t.margin = c.gain * (kMostContactGap + kNear);
   t.follows = kRounding * std::max(1.0, c.parameters.size);
@@ -44,7 +41,6 @@ Judges::Judges(const FamilyCase& c, const CaseOptions& options, const Truth& tru
 
 void Judges::look(const CaseTick& tick) {
   const bool free = tick.pen < truth_.touch - truth_.margin;
-  const bool follows = tick.off <= truth_.follows;
   if (tick.phase == Phase::approach && free) worst_free_ = std::max(worst_free_, tick.off);
   if (tick.phase == Phase::rest && tick.last) rest_ = tick.part;
   look_at_force(tick);
@@ -55,14 +51,21 @@ void Judges::look(const CaseTick& tick) {
     unexplained_ = 0;
   }
   if (tick.phase != Phase::lift && tick.phase != Phase::away) return;
+  // In real time a tick that the machine interrupts makes the part lag for as long.
+  const bool follows = tick.off <= (options_.real_time ? truth_.lag : truth_.follows);
   if (free) ++off_after_;
-  if (!follows) came_off_ = -1;
+  if (!follows && !options_.real_time) came_off_ = -1;
   if (free && follows && came_off_ < 0) came_off_ = off_after_;
   away_ = tick.off;
+  follows_ = follows;
+}
+
+double Judges::least_force() const {
+  return kForceShare * stiffness_ * (case_.press - std::max(truth_.touch, case_.deepest()));
 }
 
 void Judges::look_at_force(const CaseTick& tick) {
-  const double wanted = kForceShare * stiffness_ * (case_.press - truth_.touch);
+  const double wanted = least_force();
   if (tick.phase == Phase::rest && tick.last) rest_force_ = tick.force;
   if (tick.phase == Phase::settle && tick.last) settle_force_ = tick.force;
   if (!case_.flat || (tick.phase != Phase::slide && tick.phase != Phase::settle)) return;
@@ -84,7 +87,7 @@ void Judges::judge_rest(std::vector<Finding>& out) const {
 }
 
 void Judges::judge_force(std::vector<Finding>& out) const {
-  const double wanted = kForceShare * stiffness_ * (case_.press - truth_.touch);
+  const double wanted = least_force();
   const std::string expected = text("at least %.3f N", wanted);
   if (!(rest_force_ >= wanted)) out.push_back({"force at rest", text("%.3f N", rest_force_), expected});
   if (!(settle_force_ >= wanted))
@@ -95,7 +98,7 @@ void Judges::judge_force(std::vector<Finding>& out) const {
                    text("%.0f ticks in a row", most_without_force_), text("at most %.0f", most)});
 }
 
-std::vector<Finding> Judges::findings() const {
+std::vector<Finding> Judges::findings(double way) const {
   std::vector<Finding> out;
   if (!options_.real_time && worst_free_ > truth_.follows)
     out.push_back({"off the pen in free space by", text("%.6f mm", 1e3 * worst_free_), "0"});
@@ -104,8 +107,10 @@ std::vector<Finding> Judges::findings() const {
   if (most_unexplained_ > kMostUnexplained)
     out.push_back({"held back without a contact, " + text("up to %.3f mm, for", 1e3 * unexplained_off_),
                    text("%.0f ticks in a row", most_unexplained_), text("at most %.0f", kMostUnexplained)});
-  if (came_off_ < 0)
-    out.push_back({"lifted, the part does not follow; it is off by", text("%.3f mm", 1e3 * away_), "0"});
+  if (came_off_ < 0 || !follows_)
+    out.push_back(
+        {"lifted, the part does not follow; FCL finds " + text("%.3f mm free on the way, it is off by", 1e3 * way),
+         text("%.3f mm", 1e3 * away_), "0"});
   else if (came_off_ > kMostOff)
     out.push_back({"lifted, the part follows after", text("%.0f ticks", came_off_), text("at most %.0f", kMostOff)});
   return out;

@@ -6,7 +6,7 @@
 
 #include "families/case_pen.hpp"
 #include "families/case_run.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "fcl_oracle.hpp"
 
 namespace tegotae::test {
 
@@ -19,8 +19,7 @@ struct Truth {
   double lag = 0;      ///< a lag above this wants a contact that explains it
 };
 
-/// Asks FCL.
-Truth find_truth(const FamilyCase& c);
+Truth find_truth(const FamilyCase& c, const FclOracle& oracle);
 
 /// What one tick did.
 struct CaseTick {
@@ -38,11 +37,12 @@ class Judges {
   Judges(const FamilyCase& c, const CaseOptions& options, const Truth& truth);
 
   void look(const CaseTick& tick);
-  /// What was wrong, after the last tick.
-  std::vector<Finding> findings() const;
+  /// What was wrong, after the last tick. `way`: how far (m) the part could go back along its line from where it is.
+  std::vector<Finding> findings(double way) const;
 
  private:
   void look_at_force(const CaseTick& tick);
+  double least_force() const;
   void judge_rest(std::vector<Finding>& out) const;
   void judge_force(std::vector<Finding>& out) const;
 
@@ -59,6 +59,7 @@ class Judges {
   int off_after_ = -1;                              // ticks since the pen was free, while the part does not follow
   int came_off_ = -1;
   double away_ = 0;
+  bool follows_ = false;  // in the last tick
 };
 
 }  // namespace tegotae::test
