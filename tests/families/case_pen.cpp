@@ -1,12 +1,14 @@
 #include "families/case_pen.hpp"
 
-#include <utility>
 #include <vector>
+
+#include "families/family_tools.hpp"
 
 namespace tegotae::test {
 namespace {
 
-constexpr int kApproach = 120, kLeg = 50, kSettle = 60, kAway = 80;  // ticks
+constexpr int kApproach = 120, kLeg = 50, kJab = 15, kSettle = 60, kAway = 80;  // ticks
+constexpr int kJabs = 3;
 
 struct Plan {
   std::vector<StylusScript::Key> keys;
@@ -35,6 +37,12 @@ Plan plan(const FamilyCase& c, int rest_ticks) {
   go(kLeg, c.press, none, about + across);
   go(kLeg, c.press, none, -about);
   go(kLeg, c.press, none, none);
+  end_phase();
+  for (unsigned i = 0; i < kJabs; ++i) {
+    const Vec3 aside = (draw(c.parameters, 50 + i) - 0.5) * c.slide;
+    go(kJab, -c.start * draw(c.parameters, 60 + i), aside, none);
+    go(kJab, c.press, aside, none);
+  }
   end_phase();
   go(kSettle, c.press, none, none);
   end_phase();

@@ -1,4 +1,5 @@
-// The pen of a case: along its line to the seat and beyond, aside, turned, and back; the same case, the same pen.
+// The pen of a case: along its line to the seat and beyond, aside, turned, off and on again beside the line, and back;
+// the same case, the same pen.
 #pragma once
 
 #include "families/family.hpp"
@@ -6,7 +7,7 @@
 
 namespace tegotae::test {
 
-enum class Phase { approach, rest, slide, turn, settle, lift, away };
+enum class Phase { approach, rest, slide, turn, jabs, settle, lift, away };
 
 class CasePen {
  public:

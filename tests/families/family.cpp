@@ -54,7 +54,7 @@ FamilyCase case_for(const FamilyParameters& p) {
   c.parameters = p;
   c.approach = -Vec3::UnitZ();
   c.start = kStart * p.size;
-  c.press = std::max(kPress * p.size, kLeastPress);
+  c.press = std::max(kPress * p.size, kLeastPress) * (1 + 2 * draw(p, 6));
   const double side = 2 * M_PI * draw(p, 1);
   c.slide = kSlide * p.size * Vec3(std::cos(side), std::sin(side), 0);
   c.turn = kTurn;

@@ -97,6 +97,7 @@ FamilyCase taper_in_cone(const FamilyParameters& p) {
   add_fixed(c, made(revolved("conical hole", hole, segments)));
   c.seat.q = seeded_turn(p, 0);
   c.gain = 1 / std::sin(angle);
+  c.guided = true;
   c.sagitta = 2 * polygon_sagitta(radius(mouth), segments) / slope;
   c.rest = FamilyCase::Range{sunk, sunk};
   // It must be clear of the wall where it starts.
