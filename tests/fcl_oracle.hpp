@@ -1,8 +1,6 @@
-// FCL asked directly, with all poses in the world: whether the held part of a scene intersects a fixed one, and how far
-// it is from them.
+// FCL asked directly, with all poses in the world: whether the held part of a scene intersects a fixed one.
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,9 +15,6 @@ class FclOracle {
   ~FclOracle();
   /// Names of the fixed parts that the held part intersects at the pose `X_WF`.
   std::vector<std::string> intersecting(const Pose& X_WF) const;
-  /// Distance (m) of the held part at `X_WF` from the nearest fixed one, 0 when they intersect. Parts farther off than
-  /// `reach` (m) are left out; `reach` is returned when all are.
-  double distance(const Pose& X_WF, double reach = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct State;

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "families/judges.hpp"
-#include "families/touch_line.hpp"
 #include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -96,8 +95,9 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
   const CasePen pen(c, options.real_time ? kRestTicksRealTime : kRestTicks);
   const Box box(*c.scene.parts.back().mesh);
   const double before = cpu_seconds();
+  const TouchLine line(c.scene);
   const FclOracle oracle(c.scene);
-  Judges judges(c, options, find_truth(c, oracle));
+  Judges judges(c, options, find_truth(c, line));
   Sample sample(oracle, pen.ticks(), result.triangles > kLarge ? kAskedLarge : kAsked);
   result.seconds_judges += cpu_seconds() - before;
   Trace trace(options.trace);
@@ -123,7 +123,7 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
     result.seconds_loop += done - start;
     result.seconds_judges += cpu_seconds() - done;
   }
-  result.findings = judges.findings(travel(oracle, loop.report().proxy.X, -c.approach, c.start, kApart));
+  result.findings = judges.findings(line.travel(loop.report().proxy.X, -c.approach, c.start, kApart));
   sample.judge(result.findings);
 }
 

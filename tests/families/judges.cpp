@@ -24,11 +24,13 @@ std::string text(const char* format, double a) {
 
 }  // namespace
 
-Truth find_truth(const FamilyCase& c, const FclOracle& oracle) {
+Truth find_truth(const FamilyCase& c, const TouchLine& line) {
   Truth t;
   const Pose from = {c.seat.q, c.seat.p - c.start * c.approach};
   const double most = c.start + c.press;
-  t.touch = (c.guided ? travel_bisected : travel)(oracle, from, c.approach, most, kNear) - c.start;
+  t.touch =
+      (c.guided ? line.travel_bisected(from, c.approach, most, kNear) : line.travel(from, c.approach, most, kNear)) -
+      c.start;
   t.slack = c.gain * (2 * kMostKept + kNear);
   t.margin = c.gain * (kMostContactGap + kNear);
   t.follows = kRounding * std::max(1.0, c.parameters.size);

@@ -6,7 +6,7 @@
 
 #include "families/case_pen.hpp"
 #include "families/case_run.hpp"
-#include "fcl_oracle.hpp"
+#include "families/touch_line.hpp"
 
 namespace tegotae::test {
 
@@ -19,7 +19,7 @@ struct Truth {
   double lag = 0;      ///< a lag above this wants a contact that explains it
 };
 
-Truth find_truth(const FamilyCase& c, const FclOracle& oracle);
+Truth find_truth(const FamilyCase& c, const TouchLine& line);
 
 /// What one tick did.
 struct CaseTick {

@@ -1,7 +1,7 @@
 // The families' parts are what they claim to be, and each judge finds the fault that it is there for.
 #include "catch.hpp"
 #include "families/judges.hpp"
-#include "families/touch_line.hpp"
+#include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
 
@@ -65,13 +65,11 @@ TEST_CASE("parts of the families start free, and FCL finds touching where the cl
     for (const unsigned seed : {1U, 2U}) {
       const FamilyCase c = make_family(small(family, seed));
       CAPTURE(family, seed);
-      const FclOracle oracle(c.scene);
-      REQUIRE(oracle.distance(c.scene.parts.back().pose) > 0);
-      const Pose from = c.scene.parts.back().pose;
-      const double touch =
-          (c.guided ? travel_bisected : travel)(oracle, from, c.approach, c.start + c.press, 1e-6) - c.start;
+      const TouchLine line(c.scene);
+      REQUIRE(line.distance(c.scene.parts.back().pose) > 0);
+      const double touch = find_truth(c, line).touch;
       REQUIRE(c.rest);
-      const double slack = 4 * c.sagitta + 1e-6 * c.gain;
+      const double slack = 4 * c.sagitta + 2e-6 * c.gain;
       CHECK(touch >= c.rest->low - slack);
       CHECK(touch <= c.rest->high + slack);
       CHECK(touch < c.press);
@@ -136,15 +134,31 @@ TEST_CASE("judges find nothing where a part behaves, and each fault where it doe
   CHECK(found(judged({0, true, 0, 100000}), "lifted, the part does not follow"));
 }
 
+TEST_CASE("FCL sees where small parts intersect", "[families]") {
+  FamilyParameters p = small("ball", 2);
+  p.size = 0.002;
+  p.triangles = 20000;
+  const FamilyCase c = make_family(p);
+  const FclOracle oracle(c.scene);
+  CHECK(oracle.intersecting(c.scene.parts.back().pose).empty());
+  CHECK(oracle.intersecting({c.seat.q, c.seat.p + c.press * c.approach}).size() == 1);
+}
+
 TEST_CASE("FCL's line stops at an open sheet that it would cross, and at a seat that fits to the last bit",
           "[families]") {
   FamilyParameters p = small("wave", 1);
   p.clearance = 0;
   p.near = 1;
   const FamilyCase c = make_family(p);
-  const FclOracle oracle(c.scene);
+  const TouchLine line(c.scene);
   const Pose from = c.scene.parts.back().pose;
-  CHECK(travel(oracle, from, c.approach, 2 * c.start, 1e-8) == Approx(c.start).margin(2e-8));
+  CHECK(line.travel(from, c.approach, 2 * c.start, 1e-8) == Approx(c.start).margin(2e-8));
+  // Small triangles too: of 2 mm parts they have edges of 60 um.
+  p.size = 0.002;
+  const FamilyCase tiny = make_family(p);
+  const TouchLine tiny_line(tiny.scene);
+  CHECK(tiny_line.travel(tiny.scene.parts.back().pose, tiny.approach, 2 * tiny.start, 1e-8) ==
+        Approx(tiny.start).margin(2e-8));
   // Up and away nothing stops it.
-  CHECK(travel(oracle, from, -c.approach, 0.1, 1e-8) == 0.1);
+  CHECK(line.travel(from, -c.approach, 0.1, 1e-8) == 0.1);
 }
