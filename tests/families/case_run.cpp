@@ -123,7 +123,8 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
     result.seconds_loop += done - start;
     result.seconds_judges += cpu_seconds() - done;
   }
-  result.findings = judges.findings(line.travel(loop.report().proxy.X, -c.approach, c.start, kApart));
+  const double way = judges.came_off() ? 0 : line.travel(loop.report().proxy.X, -c.approach, c.start, kApart);
+  result.findings = judges.findings(way);
   sample.judge(result.findings);
 }
 

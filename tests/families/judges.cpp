@@ -109,7 +109,7 @@ std::vector<Finding> Judges::findings(double way) const {
   if (most_unexplained_ > kMostUnexplained)
     out.push_back({"held back without a contact, " + text("up to %.3f mm, for", 1e3 * unexplained_off_),
                    text("%.0f ticks in a row", most_unexplained_), text("at most %.0f", kMostUnexplained)});
-  if (came_off_ < 0 || !follows_)
+  if (!came_off())
     out.push_back(
         {"lifted, the part does not follow; FCL finds " + text("%.3f mm free on the way, it is off by", 1e3 * way),
          text("%.3f mm", 1e3 * away_), "0"});

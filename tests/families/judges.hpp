@@ -37,7 +37,9 @@ class Judges {
   Judges(const FamilyCase& c, const CaseOptions& options, const Truth& truth);
 
   void look(const CaseTick& tick);
-  /// What was wrong, after the last tick. `way`: how far (m) the part could go back along its line from where it is.
+  /// Whether the part follows the pen again, after the last tick.
+  bool came_off() const { return came_off_ >= 0 && follows_; }
+  /// What was wrong, after the last tick. `way`: how far (m) a part that does not follow could go back along its line.
   std::vector<Finding> findings(double way) const;
 
  private:
