@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "families/judges.hpp"
-#include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
@@ -51,11 +50,11 @@ struct Box {
 /// Committed poses that intersect, asked of FCL about an even sample.
 class Sample {
  public:
-  Sample(const FclOracle& oracle, int ticks, int asked) : oracle_(oracle), stride_(std::max(1, ticks / asked)) {}
+  Sample(const TouchLine& line, int ticks, int asked) : line_(line), stride_(std::max(1, ticks / asked)) {}
   void look(int tick, const Pose& X) {
     if (tick % stride_ != 0) return;
     ++asked_;
-    if (!oracle_.intersecting(X).empty() && ++intersecting_ == 1) first_ = tick;
+    if (line_.intersects(X) && ++intersecting_ == 1) first_ = tick;
   }
   void judge(std::vector<Finding>& out) const {
     if (intersecting_ == 0) return;
@@ -64,7 +63,7 @@ class Sample {
   }
 
  private:
-  const FclOracle& oracle_;
+  const TouchLine& line_;
   int stride_, asked_ = 0, intersecting_ = 0, first_ = 0;
 };
 
@@ -96,9 +95,8 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
   const Box box(*c.scene.parts.back().mesh);
   const double before = cpu_seconds();
   const TouchLine line(c.scene);
-  const FclOracle oracle(c.scene);
   Judges judges(c, options, find_truth(c, line));
-  Sample sample(oracle, pen.ticks(), result.triangles > kLarge ? kAskedLarge : kAsked);
+  Sample sample(line, pen.ticks(), result.triangles > kLarge ? kAskedLarge : kAsked);
   result.seconds_judges += cpu_seconds() - before;
   Trace trace(options.trace);
   const Vec3 middle = box.middle(), seat = c.seat * middle;

@@ -1,7 +1,6 @@
 // The families' parts are what they claim to be, and each judge finds the fault that it is there for.
 #include "catch.hpp"
 #include "families/judges.hpp"
-#include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
 
@@ -139,9 +138,9 @@ TEST_CASE("FCL sees where small parts intersect", "[families]") {
   p.size = 0.002;
   p.triangles = 20000;
   const FamilyCase c = make_family(p);
-  const FclOracle oracle(c.scene);
-  CHECK(oracle.intersecting(c.scene.parts.back().pose).empty());
-  CHECK(oracle.intersecting({c.seat.q, c.seat.p + c.press * c.approach}).size() == 1);
+  const TouchLine line(c.scene);
+  CHECK_FALSE(line.intersects(c.scene.parts.back().pose));
+  CHECK(line.intersects({c.seat.q, c.seat.p + c.press * c.approach}));
 }
 
 TEST_CASE("FCL's line stops at an open sheet that it would cross, and at a seat that fits to the last bit",

@@ -111,7 +111,9 @@ double TouchLine::travel(const Pose& from, const Vec3& direction, double most, d
 }
 
 bool TouchLine::intersects(const Pose& X) const {
+  const Vec3 center = X * state_->held_center;
   for (const State::Body& body : state_->fixed) {
+    if ((body.center - center).norm() > body.radius + state_->held_radius) continue;
     fcl::CollisionRequestd any;
     fcl::CollisionResultd hit;
     if (fcl::collide(state_->held.get(), transform(X), body.model.get(), body.pose, any, hit) > 0) return true;

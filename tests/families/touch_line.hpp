@@ -25,8 +25,10 @@ class TouchLine {
   /// on, where the parts intersect if they do anywhere; to `near` (m).
   double travel_bisected(const Pose& from, const Vec3& direction, double most, double near) const;
 
- private:
+  /// Whether the held part at `X` intersects a fixed one.
   bool intersects(const Pose& X) const;
+
+ private:
   struct State;
   std::unique_ptr<State> state_;
 };
