@@ -121,6 +121,7 @@ FamilyCase dovetail(const FamilyParameters& p) {
   const Point low(half_width(bottom), -bottom), high(half_width(-up), up);
   c.start = 0.1 * height;
   c.gain = 2;
+  c.guided = true;
   c.slide = 0.1 * p.size * Vec3::UnitY();
   c.flat = true;
   c.rest = FamilyCase::Range{2 * p.clearance, 2 * p.clearance};
