@@ -1,5 +1,6 @@
 #include "bench/bench.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <set>
 
@@ -64,8 +65,14 @@ SceneFigures measure_scene(const std::string& name, const BenchOptions& options,
     progress.say(name + ": fast");
     f.fast = measure_loop(scene, loop, kFastSpeed, options.quick ? 1 : kFastRounds, trace);
   }
+  if (scene.seat) {
+    progress.say(name + ": seat");
+    HapticLoop loop(scene.scene);
+    f.seat = measure_seat(scene, loop, trace);
+    f.seat_targets = scene.seat->targets;
+  }
   progress.say(name + ": FCL");
-  f.fcl = measure_fcl(scene, center, trace, jams);
+  f.fcl = measure_fcl(scene, center, trace, std::min(jams, scene.most_fcl_poses));
   progress.say(name + ": checking");
   f.checked = trace.checked;
   f.intersecting = trace.committed.count_intersecting(scene.scene);

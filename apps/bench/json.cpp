@@ -24,6 +24,17 @@ void add(const LoopFigures& f, Json& j) {
   j["fifo"] = f.fifo;
 }
 
+Json to_json(const SeatFigures& f) {
+  return {{"rest_us", apps::to_json(f.rest_us)},
+          {"moving_us", apps::to_json(f.moving_us)},
+          {"arrival_ms", json_number(f.arrival_ms)},
+          {"above_seat_m", json_number(f.above_seat)},
+          {"slide_mm_s", json_number(f.slide_mm_s)},
+          {"off_ms", json_number(f.off_ms)},
+          {"cut", f.cut},
+          {"ticks", f.ticks}};
+}
+
 Json to_json(const SceneFigures& s) {
   Json j;
   j["scene"] = s.scene;
@@ -38,6 +49,7 @@ Json to_json(const SceneFigures& s) {
   j["bytes_per_triangle"] = s.build.bytes_per_triangle;
   j["checked"] = s.checked;
   j["intersecting"] = s.intersecting;
+  if (s.seat) j["seat"] = to_json(*s.seat);
   for (const BudgetFigures& b : s.budgets) {
     Json row;
     row["budget_us"] = 1e6 * b.budget;

@@ -10,8 +10,6 @@ namespace tegotae::bench {
 namespace {
 
 constexpr double kPeriod = 1e-3;  // s
-// Poses that are kept for the checks; FCL takes milliseconds for each on the largest scenes.
-constexpr std::size_t kKeptPoses = 400;
 
 }  // namespace
 
@@ -21,7 +19,7 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
   for (int i = 0; i < rounds; ++i) scene.add_round(i, way);
   const StylusScript script(timed(way, speed));
   const auto ticks = static_cast<std::size_t>(std::ceil(script.end() / kPeriod)) + 1;
-  const std::size_t stride = std::max<std::size_t>(ticks / kKeptPoses, 1);
+  const std::size_t stride = std::max<std::size_t>(ticks / static_cast<std::size_t>(scene.most_fcl_poses), 1);
 
   LoopFigures f;
   std::vector<std::int64_t> wall, cpu;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/measure_fcl.hpp"
 #include "bench/measure_loop.hpp"
 #include "bench/measure_lp.hpp"
+#include "bench/measure_seat.hpp"
 
 namespace tegotae::bench {
 
@@ -38,6 +40,8 @@ struct SceneFigures {
   std::int64_t checked = 0;       ///< committed poses that FCL was asked about after the runs
   std::int64_t intersecting = 0;  ///< of them
   std::vector<BudgetFigures> budgets;
+  std::optional<SeatFigures> seat;  ///< of a scene with a seat
+  SeatTargets seat_targets{};
 };
 
 struct Results {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <random>
 
+#include "bench/seat_scenes.hpp"
 #include "bench/way.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
@@ -12,8 +13,6 @@ namespace tegotae::bench {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// Rounds of a pen differ by this turn (rad), the golden angle: no two alike.
-constexpr double kRoundTurn = 2.39996323;
 
 /// Divisions around and along a cylindrical wall.
 struct Divisions {
@@ -39,16 +38,6 @@ const PegCase kPegCases[] = {
 };
 const char* const kKnots = "knots100k";
 const char* const kParts = "parts1000";
-
-std::shared_ptr<const TriangleMesh> shared(TriangleMesh mesh) {
-  return std::make_shared<const TriangleMesh>(std::move(mesh));
-}
-
-void add_part(BenchScene& bench, const std::string& name, std::shared_ptr<const TriangleMesh> mesh, const Pose& pose,
-              bool held) {
-  (held ? bench.held_triangles : bench.fixed_triangles) += mesh->triangles.size();
-  bench.scene.parts.push_back({name, std::move(mesh), pose, held});
-}
 
 /// Poses of a peg tilted in its hole so that its tip's edge on one side and the hole's rim on the other overlap by
 /// about 0 to `most` (m): over a touching length l, the tilt takes l/2 · tilt of the radial clearance on each side.
@@ -134,12 +123,19 @@ BenchScene make_parts() {
 
 }  // namespace
 
+void add_part(BenchScene& bench, const std::string& name, std::shared_ptr<const TriangleMesh> mesh, const Pose& pose,
+              bool held) {
+  (held ? bench.held_triangles : bench.fixed_triangles) += mesh->triangles.size();
+  bench.scene.parts.push_back({name, std::move(mesh), pose, held});
+}
+
 const std::vector<std::string>& scene_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const PegCase& c : kPegCases) all.emplace_back(c.name);
     all.emplace_back(kKnots);
     all.emplace_back(kParts);
+    for (const std::string& name : seat_scene_names()) all.push_back(name);
     return all;
   }();
   return names;
@@ -149,6 +145,11 @@ BenchScene make_scene(const std::string& name, int jams) {
   BenchScene bench;
   bool known = name == kKnots || name == kParts;
   if (known) bench = name == kKnots ? make_knots() : make_parts();
+  for (const std::string& seated : seat_scene_names()) {
+    if (name != seated) continue;
+    bench = make_seat_scene(name);
+    known = true;
+  }
   for (const PegCase& c : kPegCases) {
     if (name != c.name) continue;
     bench = make_peg_scene(c, jams);

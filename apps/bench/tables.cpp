@@ -93,6 +93,33 @@ std::string checks_table(const Results& r) {
   return text;
 }
 
+std::string seat_table(const Results& r) {
+  std::string text;
+  for (const SceneFigures& s : r.rows) {
+    if (!s.seat) continue;
+    const SeatFigures& f = *s.seat;
+    const SeatTargets& t = s.seat_targets;
+    std::string missed;
+    if (!(f.rest_us.p50 <= t.rest_p50_us)) missed += "rest ";
+    if (!(f.arrival_ms <= t.arrival_ms)) missed += "arrival ";
+    if (t.slide_mm_s > 0 && !(f.slide_mm_s >= t.slide_mm_s)) missed += "slide ";
+    if (!(f.off_ms <= t.off_ms)) missed += "off ";
+    text += format("| `%s` | %s / %s (%s) | %s / %s | %s (%s) | %.3f | %s (%s) | %s (%s) | %zu of %zu | ",
+                   s.scene.c_str(), number(f.rest_us.p50).c_str(), number(f.rest_us.p999).c_str(),
+                   number(t.rest_p50_us).c_str(), number(f.moving_us.p50).c_str(), number(f.moving_us.p999).c_str(),
+                   number(f.arrival_ms).c_str(), number(t.arrival_ms).c_str(), 1e3 * f.above_seat,
+                   number(f.slide_mm_s).c_str(), t.slide_mm_s > 0 ? number(t.slide_mm_s).c_str() : "–",
+                   number(f.off_ms).c_str(), number(t.off_ms).c_str(), f.cut, f.ticks);
+    text += missed.empty() ? "met |\n" : "**missed:** " + missed + "|\n";
+  }
+  if (text.empty()) return text;
+  return "\n### On a seat\n\n| scene | at rest: median / p99.9 (target of the median), µs | moving in contact: median "
+         "/ "
+         "p99.9, µs | arrives after the pen (target), ms | rests over its seat, mm | slides (target), mm/s | off after "
+         "the pen (target), ms | ticks cut | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
+         text;
+}
+
 std::string growth_line(const Results& r) {
   double first = NAN, last = NAN;
   for (const SceneFigures& s : r.rows) {
@@ -148,8 +175,8 @@ std::string tables(const Results& r) {
   std::string text;
   if (!r.rows.empty())
     text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
-            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + "\n### Hierarchies and checks\n\n" +
-            checks_table(r);
+            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + seat_table(r) +
+            "\n### Hierarchies and checks\n\n" + checks_table(r);
   return text + budget_table(r) + lp_table(r);
 }
 

@@ -98,4 +98,20 @@ void add_grid_round(const Vec3& start, double pitch, double azimuth, std::vector
   }
 }
 
+void add_seat_round(const Vec3& seat, double above, double below, double slide, double azimuth,
+                    std::vector<Pose>& way) {
+  struct Stop {
+    double z;      // over the seat
+    double aside;  // of `slide`
+    double twist;  // deg
+  };
+  const Stop stops[] = {{above, 0, 0}, {-below, 0, 0}, {-below, 1, 0}, {-below, 0, 0}, {-below, 0, 2}, {-below, 0, 0}};
+  constexpr int kPresses = 6;
+  for (int i = 0; i < kPresses; ++i) {
+    const Vec3 aside = about_z(azimuth + 2 * 180 * kDeg * i / kPresses) * Vec3(slide, 0, 0);
+    for (const Stop& s : stops) way.push_back({about_z(s.twist * kDeg), seat + Vec3(0, 0, s.z) + s.aside * aside});
+  }
+  way.push_back({Quat::Identity(), seat + Vec3(0, 0, above)});
+}
+
 }  // namespace tegotae::bench

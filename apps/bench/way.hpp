@@ -30,4 +30,9 @@ void add_knot_round(double height, double azimuth, std::vector<Pose>& way);
 /// against a column, along it, tilted until it jams between two parts, turned there, and back.
 void add_grid_round(const Vec3& start, double pitch, double azimuth, std::vector<Pose>& way);
 
+/// A round of a part that comes straight down on its seat, its file frame to `seat` (m, not turned) from `above` over
+/// it to `below` under it, is dragged by `slide` (m), turned a little, and lifted; six times, each time dragged to
+/// another side.
+void add_seat_round(const Vec3& seat, double above, double below, double slide, double azimuth, std::vector<Pose>& way);
+
 }  // namespace tegotae::bench

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "models/mesh_builder.hpp"
+#include "models/revolved.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 
@@ -19,65 +21,6 @@ void require(bool good, const std::string& what) {
   if (!good) throw Error(what);
 }
 
-using Ring = std::vector<std::uint32_t>;
-
-/// Collects rings of vertices and the bands between them.
-class Builder {
- public:
-  explicit Builder(std::string name) { mesh_.name = std::move(name); }
-
-  std::uint32_t vertex(const Vec3& p) {
-    mesh_.vertices.push_back(p);
-    return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
-  }
-  /// A regular polygon of corner radius `r` at height `z`, counter-clockwise from above.
-  Ring ring(double r, double z, int segments) {
-    Ring out;
-    for (int i = 0; i < segments; ++i) {
-      const double angle = 2 * kPi * i / segments;
-      out.push_back(vertex({r * std::cos(angle), r * std::sin(angle), z}));
-    }
-    return out;
-  }
-  void face(std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh_.triangles.push_back({a, b, c}); }
-  /// The band from `a` to `b`, facing right of the direction a -> b as seen along the ring.
-  void band(const Ring& a, const Ring& b) {
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t j = (i + 1) % a.size();
-      face(a[i], a[j], b[j]);
-      face(a[i], b[j], b[i]);
-    }
-  }
-  /// The disk of `a` around the vertex `center`, counter-clockwise where `a` is.
-  void disk(const Ring& a, std::uint32_t center) {
-    for (std::size_t i = 0; i < a.size(); ++i) face(a[i], a[(i + 1) % a.size()], center);
-  }
-  TriangleMesh take() { return std::move(mesh_); }
-
- private:
-  TriangleMesh mesh_;
-};
-
-struct ProfilePoint {
-  double r, z;
-};
-
-/// The solid between the axis and `profile`, which runs counter-clockwise in the (r, z) half plane; its first and last
-/// points are rings closed by disks at their height.
-TriangleMesh revolve(const std::string& name, const std::vector<ProfilePoint>& profile, int segments,
-                     double first_center, double last_center) {
-  Builder b(name);
-  Ring ring = b.ring(profile.front().r, profile.front().z, segments);
-  b.disk(Ring(ring.rbegin(), ring.rend()), b.vertex({0, 0, first_center}));
-  for (std::size_t i = 1; i < profile.size(); ++i) {
-    Ring upper = b.ring(profile[i].r, profile[i].z, segments);
-    b.band(ring, upper);
-    ring = std::move(upper);
-  }
-  b.disk(ring, b.vertex({0, 0, last_center}));
-  return b.take();
-}
-
 double between(double a, double b, int i, int n) {
   return i == n ? b : a + (b - a) * i / n;
 }
@@ -88,12 +31,13 @@ TriangleMesh peg(const Peg& p) {
   const double r = p.diameter / 2;
   require(p.segments >= 3 && p.rings >= 1, "a peg needs at least 3 segments and 1 ring");
   require(p.chamfer >= 0 && p.chamfer < r && p.chamfer < p.length, "a peg's chamfer must be smaller than the peg");
-  std::vector<ProfilePoint> profile;
+  std::vector<ProfilePoint> profile = {{0, -p.length / 2}};
   if (p.chamfer > 0) profile.push_back({r - p.chamfer, -p.length / 2});
   for (int i = 0; i <= p.rings; ++i) {
     profile.push_back({r, between(-p.length / 2 + p.chamfer, p.length / 2, i, p.rings)});
   }
-  return revolve("peg", profile, p.segments, -p.length / 2, p.length / 2);
+  profile.push_back({0, p.length / 2});
+  return revolved("peg", profile, p.segments);
 }
 
 TriangleMesh cylinder(double diameter, double length, int segments, int rings) {
@@ -104,12 +48,13 @@ TriangleMesh cylinder(double diameter, double length, int segments, int rings) {
 
 TriangleMesh sphere(double diameter, int segments, int rings) {
   require(diameter > 0 && segments >= 3 && rings >= 2, "a sphere needs a size, 3 segments and 2 rings");
-  std::vector<ProfilePoint> profile;
+  std::vector<ProfilePoint> profile = {{0, -diameter / 2}};
   for (int i = 1; i < rings; ++i) {
     const double angle = kPi * i / rings;
     profile.push_back({diameter / 2 * std::sin(angle), -diameter / 2 * std::cos(angle)});
   }
-  return revolve("sphere", profile, segments, -diameter / 2, diameter / 2);
+  profile.push_back({0, diameter / 2});
+  return revolved("sphere", profile, segments);
 }
 
 TriangleMesh block_with_hole(const Block& p) {
@@ -123,7 +68,7 @@ TriangleMesh block_with_hole(const Block& p) {
   require(p.chamfer >= 0 && p.chamfer < -floor, "the chamfer is deeper than the hole");
   require(p.through || (p.depth > 0 && p.depth < p.size.z()), "a blind hole must be less deep than its block");
 
-  Builder b("block with hole");
+  MeshBuilder b("block with hole");
   // The outline has a corner for each of the hole's, straight outward (in the square's own measure, so that the eighth
   // ones are the block's corners).
   const auto outline = [&](double z) {
@@ -179,7 +124,7 @@ TriangleMesh block_with_hole(const Block& p) {
 
 TriangleMesh box(const Vec3& size, const std::array<int, 3>& parts) {
   require(size.minCoeff() > 0 && parts[0] > 0 && parts[1] > 0 && parts[2] > 0, "a box needs a size in all directions");
-  Builder b("box");
+  MeshBuilder b("box");
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (const int sign : {-1, 1}) {

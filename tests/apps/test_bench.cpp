@@ -67,6 +67,24 @@ TEST_CASE("the smallest scene gives a whole report", "[bench]") {
   CHECK(read_text(folder / "page.svg").find("<svg ") == 0);
 }
 
+TEST_CASE("a scene with a seat says how the part comes to it, slides on it, and leaves it", "[bench]") {
+  const Output o = run_program("tegotae", "bench --quick --json --scene cover200");
+  INFO("stderr: " << o.err);
+  REQUIRE(o.code == 0);
+  const json row = json::parse(o.out).at("rows").at(0);
+  CHECK(row.at("triangles") == json({12, 2400}));
+  CHECK(row.at("checked").get<int>() > 100);
+  CHECK(row.at("intersecting") == 0);
+  const json& seat = row.at("seat");
+  check_ordered(seat.at("rest_us"), {"p50", "p99", "p999", "max"});
+  CHECK(seat.at("cut").get<int>() <= seat.at("ticks").get<int>());
+  CHECK(seat.at("above_seat_m").get<double>() >= 0);
+  for (const char* key : {"arrival_ms", "slide_mm_s", "off_ms"}) {
+    INFO(key);
+    CHECK((seat.at(key).is_null() || seat.at(key).get<double>() >= 0));
+  }
+}
+
 TEST_CASE("an unknown scene is bad usage", "[bench]") {
   const Output o = run_program("tegotae", "bench --scene 3k/3k");
   CHECK(o.code == 2);
