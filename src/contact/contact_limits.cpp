@@ -79,11 +79,14 @@ void ContactSet::add_reflex_limits(std::uint32_t pair, const FeaturePair& at, st
   const std::uint32_t face = corner_of_a ? at.b.index : at.a.index;
   const Pose X_BA = B.X_WB.inverse() * X_;
   const Vec3 corner = corner_of_a ? at.p_a : X_BA.inverse() * at.p_b;  // in the frame of `s`
+  // Seen from the back of an open surface its convex edges are the concave ones.
+  const Vec3& own = s.topology.face_normals[face];
+  const double side = own.dot(corner - s.mesh->vertices[s.mesh->triangles[face][0]]) < 0 ? -1 : 1;
   for (const std::uint32_t e : s.topology.face_edges[face]) {
     const Topology::Edge& edge = s.topology.edges[e];
-    if (edge.kind != EdgeKind::concave) continue;
+    if (edge.kind != (side > 0 ? EdgeKind::concave : EdgeKind::convex)) continue;
     const std::uint32_t other = edge.f[0] == face ? edge.f[1] : edge.f[0];
-    const Vec3& n = s.topology.face_normals[other];
+    const Vec3 n = side * s.topology.face_normals[other];
     const double height = n.dot(corner - s.mesh->vertices[edge.v[0]]);
     if (n.isZero() || height < 0 || height > reach_) continue;
     const auto& t = s.mesh->triangles[other];
