@@ -18,8 +18,8 @@ constexpr double kWantedShare = 0.3, kWantedMotions = 4;
 constexpr double kKnownShare = 0.3;
 /// Cells looked at between two looks at the clock; nodes of B that count as one search.
 constexpr int kClockStride = 32, kVisitsPerSearch = 8;
-/// Cells that allow less than this share of the motion are searched first.
-constexpr double kFirstShare = 0.25;
+/// So many cells that allow least of the motion are looked at first. When they find what blocks, the rest may wait.
+constexpr std::ptrdiff_t kFirst = 64;
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
 constexpr int kFewestRaises = 4, kSearchesPerRaise = 3, kMostLooks = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the
@@ -46,7 +46,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       asked_(fixed_.size(), 0),
       sweeps_(fixed_.size()),
       stamped_(fixed_.size(), 0),
-      failures_(capacity) {
+      due_(capacity) {
   for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
   stack_.reserve(capacity);
   freed_.reserve(capacity);
@@ -55,7 +55,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 
 std::size_t CellFront::bytes() const {
   return nodes_.size() * sizeof(Node) +
-         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + sizeof(Failure));
+         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + sizeof(Due));
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -77,22 +77,8 @@ CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const Wor
   blocking_.clear();
   visits_at_start_ = search_.visits();
   start_motion(X, d);
-  report_.exhausted = !collect_failures();
-  const auto end = failures_.begin() + static_cast<std::ptrdiff_t>(failure_count_);
-  std::partition(failures_.begin(), end, [](const Failure& f) { return f.share < kFirstShare; });
-  bool done = report_.exhausted;
-  for (auto f = failures_.begin(); f != end; ++f) {
-    // A cell for the piece and its neighbors may have taken its place.
-    if (nodes_[f->node].failed != call_) continue;
-    if (!done && f->far && climb(f->node)) continue;
-    const Outcome outcome = done ? Outcome::out_of_work : settle(f->node);
-    if (outcome == Outcome::free) continue;
-    report_.share = std::min(report_.share, f->share);
-    if (done) continue;
-    done = outcome == Outcome::out_of_work || blocking_.size() >= limit_.blocking ||
-           blocking_.size() == blocking_.capacity();
-    report_.exhausted |= outcome == Outcome::out_of_work;
-  }
+  collect_due();
+  settle_due();
   report_.searches = static_cast<int>((search_.visits() - visits_at_start_) / kVisitsPerSearch);
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
@@ -119,6 +105,7 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   motion_ = std::max(kMotionFades * motion_, carried);
   need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
   report_.share = 1;
+  report_.settled = true;
 }
 
 const Sweep& CellFront::sweep_of(std::uint32_t part) {
@@ -176,49 +163,59 @@ double CellFront::wanted(const MovingHull& a) const {
   return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.radius});
 }
 
-bool CellFront::collect_failures() {
-  failure_count_ = 0;
-  const double bound = travel_ + need_, floor = clearance_ + kLengthSlack;
-  bool in_time = true;
-  int looked = 0;
+void CellFront::collect_due() {
+  due_count_ = 0;
+  const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
   for (std::uint32_t slot = 0; slot < count_; ++slot) {
     if (!(expiry_[slot] < bound)) continue;
-    if (asked_[nodes_[slots_[slot].node].part] != now_) continue;
-    if (in_time && ++looked % kClockStride == 0 && past(limit_.deadline_ns)) in_time = false;
-    if (in_time && look_at(slot)) continue;
-    const double left = expiry_[slot] - travel_ - floor;
-    double share = left > 0 ? std::min(1.0, left / (need_ - floor)) : 0;
-    if (in_time) {
-      failures_[failure_count_ - 1].share = std::max(failures_[failure_count_ - 1].share, share);
-    } else {
-      report_.share = std::min(report_.share, share);
+    const std::uint32_t id = slots_[slot].node;
+    if (asked_[nodes_[id].part] != now_) continue;
+    nodes_[id].due = call_;
+    due_[due_count_++] = {id, std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0)};
+  }
+}
+
+void CellFront::settle_due() {
+  const auto begin = due_.begin(), end = begin + static_cast<std::ptrdiff_t>(due_count_);
+  const auto first = begin + std::min<std::ptrdiff_t>(kFirst, end - begin);
+  // Those that allow least come first: where the part touches something they find it, and the others need no look.
+  const auto less = [](const Due& x, const Due& y) { return x.share < y.share; };
+  std::nth_element(begin, first, end, less);
+  int looked = 0;
+  for (auto it = begin; it != end; ++it) {
+    if (it == first && !blocking_.empty()) report_.settled = false;
+    if (report_.settled && ++looked % kClockStride == 0 && out_of_work(true)) {
+      report_.settled = false;
+      report_.exhausted = true;
     }
+    // A cell for the piece and its neighbors may have taken its place.
+    if (nodes_[it->node].due != call_) continue;
+    if (!report_.settled) {
+      report_.share = std::min(report_.share, it->share);
+      continue;
+    }
+    const Look look = look_at(it->node);
+    if (look.free || (look.far && climb(it->node))) continue;
+    const Outcome outcome = settle(it->node);
+    if (outcome == Outcome::free) continue;
+    report_.share = std::min(report_.share, std::max(it->share, look.share));
+    if (outcome == Outcome::out_of_work) report_.exhausted = true;
+    report_.settled =
+        outcome == Outcome::blocked && blocking_.size() < limit_.blocking && blocking_.size() < blocking_.capacity();
   }
-  return in_time;
 }
 
-/// Whether the cell holds for the motion; it is a failure otherwise, with the share that its planes allow.
-bool CellFront::look_at(std::uint32_t slot) {
-  Slot& s = slots_[slot];
-  const Node& node = nodes_[s.node];
+CellFront::Look CellFront::look_at(std::uint32_t id) {
+  const Node& node = nodes_[id];
+  Slot& s = slots_[node.slot];
+  const double clear = s.clear_until - travel_, floor = clearance_ + kLengthSlack;
+  if (!(clear > floor)) return {false, true, 0};
   const Sweep& sweep = sweep_of(node.part);
-  const double clear = s.clear_until - travel_;
-  if (!(clear > 0)) {
-    fail(slot, true, 0);
-    return false;
-  }
   const CellVerdict v = check_cell(s.cell, hull(node, sweep), sweep);
-  expiry_[slot] = std::max(expiry_[slot], std::min(s.clear_until, travel_ + kUnit * v.margin));
-  if (v.free && clear >= need_) return true;
-  const double floor = clearance_ + kLengthSlack;
-  const double far = clear > floor ? std::min(1.0, (clear - floor) / (need_ - floor)) : 0;
-  fail(slot, v.free, std::min(v.share, far));
-  return false;
-}
-
-void CellFront::fail(std::uint32_t slot, bool far, double share) {
-  nodes_[slots_[slot].node].failed = call_;
-  failures_[failure_count_++] = {slots_[slot].node, far, share};
+  double& expiry = expiry_[node.slot];
+  expiry = std::max(expiry, std::min(s.clear_until, travel_ + kUnit * v.margin));
+  const double far = clear >= need_ ? 1 : (clear - floor) / (need_ - floor);
+  return {v.free && clear >= need_, v.free, std::min(v.share, far)};
 }
 
 bool CellFront::out_of_work(bool look_at_clock) {
@@ -333,13 +330,13 @@ bool CellFront::split(std::uint32_t id) {
   leave(p.slot);
   nodes_[id].child = child;
   nodes_[id].children = static_cast<std::uint8_t>(children);
-  nodes_[id].failed = 0;
+  nodes_[id].due = 0;
   for (std::uint32_t k = 0; k < children; ++k) {
     Node c = p;
     c.parent = id;
     c.children = 0;
     c.retry = travel_;
-    c.failed = 0;
+    c.due = 0;
     const std::uint32_t place = whole.leaf() ? tree.order()[whole.first + k] : whole.first + k;
     (of_a ? c.a : c.b) = place;
     (of_a ? c.face_a : c.face_b) = whole.leaf();
@@ -403,7 +400,7 @@ bool CellFront::merge(std::uint32_t id, double enough) {
   while (!stack_.empty()) {
     Node& p = nodes_[stack_.back()];
     stack_.pop_back();
-    p.failed = 0;
+    p.due = 0;
     if (p.children == 0) {
       leave(p.slot);
       continue;

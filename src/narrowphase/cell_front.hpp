@@ -63,25 +63,30 @@ class CellFront {
     std::uint32_t slot;           ///< of its cell, while it has no children
     std::uint8_t children;
     bool face_a, face_b;
-    double retry;          ///< travel before which the children are not put together again
-    std::uint64_t failed;  ///< the call in which its cell did not allow the motion
+    double retry;       ///< travel before which the children are not put together again
+    std::uint64_t due;  ///< the call whose motion uses up what its cell is known to last for
   };
   struct Slot {
     std::uint32_t node;
     double clear_until;  ///< travel up to which what no plane stands for does not matter
     FreeCell cell;
   };
-  struct Failure {
+  struct Due {
     std::uint32_t node;
-    bool far;      ///< what failed is `clear`, not a plane
-    double share;  ///< of the motion that its cell still allows
+    double share;  ///< of the motion that its cell allows without a look at it
+  };
+  struct Look {
+    bool free;     ///< the cell holds for the whole motion
+    bool far;      ///< its planes do
+    double share;  ///< of the motion for which it holds
   };
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
   void start_motion(const Pose& X, const Displacement& d);
   const Sweep& sweep_of(std::uint32_t part);
-  bool collect_failures();
-  bool look_at(std::uint32_t slot);
+  void collect_due();
+  void settle_due();
+  Look look_at(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id);
   void keep(std::uint32_t id);
@@ -95,7 +100,6 @@ class CellFront {
   bool try_raise(std::uint32_t id);
   bool climb(std::uint32_t id);
   bool merge(std::uint32_t id, double enough);
-  void fail(std::uint32_t slot, bool far, double share);
   bool out_of_work(bool look_at_clock);
   MovingHull hull(const Node& node, const Sweep& sweep) const;
   double radius(const Node& node) const;
@@ -132,8 +136,8 @@ class CellFront {
   CellSearch search_;
   FreeCell found_;
   std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
-  std::vector<Failure> failures_;
-  std::size_t failure_count_ = 0;
+  std::vector<Due> due_;
+  std::size_t due_count_ = 0;
   std::vector<std::uint32_t> stack_, freed_;
   std::vector<FacePair> blocking_;
   std::uint32_t cursor_ = 0;

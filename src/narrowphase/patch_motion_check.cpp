@@ -15,6 +15,8 @@ constexpr std::size_t kMostFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
+// A front that runs out of time so often in a row has more pairs than a tick can look at.
+constexpr std::uint32_t kMostCuts = 6;
 // Cells (about 500 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kFewestCells = 1u << 13;
@@ -54,12 +56,14 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);
   part_of_.assign(fronts, kNobody);
   used_.assign(fronts, 0);
+  cuts_.assign(fronts, 0);
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kFewestCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMostBlocking);
   in_cells_.assign(fixed.size(), g_engine != nullptr);
+  seen_.assign(fixed.size(), 0);
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size());
 }
@@ -76,6 +80,7 @@ void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   part_of_[front] = part;
   front_of_[part] = front;
   used_[front] = now_;
+  cuts_[front] = 0;
   fronts_[front].attach(*held_, center_, *fixed_[part]);
 }
 
@@ -96,6 +101,8 @@ void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_
   for (const std::uint32_t part : near)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
   for (const std::uint32_t part : near) {
+    if (in_cells_[part] != 0 && seen_[part] + 1 < now_) in_cells_[part] = g_engine != nullptr;
+    seen_[part] = now_;
     if (front_of_[part] == kNobody && !in_cells_[part]) take_front(part);
     (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
   }
@@ -116,7 +123,9 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   bool moved = false;
   for (const std::uint32_t part : near_fronts_) {
     const CertifyReport report = ask_front(part, X, d, clearance, limit_);
-    if (report.overflow && report.status == CertifyStatus::cut) {
+    std::uint32_t& cuts = cuts_[front_of_[part]];
+    cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
+    if (cuts > kMostCuts || (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;

@@ -46,9 +46,12 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint32_t> part_of_;   ///< of each front, kNobody while unused
   std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
+  std::vector<std::uint32_t> cuts_;      ///< of each front: calls in a row that ran out of time or work
+  std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
-  std::vector<std::uint8_t> in_cells_;      ///< of each part: its front was too small while it was near
+  std::vector<std::uint8_t>
+      in_cells_;  ///< of each part: its front was too small or too slow, and it has been near since
   std::vector<std::uint32_t> near_fronts_;  ///< near parts that have fronts
   std::vector<std::uint32_t> near_cells_;   ///< the others
   WorkLimit limit_;
