@@ -36,37 +36,7 @@ Vec3 unit_normal(const Hull& triangle) {
   return length2 > kParallel * kParallel * size2 * size2 ? Vec3(n / std::sqrt(length2)) : Vec3(Vec3::Zero());
 }
 
-/// How far the arcs of the motion reach past the chords, along `n`; see Bulge.
-double bulge_along(const Vec3& n, double reach, const Sweep& sweep) {
-  if (!(sweep.theta2 > 0)) return 0;
-  return 0.125 * kUnitSlack * sweep.theta2 * (reach + sweep.center_distance) * sweep.axis.cross(n).norm();
-}
-
-/// Whether the gap stays positive, that is `alpha` and `beta` at the ends of a chord whose arc takes 4 b s (1 − s) off.
-bool stays_positive(double alpha, double beta, double b) {
-  if (!(alpha >= 0 && beta >= 0)) return false;
-  return std::min(alpha, beta) >= b || 0.5 * (alpha + beta) - 2 * b + std::sqrt(alpha * beta) >= 0;
-}
-
 }  // namespace
-
-CellVerdict check_cell(const FreeCell& cell, const MovingHull& a, const Sweep& sweep) noexcept {
-  CellVerdict out{true, kInfinity, 1};
-  for (std::uint32_t k = 0; k < cell.planes; ++k) {
-    const Vec3 n = cell.plane[k].normal();
-    const double start = a.start.lowest(n) - double{cell.plane[k].offset};
-    const double alpha = start - sweep.start_floor, beta = a.end.lowest(n) - double{cell.plane[k].offset} - sweep.floor;
-    const double b = bulge_along(n, a.reach, sweep);
-    out.margin = std::min(out.margin, start);
-    if (stays_positive(alpha, beta, b)) continue;
-    out.free = false;
-    // Up to s the gap is at least alpha + s (beta − alpha) − 4 b s; the shorter motion's reading with a linear file
-    // frame leaves its own arc by at most b s² more.
-    const double used = alpha - beta + 5 * b;
-    out.share = std::min(out.share, alpha > 0 && used > 0 ? std::min(1.0, alpha / used) : 0.0);
-  }
-  return out;
-}
 
 CellSearch::CellSearch() {
   stack_.reserve(2 * kMostVisits + kCellItems + 2);
@@ -301,11 +271,13 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   if (!blocking_.empty()) return Outcome::blocked;
   if (passing_) return Outcome::passing;
   if (!listed_) items_.count = 0;
-  cell.planes = static_cast<std::uint32_t>(planes_);
   cell.clear = clear_;
+  cell.drop_planes();
   for (int k = 0; k < planes_; ++k) {
-    for (int i = 0; i < 3; ++i) cell.plane[k].n[i] = static_cast<float>(normal_[k][i]);
-    cell.plane[k].offset = round_up<float>(top_[k]);
+    cell.nx[k] = static_cast<float>(normal_[k].x());
+    cell.ny[k] = static_cast<float>(normal_[k].y());
+    cell.nz[k] = static_cast<float>(normal_[k].z());
+    cell.offset[k] = round_up<float>(top_[k]);
   }
   return Outcome::found;
 }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "narrowphase/moving_plane.hpp"
 #include "narrowphase/patch_separate.hpp"
 
 namespace tegotae {
@@ -59,21 +63,21 @@ struct MovingHull {
   double radius = 0;  ///< largest distance of a point of it from its middle, m
 };
 
-/// A plane that has all of B that it stands for below it: n · x <= offset. `n` (B's axes) is of unit length up to
-/// single precision, the offset rounded up.
-struct CellPlane {
-  std::array<float, 3> n;
-  float offset;
-
-  Vec3 normal() const { return {double{n[0]}, double{n[1]}, double{n[2]}}; }
-};
-
-/// Where a piece of A's surface may be without meeting B: above every plane. What of B no plane stands for is at least
-/// `clear` (m) from the piece as it was when the cell was found.
+/// Where a piece of A's surface may be without meeting B: above every plane, n · x >= offset, which has all of B that
+/// it stands for below it. Normals (B's axes) are of unit length up to single precision, offsets rounded up. What of B
+/// no plane stands for is at least `clear` (m) from the piece as it was when the cell was found.
 struct FreeCell {
+  std::array<float, kCellPlanes> nx, ny, nz, offset;  ///< of planes that are not there everything is above
   double clear = 0;
-  std::uint32_t planes = 0;
-  std::array<CellPlane, kCellPlanes> plane;
+
+  FreeCell() { drop_planes(); }
+  void drop_planes() {
+    nx.fill(0);
+    ny.fill(0);
+    nz.fill(0);
+    offset.fill(std::numeric_limits<float>::lowest());
+  }
+  Vec3 normal(int k) const { return {double{nx[k]}, double{ny[k]}, double{nz[k]}}; }
 };
 
 /// Most pieces of B that a cell's list has room for.
@@ -85,6 +89,19 @@ struct CellItems {
   std::uint32_t count = 0;  ///< 0: not known, or more than fit
   std::array<std::uint32_t, kCellItems> item;
 };
+
+/// How far the arcs of a motion reach past their chords along `n`, for points up to `reach` (m) from the center of
+/// mass; see Bulge.
+inline double bulge_along(const Vec3& n, double reach, const Sweep& sweep) {
+  if (!(sweep.theta2 > 0)) return 0;
+  return 0.125 * kUnitSlack * sweep.theta2 * (reach + sweep.center_distance) * sweep.axis.cross(n).norm();
+}
+
+/// Whether a gap stays positive: `alpha` and `beta` at the ends of a chord whose arc takes 4 b s (1 − s) off.
+inline bool stays_positive(double alpha, double beta, double b) {
+  if (!(alpha >= 0 && beta >= 0)) return false;
+  return std::min(alpha, beta) >= b || 0.5 * (alpha + beta) - 2 * b + std::sqrt(alpha * beta) >= 0;
+}
 
 /// What a free cell says of a motion.
 struct CellVerdict {

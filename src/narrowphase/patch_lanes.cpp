@@ -1,11 +1,6 @@
 #include "narrowphase/patch_lanes.hpp"
 
-// Not with ThreadSanitizer: the function that chooses the clone runs, instrumented, before its runtime is there.
-#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_THREAD__)
-#define TEGOTAE_WIDE __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define TEGOTAE_WIDE
-#endif
+#include "narrowphase/wide.hpp"
 
 namespace tegotae {
 namespace {
@@ -14,8 +9,6 @@ typedef float Lane __attribute__((vector_size(kLanes * sizeof(float)), may_alias
 typedef std::int32_t LaneBits __attribute__((vector_size(kLanes * sizeof(float)), may_alias));
 typedef double FineLane __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
 typedef std::int64_t FineBits __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
-
-#define TEGOTAE_INLINE __attribute__((always_inline)) inline
 
 /// One field of a block in the precision of V.
 template <typename V>

@@ -1,7 +1,6 @@
 #include "narrowphase/patch_motion_check.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include "narrowphase/patch_cache.hpp"
@@ -15,7 +14,9 @@ constexpr std::size_t kMostFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
-// A front that runs out of time so often in a row has more pairs than a tick can look at.
+// A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
+// cells would not be faster: what slides along walls uses up their distance to everything else.
+constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMostCuts = 6;
 // Cells (about 500 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
@@ -31,8 +32,6 @@ constexpr int kStandSearches = 1024;
 constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
-
-const char* g_engine = std::getenv("TEGOTAE_ENGINE");
 
 }  // namespace
 
@@ -62,7 +61,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMostBlocking);
-  in_cells_.assign(fixed.size(), g_engine != nullptr);
+  in_cells_.assign(fixed.size(), 0);
   seen_.assign(fixed.size(), 0);
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size());
@@ -101,7 +100,7 @@ void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_
   for (const std::uint32_t part : near)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
   for (const std::uint32_t part : near) {
-    if (in_cells_[part] != 0 && seen_[part] + 1 < now_) in_cells_[part] = g_engine != nullptr;
+    if (in_cells_[part] != 0 && seen_[part] + 1 < now_) in_cells_[part] = 0;
     seen_[part] = now_;
     if (front_of_[part] == kNobody && !in_cells_[part]) take_front(part);
     (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
@@ -125,7 +124,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     const CertifyReport report = ask_front(part, X, d, clearance, limit_);
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
-    if (cuts > kMostCuts || (report.overflow && report.status == CertifyStatus::cut)) {
+    if ((cuts > kMostCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;
