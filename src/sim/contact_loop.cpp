@@ -81,6 +81,8 @@ constexpr double kMostTurn = 0.5;
 // so many: like static friction, it ends the creep that is left where limits change with every piece.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
+// Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
+constexpr double kFeltLag = 0.05;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
@@ -189,9 +191,14 @@ void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
     // Out of time, the limits may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));
   }
-  if (!report.proxy.touching) report.forces = {};
   // What holds the part back is no contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
-  if (report.lag_reason == LagReason::time || report.lag_reason == LagReason::capacity) report.planes.count = 0;
+  const bool held_up = report.lag_reason == LagReason::time || report.lag_reason == LagReason::capacity;
+  const Wrench whole = planes_.pull(displacement(X_, Y, center_));
+  const Wrench& lag = report.forces.lag;
+  if (held_up &&
+      (lag.force.norm() > kFeltLag * whole.force.norm() || lag.torque.norm() > kFeltLag * whole.torque.norm()))
+    report.planes.count = 0;
+  if (!report.proxy.touching) report.forces = {};
 }
 
 bool ContactLoop::late() const {
