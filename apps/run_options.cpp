@@ -106,6 +106,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
     if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
     if (!options.json && !start.stability.empty())
       std::cout << format("%-12s ", "stability:") << start.stability << std::endl;
+    if (!options.json) std::cout << format("%-12s ", "torsion:") << start.torsion << std::endl;
   };
 
   RunSummary summary;

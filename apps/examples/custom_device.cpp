@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   RailPen pen;
   Channel channel = Channel::create();
   Servo servo(pen, channel);
-  ContactLink link(channel, scene.coupling, loop.center());
+  ContactLink link(channel, loop.coupling(), loop.center());
 
   pen.start();
   PenSample sample;

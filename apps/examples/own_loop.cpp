@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   ServoSettings settings;
   settings.safety.heartbeat_timeout = 0.2;  // s
   Servo servo(pen, channel, settings);
-  ContactLink link(channel, scene.coupling, loop.center());
+  ContactLink link(channel, loop.coupling(), loop.center());
 
   pen.start();
   servo.start();

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   SimulatedDevice pen({}, script, loop.center());
   Channel channel = Channel::create();
   Servo servo(pen, channel);
-  ContactLink link(channel, scene.coupling, loop.center());
+  ContactLink link(channel, loop.coupling(), loop.center());
 
   pen.start();
   for (std::uint64_t ms = 0; ms <= 600; ++ms) {

@@ -29,7 +29,7 @@ std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_se
   SimulatedDevice device(tireless, hand, loop.center());
   Channel channel = Channel::create();
   Servo servo(device, channel, servo_settings);
-  ContactLink link(channel, scene.coupling, loop.center());
+  ContactLink link(channel, loop.coupling(), loop.center());
   std::vector<Sample> samples;
   device.start();
   for (std::int64_t i = 0; static_cast<double>(i) * kPeriod < seconds; ++i) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kPlay = 1e-4;  // from the middle to either side, m
-// Pushed farther than the square of its radius of gyration by the contact's distance (4 mm of the sphere's 10, 2.4 mm
-// of the cone's 30) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.
+// Pushed farther than ρ² by the contact's distance from the center (ρ² = k_t / k; 37 mm for the sphere, 17 mm for the
+// cone) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.
 
 constexpr double kLMin = 4e-6;  // m: contacts keep half of it
 
@@ -96,9 +96,8 @@ WrenchScene cone_on_block(int probes) {
   constexpr double kRadius = 0.012, kHeight = 0.03, kTip = 0.75 * kHeight, kPush = 1.2e-3;
   w.scene.parts.push_back(part("block", shapes::box({0.06, 0.06, 0.02}, {6, 6, 2}), at(0, 0, -0.01), false));
   w.scene.parts.push_back(part("cone", cone(kRadius, kHeight, 128), at(0, 0, kTip + 1e-3), true));
-  // Radius of gyration of a solid cone across its axis, about its center of mass.
-  const double rho2 = 3.0 / 20 * kRadius * kRadius + 3.0 / 80 * kHeight * kHeight;
   const CouplingSettings& c = w.scene.coupling;
+  const double rho2 = c.torsional_stiffness / c.stiffness;
   for (int i = 0; i < probes; ++i) {
     const double tilt = 0.08 * i / std::max(1, probes - 1), a = 2.4 * i;
     const Vec3 axis(std::cos(a), std::sin(a), 0);

@@ -85,7 +85,7 @@ struct Run {
     SimulatedDevice pen({}, script, loop.center());
     Channel channel = Channel::create();
     Servo fast(pen, channel, servo);
-    ContactLink link(channel, scene.coupling, loop.center(), loop.gyration());
+    ContactLink link(channel, loop.coupling(), loop.center());
     pen.start();
     const int end = static_cast<int>(1e3 * script.end());
     for (int ms = 0; ms <= end; ++ms) {

@@ -55,7 +55,7 @@ std::string path_script(const SceneFile& file, const std::vector<RecordFrame>& r
   const auto hand_at = [&](const RecordFrame& row) {
     const Displacement gone = displacement(first, row.y, center);
     const Displacement lead = {-row.wrench.force / hand.stiffness, -row.wrench.torque / hand.torsional_stiffness};
-    return displaced(displaced(row.y, center, {(1 / file.scale - 1) * gone.dp, Vec3::Zero()}), center, lead);
+    return displaced(displaced(row.y, center, {(1 / file.scene.scale - 1) * gone.dp, Vec3::Zero()}), center, lead);
   };
   std::string text = "t,px,py,pz,qw,qx,qy,qz\n";
   const double begin = rows.front().t;

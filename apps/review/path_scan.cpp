@@ -71,6 +71,7 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
   ClearanceProbe probe(scene);
   view::Follower follower(scene, file, rows.front().x);
   scan.center = follower.loop().center();
+  scan.coupling = follower.loop().coupling();
   scan.start = follower.loop().start();
   scan.rows.reserve(numbers.size());
   std::size_t next = 0;

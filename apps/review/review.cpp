@@ -37,11 +37,12 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
       throw Error(path + ": row " + std::to_string(i + 1) + ": its time is before that of the row before");
   r.scan = scan_path(r.file.scene, path, rows, progress);
   r.center = r.scan.center;
+  r.file.scene.coupling = r.scan.coupling;
   for (Part& part : r.file.scene.parts)
     if (part.held) part.pose = rows.front().x;
   if (goal) {
     r.file.script = StylusScript({{0, rows.front().x}, {1, *goal}});
-    r.file.scale = 1;
+    r.file.scene.scale = 1;
   }
   if (2 * r.scan.astray > rows.size())
     throw Error(path + ": does not fit this scene: the part would stand in another one for " +

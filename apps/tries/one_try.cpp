@@ -147,7 +147,7 @@ Task make_task(SceneFile file, const Pose& goal, std::uint64_t seed, double seco
   const Vec3 center = HapticLoop(file.scene).center();  // tells what is wrong with the scene, too
   std::vector<Route> routes = find_routes(file.scene, goal, center);
   file.script = StylusScript({{0, held_part(file.scene).pose}, {1, goal}});
-  file.scale = 1;
+  file.scene.scale = 1;
   return {std::move(file), center, std::move(routes), seed, seconds};
 }
 

@@ -125,9 +125,10 @@ std::string fingerprint(const Task& task) {
   const Scene& s = task.file.scene;
   hash.add(s.contact.resolver);
   hash.add(s.contact.narrowphase);
-  for (const double x : {s.contact.l_min, s.contact.l_0, s.contact.density, s.coupling.stiffness, s.coupling.damping,
-                         s.coupling.torsional_stiffness, s.coupling.torsional_damping, task.file.safety.limits.force,
-                         task.file.safety.limits.torque, task.file.safety.continuous_force, task.seconds})
+  for (const double x :
+       {s.contact.l_min, s.contact.l_0, s.contact.density, s.coupling.stiffness, s.coupling.damping,
+        s.coupling.torsional_stiffness, s.coupling.torsional_damping, s.torsional_stiffness_most.value_or(-1),
+        task.file.safety.limits.force, task.file.safety.limits.torque, task.file.safety.continuous_force, task.seconds})
     hash.add(std::isnan(x) ? -1 : x);
   hash.add(task.file.script.pose(task.file.script.end()));
   return apps::format("tegotae %s, seed %llu, task %016llx", TEGOTAE_VERSION_STRING,

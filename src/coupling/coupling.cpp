@@ -1,6 +1,28 @@
 #include "tegotae/coupling/coupling.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tegotae {
+
+namespace {
+
+// A part of a tenth of a millimeter, and one of a house: beyond, the programme would be badly scaled.
+constexpr double kLeastRadius = 1e-4, kMostRadius = 10;
+
+}  // namespace
+
+double coupling_radius(const CouplingSettings& settings, double scale) noexcept {
+  const double square = settings.torsional_stiffness / settings.stiffness;
+  // 0 / 0: nothing is felt, and any radius will do.
+  return std::isnan(square) ? scale * coupling_radius({})
+                            : std::clamp(scale * std::sqrt(square), kLeastRadius, kMostRadius);
+}
+
+double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept {
+  const double least = CouplingSettings().torsional_stiffness;
+  return std::clamp(stiffness * radius * radius, least, std::max(least, most));
+}
 
 Wrench coupling_wrench(const CouplingSettings& settings, const ProxyState& x, const Pose& Y, const Twist& Y_velocity,
                        const Vec3& center) noexcept {

@@ -6,29 +6,30 @@
 
 namespace tegotae {
 
-/// Brings the proxy up to date with a pen that has moved since the contact loop's last tick: the pen's way is projected
-/// on the contact planes of that tick, in the mass metric that the contact loop uses. At the pen pose which that tick
-/// answered, the proxy is the contact loop's own. Allocates only when it is made.
+/// Brings the proxy up to date with a pen that has moved since the contact loop's last tick, by the law of the contact
+/// loop's `qp`: X goes where the coupling's springs store least energy among the poses that the contact planes of that
+/// tick allow. So for these planes the wrench is the gradient of an energy of the pen's pose, and changes by at most
+/// the springs' stiffness times what the pen moves. Allocates only when it is made.
 class LocalModel {
  public:
   LocalModel();
 
-  /// `gyration`: inertia over mass of the held part about its center, file frame, m². False and `x` untouched when
-  /// there are no planes, when the numbers make no sense or the pen has turned too far for flat limits.
-  bool update(const ContactPlanes& planes, const Mat3& gyration, const Vec3& center, const Pose& Y,
-              const Twist& Y_velocity, ProxyState& x) noexcept;
+  /// `radius`: coupling_radius(), m. False and `x` untouched when there are no planes, when the numbers make no sense,
+  /// the pen has turned too far since the tick, or the part would have to turn too far for flat planes.
+  bool update(const ContactPlanes& planes, double radius, const Vec3& center, const Pose& Y, const Twist& Y_velocity,
+              ProxyState& x) noexcept;
 
  private:
-  /// Makes whitened coordinates (dp, Lᵀ R_Xᵀ dr) with L Lᵀ = gyration, in which the mass metric is the length.
-  bool set_metric(const Mat3& gyration, const Quat& R_X) noexcept;
-  Vec6 whiten(const Vec3& dp, const Vec3& dr) const noexcept;
   bool set_rows(const ContactPlanes& planes, const Vec3& center_W) noexcept;
+  /// Displacement of the part from `X` that brings it nearest to `Y`, whitened; null when there is none.
+  const QpResult* nearest(const Pose& X, const Vec3& center, const Pose& Y) noexcept;
+  Vec6 whiten(const Displacement& d) const noexcept;
+  Displacement unwhiten(const Vec6& z) const noexcept { return {z.head<3>(), z.tail<3>() / radius_}; }
 
   LeastDistanceSolver solver_;
   LowRankMatrix rows_, active_rows_;
   double bounds_[ContactPlanes::kMost] = {};
-  Mat3 to_whitened_ = Mat3::Identity();  ///< of a rotation vector in the world
-  Mat3 to_rotation_ = Mat3::Identity();  ///< its inverse
+  double radius_ = 1;
 };
 
 }  // namespace tegotae

@@ -5,8 +5,17 @@
 
 namespace tegotae {
 
-void Passivity::observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole,
-                        double dt) noexcept {
+double step_energy(const Displacement& moved, const CouplingSettings& coupling, double resolution, double dt) noexcept {
+  if (!(dt > 0)) return 0;
+  const double radius = coupling_radius(coupling), most = 3 * resolution * resolution;
+  const double shift = std::min(moved.dp.squaredNorm(), most);
+  const double turn = std::min(moved.dr.squaredNorm(), most / (radius * radius));
+  return (0.5 * coupling.stiffness + coupling.damping / dt) * shift +
+         (0.5 * coupling.torsional_stiffness + coupling.torsional_damping / dt) * turn;
+}
+
+void Passivity::observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole, double dt,
+                        double steps) noexcept {
   const double stored_before = stored_;
   stored_ = stored;
   dt_ = dt;
@@ -18,14 +27,16 @@ void Passivity::observe(const Displacement& moved, const Wrench& rendered, doubl
   const double damped = (settings_.device_damping * moved.dp.squaredNorm() +
                          settings_.device_torsional_damping * moved.dr.squaredNorm()) /
                         dt;
-  const double energy = energy_ + put_in + damped - (stored - stored_before);
+  const double gained = put_in + damped - (stored - stored_before);
+  // Steps make up for what is missing in this tick alone; they are no credit.
+  const double energy = energy_ + (gained < 0 ? std::min(gained + steps, 0.0) : gained);
   // A jump of the pen is not this link's business, but must not spoil the sum for ever.
   energy_ = std::isfinite(energy) ? std::min(energy, settings_.credit) : 0;
 }
 
 Wrench Passivity::controller(double arm2) const noexcept {
   const double square = velocity_.v.squaredNorm() + arm2 * velocity_.w.squaredNorm();
-  if (energy_ >= 0 || !(square > 0) || !(dt_ > 0)) return {};
+  if (!acts() || !(square > 0) || !(dt_ > 0)) return {};
   const double damping = std::min(-energy_ / (dt_ * square), settings_.damping_most);
   return {-damping * velocity_.v, -damping * arm2 * velocity_.w};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tegotae/core/pose.hpp"
+#include "tegotae/coupling/coupling.hpp"
 
 namespace tegotae {
 
@@ -10,6 +11,7 @@ struct PassivitySettings {
   double device_torsional_damping = 0;  ///< N·m·s/rad
   double damping_most = 10;             ///< N·s/m that the controller may add
   double credit = 1e-3;                 ///< J, dissipated energy is remembered up to this
+  double idle = 0;                      ///< J, generated energy up to this is let be
 };
 
 /// Time-domain passivity observer and controller (Hannaford and Ryu, "Time-domain passivity control of haptic
@@ -22,13 +24,17 @@ class Passivity {
 
   /// Accounts for the last `dt` seconds: the pen moved by `moved` under the constant wrench `rendered`, and the springs
   /// now store `stored` (J). Unless `whole`, the wrench was not the coupling's (faded or cut): the time does not count.
-  void observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole, double dt) noexcept;
+  /// `steps` (J): see step_energy(); so much may be missing in this time without being called generated.
+  void observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole, double dt,
+               double steps = 0) noexcept;
   /// The wrench that damps the pen moving as in the last observe(); `arm2` (m²) weighs rotation: its damping is
-  /// the translation's times this. Zero while the energy is positive.
+  /// the translation's times this. Zero unless acts().
   Wrench controller(double arm2) const noexcept;
 
   /// J, at most the credit; below zero: generated. A servo turns the force off below its bound.
   double energy() const noexcept { return energy_; }
+  /// Whether the controller has something to damp.
+  bool acts() const noexcept { return energy_ < -settings_.idle; }
   void reset() noexcept { energy_ = 0; }
 
  private:
@@ -38,5 +44,11 @@ class Passivity {
   Twist velocity_;
   double dt_ = 0;
 };
+
+/// What a coupling that is held over a tick of `dt` (s) can lose to steps of the pen's resolution (m), J: the springs
+/// ½ k Δx², and the damper, whose velocity is known to a step a tick, d Δx² / dt, of a pen that `moved` by no more than
+/// a step along each axis; a turn counts as coupling_radius() times its angle. Between two steps nothing is known of
+/// the pen, so this is no sign of an instability; what a pen gains that moves farther in a tick is.
+double step_energy(const Displacement& moved, const CouplingSettings& coupling, double resolution, double dt) noexcept;
 
 }  // namespace tegotae

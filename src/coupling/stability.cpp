@@ -15,6 +15,12 @@ double sampling_limit(double device_damping, double damping, double rate_hz) {
   return std::max(0.0, 2 * (device_damping - std::abs(damping)) * rate_hz);
 }
 
+// Of the stiffness that sampling allows, what is chosen unasked.
+constexpr double kStableShare = 0.5;
+// rad; steps of a pen's angle (0.1 mrad) are 1/500 of it. Pens have no dry friction in their gimbals to speak of, so by
+// such steps a stiffer coupling keeps a hand that rests between two of them going to and fro.
+constexpr double kLeastFullTurn = 0.05;
+
 std::string limit_text(double limit, const char* unit) {
   if (std::isnan(limit)) return "limit not known";
   char text[64];
@@ -35,6 +41,11 @@ StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coup
       std::isnan(r.sampling_limit) ? r.sampling_limit : std::min(r.sampling_limit, r.quantization_limit);
   r.torsional_stiffness_limit = sampling_limit(device.torsional_damping, coupling.torsional_damping, rate_hz);
   return r;
+}
+
+double torsional_stiffness_bound(double limit, double torque) noexcept {
+  if (!(limit > 0)) return CouplingSettings().torsional_stiffness;
+  return std::min(kStableShare * limit, torque / kLeastFullTurn);
 }
 
 std::string StabilityReport::text() const {

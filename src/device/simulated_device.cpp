@@ -179,8 +179,7 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, HandIn
 
 SimulatedDevice::~SimulatedDevice() = default;
 
-DeviceInfo SimulatedDevice::info() const {
-  const SimulatedDeviceSettings& s = impl_->settings;
+DeviceInfo device_info(const SimulatedDeviceSettings& s) {
   DeviceInfo info;
   info.name = "simulated";
   info.limits = s.limits;
@@ -190,6 +189,10 @@ DeviceInfo SimulatedDevice::info() const {
   info.friction = s.friction;
   info.position_resolution = s.position_resolution;
   return info;
+}
+
+DeviceInfo SimulatedDevice::info() const {
+  return device_info(impl_->settings);
 }
 
 void SimulatedDevice::start() {

@@ -91,4 +91,8 @@ MassProperties mass_properties(const TriangleMesh& mesh, bool closed, double den
   return out;
 }
 
+double radius_of_gyration(const MassProperties& mass) noexcept {
+  return std::sqrt(mass.inertia.trace() / (3 * mass.mass));
+}
+
 }  // namespace tegotae

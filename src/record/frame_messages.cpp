@@ -35,6 +35,14 @@ constexpr const char* kTickSchema =
     R"("tick_us":{"type":"number","description":"time the tick took; 0 in virtual time"},)"
     R"("lag_reason":{"type":"string","description":"why the part is not where the pen wants it",)"
     R"("enum":["none","contact","time","capacity","suspended"]}}})";
+constexpr const char* kForcesSchema =
+    R"({"title":"tegotae.ContactForces","description":"on the held part at the end of the tick, world",)"
+    R"("type":"object","properties":{"forces":{"type":"array","items":{"type":"object","properties":{)"
+    R"("part":{"type":"integer","description":"number among the fixed parts"},)"
+    R"("point":)" TEGOTAE_XYZ R"(,"normal":)" TEGOTAE_XYZ
+    R"(,"gap":{"type":"number"},"force":{"type":"number","description":"N along the normal"}}}},)"
+    R"("lag":{"type":"object","description":"what the springs pull beyond the contacts; N and N*m",)"
+    R"("properties":{"force":)" TEGOTAE_XYZ R"(,"torque":)" TEGOTAE_XYZ "}}}}";
 #undef TEGOTAE_XYZ
 
 json xyz(const Vec3& v) {
@@ -76,12 +84,43 @@ Pose pose(const json& message) {
   return {Quat(number(q.at("w")), v.x(), v.y(), v.z()), vector(X.at("position"))};
 }
 
+json wrench_message(const Wrench& w) {
+  return {{"force", xyz(w.force)}, {"torque", xyz(w.torque)}};
+}
+
+Wrench wrench(const json& j) {
+  return {vector(j.at("force")), vector(j.at("torque"))};
+}
+
+json forces_message(const ContactForces& forces) {
+  json list = json::array();
+  for (int i = 0; i < forces.count; ++i) {
+    const ContactForce& c = forces.items[static_cast<std::size_t>(i)];
+    list.push_back(
+        {{"part", c.part}, {"point", xyz(c.point)}, {"normal", xyz(c.n)}, {"gap", c.gap}, {"force", c.force}});
+  }
+  return {{"forces", std::move(list)}, {"lag", wrench_message(forces.lag)}};
+}
+
+ContactForces forces(const json& message) {
+  ContactForces out;
+  for (const json& c : message.at("forces")) {
+    if (out.count == ContactForces::kMost) break;
+    out.items[static_cast<std::size_t>(out.count++)] = {whole_number<std::uint32_t>(c.at("part")),
+                                                        vector(c.at("point")), vector(c.at("normal")),
+                                                        number(c.at("gap")), number(c.at("force"))};
+  }
+  out.lag = wrench(message.at("lag"));
+  return out;
+}
+
 }  // namespace
 
 const std::array<FrameTopic, kFrameTopics> kTopics = {{{"/tick", "tegotae.Tick", kTickSchema},
                                                        {"/pen", "foxglove.PoseInFrame", kPoseSchema},
                                                        {"/part", "foxglove.PoseInFrame", kPoseSchema},
                                                        {"/wrench", "tegotae.Wrench", kWrenchSchema},
+                                                       {"/forces", "tegotae.ContactForces", kForcesSchema},
                                                        {"/contact", "tegotae.Contact", kContactSchema}}};
 
 std::uint64_t log_time(const RecordFrame& frame) {
@@ -103,7 +142,9 @@ std::string message_text(const RecordFrame& f, std::size_t i) {
     case 2:
       return pose_message(f, f.x).dump();
     case 3:
-      return json{{"force", xyz(f.wrench.force)}, {"torque", xyz(f.wrench.torque)}}.dump();
+      return wrench_message(f.wrench).dump();
+    case kForcesTopic:
+      return forces_message(f.forces).dump();
     default:
       return json{{"contacts", f.contacts}, {"gap", f.gap}}.dump();
   }
@@ -125,7 +166,10 @@ void take_message(const json& m, std::size_t i, RecordFrame& f) {
       f.x = pose(m);
       return;
     case 3:
-      f.wrench = {vector(m.at("force")), vector(m.at("torque"))};
+      f.wrench = wrench(m);
+      return;
+    case kForcesTopic:
+      f.forces = forces(m);
       return;
     default:
       f.contacts = whole_number<int>(m.at("contacts"));

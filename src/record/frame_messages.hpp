@@ -15,7 +15,9 @@ struct FrameTopic {
   const char* schema;  ///< JSON schema
 };
 
-inline constexpr std::size_t kFrameTopics = 5;
+inline constexpr std::size_t kFrameTopics = 6;
+/// The topic that recordings of older versions do not have. It comes before the last one, which ends a frame.
+inline constexpr std::size_t kForcesTopic = 4;
 extern const std::array<FrameTopic, kFrameTopics> kTopics;
 
 /// The message of `frame` on topic number `i`, as JSON text. Numbers that are not finite are null.

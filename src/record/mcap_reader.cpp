@@ -17,7 +17,8 @@ using namespace mcap;
 
 namespace {
 
-constexpr unsigned kAllTopics = (1u << kFrameTopics) - 1;
+// A frame is whole with these; its forces, if it has any, come before the last of them.
+constexpr unsigned kNeededTopics = ((1u << kFrameTopics) - 1) & ~(1u << kForcesTopic);
 // A chunk that says to be larger is damaged; common writers' are some megabytes.
 constexpr std::uint64_t kMostChunk = 1u << 30;
 
@@ -140,8 +141,9 @@ class McapReader {
       fail(std::string("a message on ") + kTopics[channel->second].topic + ": " + e.what());
     }
     seen_ |= bit;
-    if (seen_ != kAllTopics) return;
+    if ((seen_ & kNeededTopics) != kNeededTopics) return;
     out_.frames.push_back(frame_);
+    frame_ = {};
     seen_ = 0;
   }
 

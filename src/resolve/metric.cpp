@@ -12,6 +12,8 @@ constexpr double kLeastRadiusShare = 0.02;
 
 }  // namespace
 
+Metric::Metric(double radius) : radii_(Vec3::Constant(radius)) {}
+
 Metric::Metric(const MassProperties& mass) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(mass.inertia / mass.mass);
   axes_ = eigen.eigenvectors();

@@ -6,11 +6,15 @@
 
 namespace tegotae {
 
-/// The mass metric of the held part as a length: |whiten(d)|² = dᵀ M d / m (m²), so that a rotation counts by how far
-/// it carries the mass. Whitened coordinates are (dp, k_i × rotation about principal axis i) with the radii of gyration
-/// k.
+/// What a turn of the held part weighs against a shift, as a length: whitened coordinates are (dp, k_i × rotation about
+/// axis i), m, and how far a displacement goes is the length of such a vector.
 class Metric {
  public:
+  /// Of the coupling's springs: |whiten(d)|² = (2 / stiffness) × the energy that they store. `radius` (m) is
+  /// coupling_radius(); the same about every axis.
+  explicit Metric(double radius);
+  /// Of the part's mass: |whiten(d)|² = dᵀ M d / m, so that a rotation counts by how far it carries the mass; the k_i
+  /// are the radii of gyration about the principal axes.
   explicit Metric(const MassProperties& mass);
 
   /// Turns the principal axes along with the part.
@@ -32,9 +36,9 @@ class Metric {
   }
 
  private:
-  Mat3 axes_;   ///< principal axes as columns, file frame
-  Vec3 radii_;  ///< radii of gyration, m
-  Mat3 axes_W_;
+  Mat3 axes_ = Mat3::Identity();  ///< as columns, file frame
+  Vec3 radii_;                    ///< m
+  Mat3 axes_W_ = Mat3::Identity();
 };
 
 }  // namespace tegotae

@@ -48,7 +48,7 @@ class LpResolver final : public Resolver {
   std::vector<double> d_;
 };
 
-/// Gauss's least constraint: the allowed motion nearest to the wanted one in the mass metric.
+/// The allowed motion nearest to the wanted one: in the coupling's metric the one of least energy.
 class QpResolver final : public Resolver {
  public:
   explicit QpResolver(int capacity) : solver_(capacity) {}

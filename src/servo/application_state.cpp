@@ -61,11 +61,4 @@ ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
   return out;
 }
 
-Mat3 gyration_of(const tegotae_shm_application& in) noexcept {
-  const double* g = in.gyration;
-  Mat3 out;
-  out << g[0], g[3], g[4], g[3], g[1], g[5], g[4], g[5], g[2];
-  return out;
-}
-
 }  // namespace tegotae

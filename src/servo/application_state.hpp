@@ -16,6 +16,5 @@ MappingCommand mapping_of(const tegotae_shm_application& in) noexcept;
 ProxyState proxy_of(const tegotae_shm_application& in) noexcept;
 /// No planes when the count is more than there is room for.
 ContactPlanes planes_of(const tegotae_shm_application& in) noexcept;
-Mat3 gyration_of(const tegotae_shm_application& in) noexcept;
 
 }  // namespace tegotae

@@ -26,9 +26,8 @@ bool fresh(std::int64_t heartbeat_ns, std::int64_t now_ns) {
 
 }  // namespace
 
-Attachment::Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center,
-                       const Mat3& gyration, double scale)
-    : name_(segment_of(device)), coupling_(coupling), center_(center), gyration_(gyration), scale_(scale) {
+Attachment::Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center, double scale)
+    : name_(segment_of(device)), coupling_(coupling), center_(center), scale_(scale) {
   attach();
 }
 
@@ -36,7 +35,7 @@ void Attachment::attach() {
   Channel channel = Channel::attach(name_);  // before the old one goes: it may throw
   link_.reset();
   channel_.emplace(std::move(channel));
-  link_.emplace(*channel_, coupling_, center_, gyration_);
+  link_.emplace(*channel_, coupling_, center_);
   link_->set_scale(scale_);
   homed_ = false;
 }
@@ -76,10 +75,10 @@ void Attachment::publish(const ProxyState& proxy, std::uint64_t tick, std::uint6
   link_->publish(proxy, tick, device_sequence, now_ns, planes);
 }
 
-void Attachment::hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept {
+void Attachment::hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
   center_ = center;
-  gyration_ = gyration;
-  link_->hold(center, gyration, X);
+  coupling_ = coupling;
+  link_->hold(center, coupling, X);
   homed_ = true;
 }
 

@@ -22,8 +22,8 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
 
 }  // namespace
 
-ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center, const Mat3& gyration)
-    : channel_(channel), coupling_(coupling), center_(center), gyration_(gyration), session_(monotonic_ns()) {}
+ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center)
+    : channel_(channel), coupling_(coupling), center_(center), session_(monotonic_ns()) {}
 
 bool ContactLink::read(PenSample& pen) const noexcept {
   tegotae_shm_device in;
@@ -64,9 +64,9 @@ void ContactLink::home(const Pose& X) noexcept {
   if (++home_counter_ == 0) ++home_counter_;
 }
 
-void ContactLink::hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept {
+void ContactLink::hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
   center_ = center;
-  gyration_ = gyration;
+  coupling_ = coupling;
   home(X);
 }
 
@@ -93,9 +93,6 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.scale = scale_;
   store(home_.p, out.home_position);
   store(home_.q, out.home_orientation);
-  const Mat3& g = gyration_;
-  const double gyration[] = {g(0, 0), g(1, 1), g(2, 2), g(0, 1), g(0, 2), g(1, 2)};
-  for (int i = 0; i < 6; ++i) out.gyration[i] = gyration[i];
   store_planes(planes, out);
   channel_.write(out);
 }

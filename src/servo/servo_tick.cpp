@@ -18,6 +18,10 @@ namespace {
 // as comes in, and a swing would never die.
 constexpr double kTrustedDamping = 0.5;
 
+// Of the energy at which the force goes off as unstable, what the controller leaves to itself: what is made of a pen's
+// steps, of contacts found and left, and of filtered velocities is a twentieth of it, a swing passes it in a few ticks.
+constexpr double kIdleShare = 0.01;
+
 /// The chain's settings, no looser than the device's own limits.
 SafetySettings within_device(SafetySettings s, const DeviceInfo& device) {
   check(s);
@@ -29,10 +33,11 @@ SafetySettings within_device(SafetySettings s, const DeviceInfo& device) {
   return s;
 }
 
-PassivitySettings passivity_settings(const DeviceInfo& device) {
+PassivitySettings passivity_settings(const DeviceInfo& device, double bound) {
   PassivitySettings s;
   s.device_damping = kTrustedDamping * device.damping;
   s.device_torsional_damping = kTrustedDamping * device.torsional_damping;
+  s.idle = kIdleShare * bound;
   return s;
 }
 
@@ -51,7 +56,7 @@ ServoTick::ServoTick(Device& device, Channel& channel, const ServoSettings& sett
       chain_(safety_),
       watch_(safety_),
       mapping_(settings.mapping),
-      passivity_(passivity_settings(info_)) {}
+      passivity_(passivity_settings(info_, safety_.energy_bound)) {}
 
 void ServoTick::read_application() noexcept {
   if (!channel_.read(application_)) return;
@@ -89,8 +94,8 @@ void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
 
 Wrench ServoTick::coupling(double& stored) noexcept {
   ProxyState x = proxy_of(application_);
-  if (settings_.local_model && local_.update(planes_of(application_), gyration_of(application_), command_.center,
-                                             mapping_.Y(), mapping_.velocity(), x))
+  if (settings_.local_model && local_.update(planes_of(application_), coupling_radius(coupling_, mapping_.scale()),
+                                             command_.center, mapping_.Y(), mapping_.velocity(), x))
     flags_ |= TEGOTAE_SHM_FLAG_LOCAL;
   if (!x.touching) return {};
   // The hand feels the set stiffness whatever the scale: lengths of the world are as long as the pen's way to them.
@@ -115,8 +120,9 @@ void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
 
   double stored = 0;
   if (attached_ && sane_ && in.pen_proper) in.wanted = coupling(stored);
-  passivity_.observe(moved_, rendered_, stored, whole_, in.dt);
-  if (safety_.passivity_control && stored > 0 && passivity_.energy() < 0 && coupling_.stiffness > 0) {
+  passivity_.observe(moved_, rendered_, stored, whole_, in.dt,
+                     step_energy(moved_, coupling_, info_.position_resolution, in.dt));
+  if (safety_.passivity_control && stored > 0 && passivity_.acts() && coupling_.stiffness > 0) {
     const Wrench damping = passivity_.controller(coupling_.torsional_stiffness / coupling_.stiffness);
     in.wanted.force += damping.force;
     in.wanted.torque += damping.torque;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/lag.hpp"
 #include "sim/scene_parts.hpp"
@@ -16,6 +17,15 @@ std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
   auto own = settings.custom_resolver(kMostLimits);
   if (!own) throw Error("contact.custom_resolver made no resolver");
   return own;
+}
+
+/// The law of the coupling, by which part and force go together; but the paper's programme is in the mass metric.
+bool is_in_mass_metric(const ContactSettings& settings) {
+  return !settings.custom_resolver && settings.resolver == "lp";
+}
+
+Metric metric_of(const Scene& scene, const ContactSettings& settings, const MassProperties& mass) {
+  return is_in_mass_metric(settings) ? Metric(mass) : Metric(coupling_radius(scene.coupling, scene.scale));
 }
 
 // Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
@@ -63,12 +73,16 @@ constexpr double kRest = 1e-10;
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 // It never falls below this length (m), or a part whose way was blocked would not try again.
 constexpr double kLeastTrust = 1e-8;
-// A rotation error larger than this (rad) is taken in parts.
+// In the mass metric a rotation error larger than this (rad) is taken in parts: the metric of a rotation vector has its
+// slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
+// always.
 constexpr double kMostTurn = 0.5;
 // While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
 // so many: like static friction, it ends the creep that is left where limits change with every piece.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
+// Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
+constexpr double kFeltLag = 0.05;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
@@ -82,11 +96,12 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
     : settings_(settings),
       center_(mass.center),
       at_(scene, settings, mass),
-      metric_(mass),
+      metric_(metric_of(scene, settings, mass)),
+      most_turn_(is_in_mass_metric(settings) ? kMostTurn : std::numeric_limits<double>::infinity()),
       resolver_(resolver_of(settings)),
       rows_(kMostLimits),
       bounds_(kMostLimits),
-      planes_(kMostLimits) {
+      planes_(kMostLimits, scene.coupling, scene.scale) {
   trust_ = piece_cap_ = at_.check->longest_motion();
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
   least_keep_ = std::isnan(scene.contact.l_min) ? std::min(kLeastKeep, most_keep_) : most_keep_;
@@ -150,12 +165,6 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   at_.tell(keep_ / kKeepShare, report);
   // Where the kept gap has shrunk, contacts may hold the part a little above it.
   if (report.contacts == 0 && wanted > keep_ && report.gap <= settings_.l_min) at_.tell(settings_.l_min, report);
-  // Out of time, the limits may be those of an earlier pose.
-  report.planes.count = 0;
-  if (tracked_) {
-    metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, X_, Y, center_, keep_, report.planes);
-  }
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
   const double left = size(displacement(X_, Y, center_));
@@ -167,6 +176,29 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
   report.cut |= late();
   was_cut_ = report.cut;
+  tell_forces(Y, report);
+}
+
+void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
+  report.planes.count = 0;
+  report.forces = {};
+  // Where X is not what the coupling's law gives, the wrench is not the contacts', and planes would make it another X.
+  if (!resolver_->projects()) return;
+  if (tracked_) {
+    metric_.set_orientation(X_.q);
+    planes_.pick(at_.contacts->limits(), metric_, X_, Y, center_, keep_, report.planes, report.forces);
+  } else {
+    // Out of time, the limits may be those of an earlier pose.
+    report.forces.lag = planes_.pull(displacement(X_, Y, center_));
+  }
+  // What holds the part back is no contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
+  const bool held_up = report.lag_reason == LagReason::time || report.lag_reason == LagReason::capacity;
+  const Wrench whole = planes_.pull(displacement(X_, Y, center_));
+  const Wrench& lag = report.forces.lag;
+  if (held_up &&
+      (lag.force.norm() > kFeltLag * whole.force.norm() || lag.torque.norm() > kFeltLag * whole.torque.norm()))
+    report.planes.count = 0;
+  if (!report.proxy.touching) report.forces = {};
 }
 
 bool ContactLoop::late() const {
@@ -216,11 +248,9 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   if (!track()) return 0;
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
-  // Of a large turn just the next part is aimed at: the mass metric of a rotation vector has its slope towards the
-  // target only while the angle is small.
   const double turn = error.dr.norm();
-  if (turn > kMostTurn) error.dr *= kMostTurn / turn;
-  const Pose goal = turn > kMostTurn ? displaced(X_, center_, error) : Y;
+  if (turn > most_turn_) error.dr *= most_turn_ / turn;
+  const Pose goal = turn > most_turn_ ? displaced(X_, center_, error) : Y;
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
   bool found = false;

@@ -46,6 +46,8 @@ class ContactLoop final : public ProxyLoop {
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;
+  /// Sets what the report says of contact planes and forces.
+  void tell_forces(const Pose& Y, TickReport& report);
   /// Fits the gap that contacts keep to the room that the part has.
   void adapt_keep(const Pose& Y);
   /// Whether contacts press from opposite sides.
@@ -63,6 +65,7 @@ class ContactLoop final : public ProxyLoop {
   Surroundings at_;
   double piece_cap_;  ///< longest piece near other parts, m
   Metric metric_;
+  double most_turn_;  ///< of a rotation error, rad
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;

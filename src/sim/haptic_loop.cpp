@@ -179,8 +179,11 @@ const std::vector<Contact>& HapticLoop::limits() const {
 const Vec3& HapticLoop::center() const {
   return state_->now->mass.center;
 }
-Mat3 HapticLoop::gyration() const {
-  return state_->now->mass.inertia / state_->now->mass.mass;
+double HapticLoop::radius_of_gyration() const {
+  return tegotae::radius_of_gyration(state_->now->mass);
+}
+const CouplingSettings& HapticLoop::coupling() const {
+  return state_->now->coupling;
 }
 double HapticLoop::lag_bound() const {
   return tegotae::lag_bound(state_->now->radius);

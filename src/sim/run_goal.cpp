@@ -19,7 +19,7 @@ RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
       end_(file.script.pose(file.script.end())),
       from_(file.script.pose(file.script.begin()) * center) {
   // The part goes `scale` times the pen's way.
-  end_ = displaced(end_, center, {(file.scale - 1) * (end_ * center - from_), Vec3::Zero()});
+  end_ = displaced(end_, center, {(file.scene.scale - 1) * (end_ * center - from_), Vec3::Zero()});
   const Vec3 way = end_ * center - from_;
   if (way.norm() > 0) direction_ = way.normalized();
   const SimulatedDeviceSettings& pen = file.device;

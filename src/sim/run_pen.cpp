@@ -33,9 +33,9 @@ class LocalPen final : public RunPen {
         device_(make_device(file, loop, wall_clock, hand)),
         channel_(Channel::create()),
         servo_(device_, channel_, servo_settings(file)),
-        link_(channel_, file.scene.coupling, loop.center(), loop.gyration()),
-        stability_(tegotae::stability(device_.info(), file.scene.coupling, ServoSettings().rate_hz).text()) {
-    link_.set_scale(file.scale);
+        link_(channel_, loop.coupling(), loop.center()),
+        stability_(tegotae::stability(device_.info(), loop.coupling(), ServoSettings().rate_hz).text()) {
+    link_.set_scale(file.scene.scale);
     if (guide) device_.follow(*guide);
   }
 
@@ -62,8 +62,8 @@ class LocalPen final : public RunPen {
                std::int64_t now_ns) noexcept override {
     link_.publish(proxy, tick, device_sequence, now_ns, planes);
   }
-  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept override {
-    link_.hold(center, gyration, X);
+  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
+    link_.hold(center, coupling, X);
     homed_ = true;
   }
 
@@ -89,7 +89,7 @@ class LocalPen final : public RunPen {
 class RemotePen final : public RunPen {
  public:
   RemotePen(const std::string& device, const SceneFile& file, const HapticLoop& loop)
-      : attachment_(device, file.scene.coupling, loop.center(), loop.gyration(), file.scale) {}
+      : attachment_(device, loop.coupling(), loop.center(), file.scene.scale) {}
 
   void start() override {}
   void stop() override {}
@@ -102,8 +102,8 @@ class RemotePen final : public RunPen {
     attachment_.publish(proxy, tick, device_sequence, now_ns, planes);
   }
 
-  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept override {
-    attachment_.hold(center, gyration, X);
+  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
+    attachment_.hold(center, coupling, X);
   }
 
   bool connected() const noexcept override { return attachment_.connected(); }

@@ -29,7 +29,7 @@ class RunPen {
                        std::uint64_t device_sequence, std::int64_t now_ns) noexcept = 0;
 
   /// Another part is held from now on (see ContactLink::hold); there is no sample until the servo has heard of it.
-  virtual void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept = 0;
+  virtual void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept = 0;
 
   virtual bool connected() const noexcept = 0;
   virtual std::uint64_t losses() const noexcept = 0;

@@ -52,6 +52,19 @@ ContactSettings completed(ContactSettings s, double radius) {
   return s;
 }
 
+CouplingSettings fitted(const Scene& scene, const MassProperties& mass) {
+  CouplingSettings coupling = scene.coupling;
+  if (scene.torsional_stiffness_most)
+    coupling.torsional_stiffness = fitted_torsional_stiffness(
+        coupling.stiffness, radius_of_gyration(mass) / scene.scale, *scene.torsional_stiffness_most);
+  return coupling;
+}
+
+Scene coupled_by(Scene scene, const CouplingSettings& coupling) {
+  scene.coupling = coupling;
+  return scene;
+}
+
 const Scene& checked(const Scene& scene) {
   for (const Part& p : scene.parts)
     if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
@@ -69,7 +82,8 @@ RunningScene::RunningScene(const Scene& scene)
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
       radius(radius_about(*held_mesh, mass.center)),
-      loop(make_proxy_loop(scene, settings, mass)) {
+      coupling(fitted(scene, mass)),
+      loop(make_proxy_loop(coupled_by(scene, coupling), settings, mass)) {
   std::vector<Obstacle> list;
   for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});
   obstacles = std::make_shared<const std::vector<Obstacle>>(std::move(list));

@@ -26,9 +26,10 @@ struct RunningScene {
   std::string held;  ///< name of the held part
   std::shared_ptr<const TriangleMesh> held_mesh;
   bool keeps_out;  ///< no tick leaves the held part nearer to an obstacle than kGapFloor, pairs of start() aside
-  ContactSettings settings;  ///< nothing left open
-  MassProperties mass;       ///< of the held part
-  double radius;             ///< of the held part about its center of mass, m
+  ContactSettings settings;   ///< nothing left open
+  MassProperties mass;        ///< of the held part
+  double radius;              ///< of the held part about its center of mass, m
+  CouplingSettings coupling;  ///< nothing left open
   std::unique_ptr<ProxyLoop> loop;
   RunningScene* done_before = nullptr;  ///< see Handover
 

@@ -11,8 +11,10 @@
 #include "sim/contact_loop.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/coupling/stability.hpp"
 #include "tegotae/resolve/resolver.hpp"
 #include "tegotae/servo/mapping.hpp"
+#include "tegotae/servo/servo.hpp"
 
 namespace tegotae {
 
@@ -175,6 +177,13 @@ SimulatedDeviceSettings read_device(const TomlTable& t) {
   return s;
 }
 
+/// Of a torsional stiffness that the file leaves open, N·m/rad.
+double torsion_bound(const SimulatedDeviceSettings& device, const CouplingSettings& coupling) {
+  const DeviceInfo info = device_info(device);
+  const StabilityReport report = stability(info, coupling, ServoSettings().rate_hz);
+  return torsional_stiffness_bound(report.torsional_stiffness_limit, info.limits.torque);
+}
+
 /// A script of a hand that stays where the held part starts.
 StylusScript rest(const Scene& scene) {
   const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
@@ -193,8 +202,9 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance",
                                      "initial_overlap", "density", "impulse", "penalty"}),
                scene.contact);
-  read_coupling(top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"}),
-                scene.coupling);
+  const TomlTable coupling =
+      top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"});
+  read_coupling(coupling, scene.coupling);
   SafetySettings safety;
   read_safety(top.table("safety", {"force_limit", "torque_limit", "continuous_force", "force_slew", "torque_slew",
                                    "velocity_limit", "heartbeat_timeout"}),
@@ -208,7 +218,9 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   }
   read_parts(top, folder, options, scene);
   if (!script) script = rest(scene);
-  return {path, std::move(scene), settings, std::move(*script), safety, read_scale(device), std::move(text)};
+  scene.scale = read_scale(device);
+  if (!coupling.has("torsional_stiffness")) scene.torsional_stiffness_most = torsion_bound(settings, scene.coupling);
+  return {path, std::move(scene), settings, std::move(*script), safety, std::move(text)};
 }
 
 }  // namespace tegotae

@@ -13,6 +13,7 @@
 #include "sim/run_pen.hpp"
 #include "sim/run_stretches.hpp"
 #include "sim/scene_parts.hpp"
+#include "sim/torsion.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -39,6 +40,12 @@ std::unique_ptr<RunPen> make_pen(const SceneFile& file, const RunSettings& setti
   return make_remote_pen(settings.device, file, loop);
 }
 
+/// `file` for the device that it is run with.
+SceneFile for_device(SceneFile file, const RunSettings& settings) {
+  file.scene = bounded_by(std::move(file.scene), settings.device);
+  return file;
+}
+
 /// How long to run, s.
 double duration(const SceneFile& file, const RunSettings& settings) {
   if (settings.seconds > 0) return settings.seconds;
@@ -56,16 +63,16 @@ void sleep_until(std::int64_t time_ns) {
 class Session {
  public:
   Session(const SceneFile& file, const RunSettings& settings)
-      : file_(file),
+      : file_(for_device(file, settings)),
         settings_(settings),
-        loop_(make_loop(file, settings.real_time)),
-        pen_(make_pen(file, settings, loop_)),
-        goal_(file, loop_.center()),
-        duration_(duration(file, settings)),
-        stretches_(file, settings, loop_) {
+        loop_(make_loop(file_, settings.real_time)),
+        pen_(make_pen(file_, settings, loop_)),
+        goal_(file_, loop_.center()),
+        duration_(duration(file_, settings)),
+        stretches_(file_, settings, loop_) {
     if (settings.progress) settings.progress->duration = duration_;
     summary_.stability = pen_->stability();
-    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability});
+    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability, torsion_text(file_.scene, loop_)});
   }
 
   RunSummary run() {
@@ -158,7 +165,7 @@ class Session {
   /// Another part is held: the pen comes to mean it where it is.
   void hold(PenSample& pen) noexcept {
     const Pose& X = loop_.report().proxy.X;
-    pen_->hold(loop_.center(), loop_.gyration(), X);
+    pen_->hold(loop_.center(), loop_.coupling(), X);
     pen.state.pose = X;
     pen.state.velocity = {};
     holds_first_ = stretches_.now().held == held_part(file_.scene).name;
@@ -182,6 +189,7 @@ class Session {
     frame.gap = report.gap;
     frame.tick_us = tick_us;
     frame.lag_reason = report.lag_reason;
+    frame.forces = report.forces;
     for (const Pose& X : report.pieces) {
       frame.x = X;
       stretches_.now().recorder->push(frame);
@@ -209,7 +217,7 @@ class Session {
     p.device.store(true, std::memory_order_relaxed);
   }
 
-  const SceneFile& file_;
+  const SceneFile file_;
   const RunSettings& settings_;
   HapticLoop loop_;
   std::unique_ptr<RunPen> pen_;

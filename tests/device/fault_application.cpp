@@ -23,7 +23,7 @@ void say(const char* what, std::int64_t now, std::int64_t before, std::int64_t h
 void run(const char* device) {
   const Scene scene = test::press_scene();
   HapticLoop loop(scene);
-  Attachment pen(device, scene.coupling, loop.center(), loop.gyration());
+  Attachment pen(device, loop.coupling(), loop.center());
   PenSample sample;
   bool following = false;
   std::int64_t now = monotonic_ns(), before = now;

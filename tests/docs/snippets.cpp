@@ -7,7 +7,7 @@ using namespace tegotae;
 
 /// docs/device-protocol.md: a contact loop of one's own.
 void own_contact_loop(const Scene& scene, HapticLoop& loop, double dt, std::uint64_t ticks) {
-  Attachment pen("shm:tegotae-pen", scene.coupling, loop.center(), loop.gyration());
+  Attachment pen("shm:tegotae-pen", loop.coupling(), loop.center());
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     PenSample sample;
     if (pen.read(sample, monotonic_ns())) loop.step(sample.state.pose, dt);  // otherwise the part stays

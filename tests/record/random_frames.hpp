@@ -63,4 +63,17 @@ inline RecordFrame random_frame(std::mt19937_64& rng) {
   return f;
 }
 
+/// Forces of any bits.
+inline ContactForces random_forces(std::mt19937_64& rng) {
+  const auto number = [&rng] { return random_double(rng); };
+  const auto vector = [&] { return Vec3(number(), number(), number()); };
+  ContactForces out;
+  out.count = static_cast<int>(rng() % (ContactForces::kMost + 1));
+  for (int i = 0; i < out.count; ++i)
+    out.items[static_cast<std::size_t>(i)] = {static_cast<std::uint32_t>(rng()), vector(), vector(), number(),
+                                              number()};
+  out.lag = {vector(), vector()};
+  return out;
+}
+
 }  // namespace tegotae::test

@@ -40,10 +40,11 @@ def main(mcap_path, csv_path):
     with open(mcap_path, "rb") as file:
         reader = SeekingReader(file, validate_crcs=True)
         summary = reader.get_summary()
-        assert summary.statistics.message_count == 5 * len(rows)
+        assert summary.statistics.message_count == 6 * len(rows)
         assert set(summary.statistics.channel_message_counts.values()) == {len(rows)}
         assert len(summary.chunk_indexes) == summary.statistics.chunk_count > 1
-        assert sorted(c.topic for c in summary.channels.values()) == ["/contact", "/part", "/pen", "/tick", "/wrench"]
+        assert sorted(c.topic for c in summary.channels.values()) == ["/contact", "/forces", "/part", "/pen", "/tick",
+                                                                     "/wrench"]
         metadata = list(reader.iter_metadata())
         assert len(metadata) == 1 and metadata[0].metadata["scene"] and metadata[0].metadata["held"] == "peg"
         assert frames(reader) == rows

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "catch.hpp"
+#include "record/frame_messages.hpp"
+#include "record/mcap_format.hpp"
 #include "record/random_frames.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recorder.hpp"
@@ -46,6 +48,28 @@ std::vector<RecordFrame> record(const std::string& path, int frames, const Recor
   return out;
 }
 
+/// As versions wrote it that knew no contact forces; without chunks.
+std::string without_forces(const std::vector<RecordFrame>& frames) {
+  mcap::Bytes file;
+  file.text = mcap::kMagic;
+  const auto id = [](std::size_t topic) { return static_cast<std::uint16_t>(topic + 1); };
+  for (std::size_t i = 0; i < kFrameTopics; ++i)
+    if (i != kForcesTopic)
+      file.record(mcap::kChannel, mcap::Bytes()
+                                      .put(id(i))
+                                      .put(std::uint16_t{0})
+                                      .put(std::string_view(kTopics[i].topic))
+                                      .put(std::string_view("json")));
+  for (const RecordFrame& frame : frames) {
+    for (std::size_t i = 0; i < kFrameTopics; ++i) {
+      mcap::Bytes message = mcap::Bytes().put(id(i)).put(std::uint32_t{0}).put(std::uint64_t{0}).put(std::uint64_t{0});
+      message.text += message_text(frame, i);
+      if (i != kForcesTopic) file.record(mcap::kMessage, message);
+    }
+  }
+  return file.record(mcap::kDataEnd, mcap::Bytes().put(std::uint32_t{0})).text;
+}
+
 }  // namespace
 
 TEST_CASE("a recording comes back bit by bit, with its info", "[recording]") {
@@ -61,6 +85,43 @@ TEST_CASE("a recording comes back bit by bit, with its info", "[recording]") {
   CHECK(read.info.program == info.program);
   REQUIRE(read.frames.size() == frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) REQUIRE(same(read.frames[i], frames[i]));
+}
+
+TEST_CASE("contact forces come back from MCAP, and a recording of a version without them is read", "[recording]") {
+  const TemporaryFile file(".mcap");
+  std::mt19937_64 rng(12);
+  std::vector<RecordFrame> frames;
+  for (int i = 0; i < 300; ++i) {
+    frames.push_back(random_frame(rng));
+    frames.back().forces = test::random_forces(rng);
+  }
+  Recorder recorder(file.path, RecordMode::synchronous);
+  for (const RecordFrame& f : frames) recorder.push(f);
+  recorder.close();
+  const Recording read = read_recording(file.path);
+  REQUIRE(read.frames.size() == frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const ContactForces &a = frames[i].forces, &b = read.frames[i].forces;
+    REQUIRE(same(read.frames[i], frames[i]));
+    REQUIRE(a.count == b.count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(a.count); ++k) {
+      REQUIRE(a.items[k].part == b.items[k].part);
+      REQUIRE(a.items[k].point == b.items[k].point);
+      REQUIRE(a.items[k].n == b.items[k].n);
+      REQUIRE(a.items[k].gap == b.items[k].gap);
+      REQUIRE(a.items[k].force == b.items[k].force);
+    }
+    REQUIRE(a.lag.force == b.lag.force);
+    REQUIRE(a.lag.torque == b.lag.torque);
+  }
+  write(file.path, without_forces(frames));
+  const Recording old = read_recording(file.path);
+  CHECK(old.damage.empty());
+  REQUIRE(old.frames.size() == frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    REQUIRE(same(old.frames[i], frames[i]));
+    REQUIRE(old.frames[i].forces.count == 0);
+  }
 }
 
 TEST_CASE("a recording without info takes no one else's", "[recording]") {

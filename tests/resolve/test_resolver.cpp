@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "resolve/metric.hpp"
@@ -30,6 +32,24 @@ TEST_CASE("whitened coordinates are the mass metric, and rows keep their meaning
     const Mat3 I_W = q.toRotationMatrix() * mass.inertia * q.toRotationMatrix().transpose();
     const double expected = d.dp.squaredNorm() + d.dr.dot(I_W * d.dr) / mass.mass;
     REQUIRE(metric.whiten(d).squaredNorm() == Approx(expected).epsilon(1e-10));
+    const Displacement back = metric.unwhiten(metric.whiten(d));
+    REQUIRE((back.dp - d.dp).norm() < 1e-15);
+    REQUIRE((back.dr - d.dr).norm() < 1e-14);
+    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, 0, 0};
+    REQUIRE(metric.row(c).dot(metric.whiten(d)) == Approx(c.n.dot(d.dp + d.dr.cross(c.r))).margin(1e-15));
+  }
+}
+
+TEST_CASE("in the metric of the coupling the squared length is the springs' energy, the same about every axis",
+          "[resolve]") {
+  std::mt19937 rng(53);
+  const double k = 700, torsional = 0.2;
+  Metric metric(std::sqrt(torsional / k));
+  for (int i = 0; i < 200; ++i) {
+    metric.set_orientation(rotation(3 * random_direction(rng)));
+    const Displacement d{random_vector(rng, 1e-3), random_vector(rng, 1e-2)};
+    const double energy = 0.5 * (k * d.dp.squaredNorm() + torsional * d.dr.squaredNorm());
+    REQUIRE(0.5 * k * metric.whiten(d).squaredNorm() == Approx(energy).epsilon(1e-12));
     const Displacement back = metric.unwhiten(metric.whiten(d));
     REQUIRE((back.dp - d.dp).norm() < 1e-15);
     REQUIRE((back.dr - d.dr).norm() < 1e-14);

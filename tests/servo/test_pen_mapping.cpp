@@ -227,7 +227,7 @@ TEST_CASE("an attachment keeps its scale over devices", "[servo]") {
     Channel channel = Channel::create(name);
     Servo servo(device, channel, {});
     device.state.pose = {};
-    if (!pen) pen.emplace("shm:" + name, CouplingSettings{}, Vec3::Zero(), Mat3::Zero(), 5);
+    if (!pen) pen.emplace("shm:" + name, CouplingSettings{}, Vec3::Zero(), 5);
     ProxyState x;
     x.X.p = Vec3(0.1, 0, 0);
     PenSample sample;

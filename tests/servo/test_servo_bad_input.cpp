@@ -63,7 +63,7 @@ TEST_CASE("every field of the application's slot may hold garbage, one at a time
   PuppetDevice device;
   device.state.pose.p = Vec3(0, 0, -0.002);
   Channel channel = Channel::create();
-  ContactLink link(channel, {}, Vec3(0.01, 0, 0), 1e-4 * Mat3::Identity());
+  ContactLink link(channel, {}, Vec3(0.01, 0, 0));
   Servo servo(device, channel);
   std::mt19937_64 rng(12);
   ContactPlanes planes;
@@ -78,7 +78,13 @@ TEST_CASE("every field of the application's slot may hold garbage, one at a time
     // Long enough without garbage to be engaged and to press.
     const int phase = i % 400;
     planes.pen = device.state.pose;
-    link.publish(phase < 300 ? ProxyState() : touching_at(Vec3::Zero()), 0, 0, now, planes);
+    // Where garbage has left the pen, back into the wall.
+    if (phase == 0) link.home(device.state.pose);
+    // A plane holds the part wherever it is known; so it comes with the contact.
+    if (phase < 300)
+      link.publish({}, 0, 0, now);
+    else
+      link.publish(touching_at(Vec3::Zero()), 0, 0, now, planes);
     if (phase >= 340) {
       tegotae_shm_application slot;
       REQUIRE(channel.read(slot));

@@ -44,7 +44,7 @@ Forces run(const Scene& scene, Path path, int every, bool local_model) {
   HapticLoop loop(unhurried);
   PuppetDevice device;
   Channel channel = Channel::create();
-  ContactLink link(channel, scene.coupling, loop.center(), loop.gyration());
+  ContactLink link(channel, loop.coupling(), loop.center());
   ServoSettings settings;
   settings.local_model = local_model;
   settings.safety.slew = {1e9, 1e9};

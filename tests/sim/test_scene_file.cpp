@@ -168,7 +168,7 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(safety.slew.torque == 8);
   CHECK(safety.velocity_limit == 0.9);
   CHECK(safety.heartbeat_timeout == 0.01);
-  CHECK(file.scale == 0.5);
+  CHECK(file.scene.scale == 0.5);
   const HandSettings& hand = file.device.hand;
   CHECK(hand.stiffness == 11);
   CHECK(hand.damping == 12);
@@ -382,7 +382,7 @@ scale = 2.5
     CHECK(read.scene.contact.l_min == file.scene.contact.l_min);
     CHECK(read.scene.contact.penalty.stiffness == file.scene.contact.penalty.stiffness);
     CHECK(read.safety.limits.force == 3.3);
-    CHECK(read.scale == 2.5);
+    CHECK(read.scene.scale == 2.5);
     CHECK(read.script.end() == file.script.end());
   }
   // The script is for the part that the file holds.

@@ -83,8 +83,10 @@ TEST_CASE("the force at a seat is stiffness times depth of the hand from the fir
   CHECK((w.force - k * (depth + h) * seat.up).norm() < 1e-6);
   CHECK(w.force.norm() == Approx(k * depth).epsilon(1e-2));
   CHECK(w.torque.norm() < 1e-6);
-  // Pressed and turned about the board's x by an angle that does not lift it: the torque of that angle.
-  const double angle = 0.02;
+  // Pressed and turned about the board's x by an angle that does not lift it, k_t · angle < k · depth · half the side:
+  // the torque of that angle.
+  const double angle = 0.01;
+  REQUIRE(kt * angle < 0.8 * k * depth * 0.005);
   for (int i = 0; i < 50; ++i) w = hand.to({rotation(angle * seat.along) * seat.X0.q, pressed.p});
   rests();
   CHECK((w.torque + kt * angle * seat.along).norm() < 0.02 * kt * angle);

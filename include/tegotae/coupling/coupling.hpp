@@ -14,6 +14,18 @@ struct CouplingSettings {
   double torsional_damping = 0.004;  ///< N·m·s/rad
 };
 
+/// How much a turn weighs against a shift in the springs' energy, as a length (m): √(k_t / k), 19 mm by default, in the
+/// lengths of the world when the part moves `scale` meters for a meter of the pen. The held part goes where this energy
+/// is least, which is why what the hand feels is the sum of the contact forces. Within 0.1 mm to 10 m whatever the
+/// stiffnesses are (one of them may be zero).
+double coupling_radius(const CouplingSettings& settings, double scale = 1) noexcept;
+
+/// The torsional stiffness (N·m/rad) that fits a part whose radius of gyration is `radius` (m, in the pen's lengths):
+/// stiffness × radius², so that turning it and shifting it feel equally hard; at least the default of
+/// CouplingSettings, which small parts need no less of, and at most `most`, what device and stability allow
+/// (torsional_stiffness_bound()).
+double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept;
+
 /// What the coupling needs of the held part: its pose `X` and the velocity of its center of mass, in the world.
 struct ProxyState {
   Pose X;                 ///< X_WF of its file frame

@@ -28,4 +28,10 @@ struct StabilityReport {
 /// Of `coupling` on `device` at `rate_hz`.
 StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coupling, double rate_hz);
 
+/// The most that fitted_torsional_stiffness() should choose (N·m/rad) for a device of which `limit` is
+/// StabilityReport::torsional_stiffness_limit and `torque` its peak (N·m): half of the limit, and not so stiff that the
+/// peak is reached within 0.05 rad, where a step of the pen's angle would be felt. Where the limit is not known (NaN or
+/// 0), the default of CouplingSettings.
+double torsional_stiffness_bound(double limit, double torque) noexcept;
+
 }  // namespace tegotae

@@ -40,7 +40,7 @@
 /** The bytes "TEGOTAE1" in little-endian order. */
 #define TEGOTAE_SHM_MAGIC UINT64_C(0x314541544F474554)
 /** Changes with every change of the layout or of a field's meaning. */
-#define TEGOTAE_SHM_VERSION UINT32_C(3)
+#define TEGOTAE_SHM_VERSION UINT32_C(4)
 
 /** Bytes of the object that are locked, by the device's process and by the application: the kernel ends a lock of an
  * open file description with the process that holds it, so the lock is the proof that it lives. */
@@ -173,9 +173,8 @@ struct tegotae_shm_application {
   double home_orientation[4]; /**< of the same */
   double pen_position[3];     /**< Y that this tick answered */
   double pen_orientation[4];  /**< of the same */
-  double gyration[6];   /**< inertia over mass of the held part about its center, file frame, m^2: xx yy zz xy xz yz */
-  uint32_t plane_count; /**< contact planes that hold, up to TEGOTAE_SHM_PLANES; 0: X stays until the next tick */
-  uint32_t reserved;    /**< 0 */
+  uint32_t plane_count;       /**< contact planes that hold, up to TEGOTAE_SHM_PLANES; 0: X stays until the next tick */
+  uint32_t reserved;          /**< 0 */
   struct tegotae_shm_plane planes[TEGOTAE_SHM_PLANES]; /**< the first plane_count of them */
 };
 
@@ -226,17 +225,17 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, raw_position) == 240, "la
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, scale) == 296, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, session) == 368, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_plane) == 56, "layout of tegotae_shm_plane");
-TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 720, "layout of tegotae_shm_application");
+TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 672, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, touching) == 32, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, position) == 48, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, scale) == 208, "layout of tegotae_shm_application");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, plane_count) == 376, "layout of tegotae_shm_application");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, plane_count) == 328, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_statistics) == 304, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_statistics, force_off) == 104, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, device_counter) == 64, "layout of tegotae_shm_segment");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, application_counter) == 448, "layout of tegotae_shm_segment");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1216, "layout of tegotae_shm_segment");
-TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1536, "layout of tegotae_shm_segment");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1152, "layout of tegotae_shm_segment");
+TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1472, "layout of tegotae_shm_segment");
 
 /** Attempts of a read before it gives up. A write takes well under a microsecond; a reader that still fails has met a
  * writer that was preempted or killed in the middle, and goes on with what it read last. */

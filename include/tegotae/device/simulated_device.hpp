@@ -39,6 +39,9 @@ struct SimulatedDeviceSettings {
   bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
 };
 
+/// What a SimulatedDevice with these settings says of itself.
+DeviceInfo device_info(const SimulatedDeviceSettings& settings);
+
 /// A pen without hardware: a rigid body pushed by a hand, which follows a script or an operator's intent, and by the
 /// rendered wrench. Same settings, script and calls give the same bits.
 class SimulatedDevice final : public Device {

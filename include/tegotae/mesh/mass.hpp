@@ -22,4 +22,7 @@ struct MassProperties {
 /// clamped to the box.
 MassProperties mass_properties(const TriangleMesh& mesh, bool closed, double density = 1000.0);
 
+/// Of the part about its center, m: the root of the mean square over any three axes at right angles.
+double radius_of_gyration(const MassProperties& mass) noexcept;
+
 }  // namespace tegotae

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/core/contact_force.hpp"
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/lag_reason.hpp"
 #include "tegotae/core/pose.hpp"
@@ -22,6 +23,7 @@ struct RecordFrame {
   double gap = 0;                          ///< smallest known gap, m; +inf when nothing is near
   double tick_us = 0;                      ///< time that the tick took; 0 in virtual time
   LagReason lag_reason = LagReason::none;  ///< TickReport::lag_reason; none in recordings that do not tell
+  ContactForces forces{};                  ///< TickReport::forces, of the tick's end; kept in MCAP only
 };
 
 /// What a recording says of itself, so that it can be shown with its parts. Unknown texts are empty.

@@ -18,9 +18,9 @@ struct Resolution {
 };
 
 /// Turns a wanted motion of the held part into one that the limits allow. Motions are in whitened coordinates, m: the
-/// displacement of the center of mass, then the rotations about the principal axes of inertia, each times the radius of
-/// gyration about it; the length of such a vector is the root of mean square displacement of the part's mass. The
-/// answer is a proposal: the loop commits it only when its whole way is free.
+/// displacement of the center of mass, then the rotation vector in the part's axes times coupling_radius(), so that the
+/// squared length is the springs' energy by half their stiffness ("lp": rotations about the axes of inertia times the
+/// radii of gyration). The answer is a proposal: the loop commits it only when its whole way is free.
 ///
 /// One of your own (ContactSettings::custom_resolver) must not allocate, wait or throw in resolve().
 class Resolver {
@@ -29,12 +29,12 @@ class Resolver {
   /// A motion z with rows z >= bounds (rows.rows() of them, m), as near to `wanted` as the method brings it. Bounds are
   /// at most 0, so that standing still is allowed, or a little above where gaps should open.
   virtual Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept = 0;
-  /// Whether the answer is the allowed motion nearest to the wanted one. If not, it may be no motion at all although
-  /// some would lead nearer.
+  /// Whether the answer is the allowed motion nearest to the wanted one: then there are contact forces, and planes for
+  /// the servo. If not, it may be no motion at all although some would lead nearer.
   virtual bool projects() const = 0;
 };
 
-/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (Gauss's least constraint), and two
+/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (the springs' least energy), and two
 /// that solve no programme but are loops of their own, "impulse" and "penalty" (see src/sim).
 const std::vector<std::string>& resolver_names();
 /// "lp" or "qp", for at most `capacity` rows. Throws Error for another name.

@@ -20,8 +20,7 @@ class Attachment {
  public:
   /// `device` is "shm:NAME", the name of the segment; the others as ContactLink has them. Throws Error when there is no
   /// such device, or another application has it, and when `scale` is out of range (see ContactLink::set_scale).
-  Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center,
-             const Mat3& gyration = Mat3::Zero(), double scale = 1);
+  Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center, double scale = 1);
 
   /// The newest sample of the pen. False, and `pen` untouched, when there is none to follow: the device's heartbeat is
   /// older than 20 ms or its process gone (then it is looked for ten times a second, the only time that a call may take
@@ -32,7 +31,7 @@ class Attachment {
                const ContactPlanes& planes = {}) noexcept;
 
   /// As ContactLink::hold, for this device and those that come after it.
-  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept;
+  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
 
   /// The device's heartbeat was fresh at the last read().
   bool connected() const noexcept { return connected_; }
@@ -48,7 +47,6 @@ class Attachment {
   std::string name_;
   CouplingSettings coupling_;
   Vec3 center_;
-  Mat3 gyration_;
   double scale_;
   std::optional<Channel> channel_;
   std::optional<ContactLink> link_;  // of channel_

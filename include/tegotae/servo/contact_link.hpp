@@ -32,10 +32,9 @@ struct PenSample {
 /// The contact loop's end of a channel: pen in, proxy out.
 class ContactLink {
  public:
-  /// `center` is the held part's center of mass in its file frame, m; `gyration` its inertia over its mass about that
-  /// center, m² (zero: the servo makes no use of contact planes). Keeps a reference to `channel`.
-  ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center,
-              const Mat3& gyration = Mat3::Zero());
+  /// `coupling` is the contact loop's own (HapticLoop::coupling), `center` the held part's center of mass in its file
+  /// frame, m. Keeps a reference to `channel`.
+  ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center);
 
   /// The newest sample of the pen; false and `pen` untouched before the servo's first tick.
   bool read(PenSample& pen) const noexcept;
@@ -53,8 +52,8 @@ class ContactLink {
   void set_clutch(Clutch clutch) noexcept { clutch_ = clutch; }
   /// From now on the pen, where it is, means the held part at `X` (file frame).
   void home(const Pose& X) noexcept;
-  /// Another part is held from now on, of which this is the center and gyration, and the pen means it at `X`.
-  void hold(const Vec3& center, const Mat3& gyration, const Pose& X) noexcept;
+  /// Another part is held from now on, of which this is the center, with this coupling, and the pen means it at `X`.
+  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
   /// Whether the servo listens to this application and has obeyed its home commands when it told `pen`.
   bool obeyed(const PenSample& pen) const noexcept;
 
@@ -62,7 +61,6 @@ class ContactLink {
   Channel& channel_;
   CouplingSettings coupling_;
   Vec3 center_;
-  Mat3 gyration_;
   std::int64_t session_;  // when this application attached
   bool enable_ = true;
   double scale_ = 1;

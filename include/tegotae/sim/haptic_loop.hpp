@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tegotae/contact/contact.hpp"
+#include "tegotae/core/contact_force.hpp"
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/lag_reason.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
@@ -21,14 +22,19 @@ struct TickReport {
   std::vector<Pose> pieces;  ///< the free poses that X went through, in order; the last one is X (never empty)
   ProxyState proxy;          ///< X, its velocity, and whether it touches
   ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
-  int contacts = 0;          ///< feature pairs with a gap of at most contact_gap
-  double contact_gap = 0;    ///< what counts as contact in this tick, m
-  int limits = 0;            ///< feature pairs that limited the motion, contacts included
-  double gap = 0;            ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
-  double depth = 0;          ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
-  int candidate_parts = 0;   ///< fixed parts that passed the broad phase
-  int resolves = 0;          ///< programmes solved (penalty: Newton steps)
-  int iterations = 0;        ///< pivots of all programmes (impulse: impulses)
+  /// What the contacts exert on the held part at the end of the tick: with `forces.lag` it is the wrench of the
+  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), before the damper, the servo's newer Y and the safety
+  /// chain. Of resolvers that project (Resolver::projects, "qp"), and only while it touches; of others none is
+  /// available.
+  ContactForces forces;
+  int contacts = 0;         ///< feature pairs with a gap of at most contact_gap
+  double contact_gap = 0;   ///< what counts as contact in this tick, m
+  int limits = 0;           ///< feature pairs that limited the motion, contacts included
+  double gap = 0;           ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
+  double depth = 0;         ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
+  int candidate_parts = 0;  ///< fixed parts that passed the broad phase
+  int resolves = 0;         ///< programmes solved (penalty: Newton steps)
+  int iterations = 0;       ///< pivots of all programmes (impulse: impulses)
   ResolveStatus status = ResolveStatus::not_needed;  ///< of the last programme or step of the tick
   double fraction = 1;                               ///< part of the wanted motion made, in [0, 1]
   bool cut = false;                                  ///< time or work ran out before the wanted motion was decided
@@ -102,10 +108,11 @@ class HapticLoop {
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;
-  const Vec3& center() const;              ///< center of mass of the held part, m, file frame
-  Mat3 gyration() const;                   ///< its inertia over its mass about that center, m², file axes
-  const ContactSettings& contact() const;  ///< the settings in use, nothing left open
-  double lag_bound() const;                ///< lag_bound() of the held part, m
+  const Vec3& center() const;                ///< center of mass of the held part, m, file frame
+  double radius_of_gyration() const;         ///< of the held part about that center, the mean over three axes, m
+  const CouplingSettings& coupling() const;  ///< in use: give these to the servo (ContactLink); see Scene
+  const ContactSettings& contact() const;    ///< the settings in use, nothing left open
+  double lag_bound() const;                  ///< lag_bound() of the held part, m
 
  private:
   struct State;

@@ -43,7 +43,7 @@ struct ContactSettings {
   double l_min;  ///< contact below this gap (m), half of it is kept; a set value should be at most half the radial
                  ///< clearance of the closest fit, NaN lets the loop adapt it (4 to 20 µm) to the room it finds
   double l_0;    ///< back-off length (m) after an intersection
-  /// "qp": least constraint; "lp": the paper's linear programme; for comparison "impulse": collisions one at a time,
+  /// "qp": least energy; "lp": the paper's linear programme; for comparison "impulse": collisions one at a time,
   /// and "penalty": springs in proportion to penetration, the only one that lets parts interpenetrate.
   std::string resolver = "qp";
   /// Makes a resolver of your own for at most `capacity` limits, which takes the place of `resolver`; empty: none.
@@ -57,7 +57,7 @@ struct ContactSettings {
   /// What becomes of a fixed part that the held one overlaps more at the start. "refuse": an Error; "ignore": the pair
   /// is suspended (nothing keeps the two apart) until it has once come free.
   std::string initial_overlap = "refuse";
-  double density = 1000.0;  ///< kg/m³, sets how the held part weighs translation against rotation, and its mass
+  double density = 1000.0;  ///< kg/m³; for "impulse" the held part's mass (for "lp" only its distribution matters)
   ImpulseSettings impulse;  ///< for the resolver "impulse" alone
   PenaltySettings penalty;  ///< for the resolver "penalty" alone
   ContactSettings();        ///< lengths from the scene (NaN), the rest as above
@@ -68,6 +68,12 @@ struct Scene {
   std::vector<Part> parts;    ///< exactly one of them held
   ContactSettings contact;    ///< of the contact loop
   CouplingSettings coupling;  ///< of the spring and damper between part and pen
+  /// When set, coupling.torsional_stiffness is chosen for the held part, up to this (N·m/rad): see
+  /// fitted_torsional_stiffness() and HapticLoop::coupling().
+  std::optional<double> torsional_stiffness_most = {};
+  /// Meters that the held part moves for a meter of the pen: what ContactLink::set_scale() is told. Part of the law by
+  /// which the part follows the pen, because the springs are felt in the pen's lengths.
+  double scale = 1;
 };
 
 }  // namespace tegotae

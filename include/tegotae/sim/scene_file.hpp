@@ -19,7 +19,6 @@ struct SceneFile {
   SimulatedDeviceSettings device;  ///< the pen without hardware, and its hand
   StylusScript script;             ///< what the operator's hand does
   SafetySettings safety{};         ///< of the servo in this process; a device in another one has its own
-  double scale = 1;                ///< meters that the held part moves for a meter of the pen
   std::string text{};              ///< of the file, as it was read
 };
 

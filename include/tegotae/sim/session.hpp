@@ -84,6 +84,7 @@ class RunEdits {
 struct RunStart {
   const StartReport& parts;      ///< what the held part touches or overlaps
   const std::string& stability;  ///< as RunSummary::stability
+  const std::string& torsion;    ///< the torsional stiffness in use and why it is that, in one line, for people
 };
 
 /// How run_session() runs a scene.

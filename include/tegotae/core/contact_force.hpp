@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tegotae/core/export.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
+
+/// The force of one contact on the held part A: `force` along `n` at `point`.
+struct ContactForce {
+  std::uint32_t part = 0;     ///< number of the fixed part B, as Contact::part
+  Vec3 point = Vec3::Zero();  ///< of A, m, world
+  Vec3 n = Vec3::Zero();      ///< n_BA_W: unit normal from B to A, world
+  double gap = 0;             ///< m
+  double force = 0;           ///< N, positive
+};
+
+/// The contacts that carry force: no more than six are needed to hold a rigid body, however many touch. So of a face
+/// that lies flat some corners carry all; their sum is what counts.
+struct ContactForces {
+  static constexpr int kMost = 6;         ///< degrees of freedom of a free body
+  std::array<ContactForce, kMost> items;  ///< the first `count` of them hold
+  int count = 0;                          ///< 0: nothing carries, or the forces are not available
+  /// What the coupling's springs pull beyond the contacts' forces because the part is not yet where it is going: out of
+  /// time, held to a length a tick, or opening a gap. Zero at rest. At the held part's center of mass, world.
+  Wrench lag;
+
+  /// Force, and moment about `center_W` (m, world), of all contacts; with the arms divided by `scale` (see
+  /// Scene::scale).
+  Wrench sum(const Vec3& center_W, double scale = 1) const noexcept {
+    Wrench w;
+    for (int i = 0; i < count; ++i) {
+      const ContactForce& c = items[static_cast<std::size_t>(i)];
+      w.force += c.force * c.n;
+      w.torque += (c.point - center_W).cross(c.force * c.n) / scale;
+    }
+    return w;
+  }
+};
+
+}  // namespace tegotae
