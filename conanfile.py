@@ -27,6 +27,8 @@ class Tegotae(ConanFile):
         self.requires("fcl/0.7.0")
         self.requires("libccd/2.1")
         self.requires("assimp/5.2.2")
+        self.requires("draco/1.5.6")
+        self.requires("meshoptimizer/0.20")
         self.requires("tomlplusplus/3.3.0")
         self.requires("nlohmann_json/3.11.3")
         self.requires("zlib/[>=1.2.11 <2]")
