@@ -29,6 +29,8 @@ class Tegotae(ConanFile):
         self.requires("assimp/5.2.2")
         self.requires("draco/1.5.6")
         self.requires("meshoptimizer/0.20")
+        self.requires("minizip/1.3.1")
+        self.requires("pugixml/1.14")
         self.requires("tomlplusplus/3.3.0")
         self.requires("nlohmann_json/3.11.3")
         self.requires("zlib/[>=1.2.11 <2]")

@@ -70,7 +70,7 @@ std::string plain_mesh_bytes(const std::string& path) {
   } else if (extension == ".off") {
     check_off(path, bytes);
   } else {
-    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb)");
+    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
   }
   return bytes;
 }

@@ -154,12 +154,12 @@ class GltfCheck {
                count = whole_number<std::uint64_t>(from.at("count"));
     const std::string mode = from.at("mode").get<std::string>(), filter = from.value("filter", "NONE");
     const bool attributes = mode == "ATTRIBUTES";
-    const bool shape = attributes ? stride > 0 && stride % 4 == 0 && stride <= 256
-                                  : (mode == "INDICES" || (mode == "TRIANGLES" && count % 3 == 0)) &&
-                                        (stride == 2 || stride == 4);
-    const bool filtered = filter == "NONE" || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
-                                                             (filter == "QUATERNION" && stride == 8) ||
-                                                             filter == "EXPONENTIAL"));
+    const bool shape =
+        attributes ? stride > 0 && stride % 4 == 0 && stride <= 256
+                   : (mode == "INDICES" || (mode == "TRIANGLES" && count % 3 == 0)) && (stride == 2 || stride == 4);
+    const bool filtered =
+        filter == "NONE" || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                                            (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL"));
     if (offset > whole || size > whole - offset || !shape || !filtered || count > bytes || count * stride != bytes ||
         bytes > kMostCompression * size)
       refuse("damaged: " + self + " has no sizes that " + kMeshopt + " allows");

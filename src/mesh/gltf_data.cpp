@@ -139,7 +139,8 @@ std::vector<double> numbers_of(const std::string& path, const cgltf_accessor& ac
 std::vector<Vec3> points_of(const std::string& path, const cgltf_accessor& accessor) {
   const std::vector<double> numbers = numbers_of(path, accessor, 3);
   std::vector<Vec3> points(numbers.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
   return points;
 }
 

@@ -11,8 +11,7 @@ std::vector<Matrix34> joint_maps(const std::string& path, const cgltf_skin& skin
   for (std::size_t j = 0; j < skin.joints_count; ++j) maps.push_back(world_map(*skin.joints[j]));
   if (skin.inverse_bind_matrices == nullptr) return maps;
   const std::vector<double> m = numbers_of(path, *skin.inverse_bind_matrices, 16);
-  if (m.size() < 16 * maps.size())
-    throw Error(path + ": damaged: a skin has fewer inverse bind matrices than joints");
+  if (m.size() < 16 * maps.size()) throw Error(path + ": damaged: a skin has fewer inverse bind matrices than joints");
   for (std::size_t j = 0; j < maps.size(); ++j)
     maps[j] = product(maps[j], Eigen::Map<const Eigen::Matrix4d>(&m[16 * j]).topRows<3>());
   return maps;

@@ -98,8 +98,9 @@ class GltfReader {
       for (std::size_t i = 0; i < x.size(); ++i) {
         cgltf_node& of = nodes[i / components];
         (name == "ROTATION" ? of.has_rotation : name == "SCALE" ? of.has_scale : of.has_translation) = 1;
-        (name == "ROTATION" ? of.rotation : name == "SCALE" ? of.scale : of.translation)[i % components] =
-            static_cast<float>(x[i]);
+        (name == "ROTATION" ? of.rotation
+         : name == "SCALE"  ? of.scale
+                            : of.translation)[i % components] = static_cast<float>(x[i]);
       }
     }
     if (nodes.empty()) throw Error(path_ + ": damaged: the instances of a node have no places");
@@ -130,8 +131,8 @@ class GltfReader {
   }
 
   std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 3>>> posed(const cgltf_node& node,
-                                                                               const cgltf_primitive& primitive,
-                                                                               const std::vector<float>& weights) {
+                                                                                const cgltf_primitive& primitive,
+                                                                                const std::vector<float>& weights) {
     if (primitive.has_draco_mesh_compression) {
       if (primitive.targets_count > 0 || node.skin != nullptr)
         throw Error(path_ + ": a mesh compressed by Draco with a skin or morph targets is not read");

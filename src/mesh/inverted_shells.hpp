@@ -6,8 +6,8 @@
 
 namespace tegotae {
 
-/// Of a closed mesh, the shells (components) that look the wrong way: a shell inside an odd number of others is the wall
-/// of a cavity and looks inwards, any other looks outwards.
+/// Of a closed mesh, the shells (components) that look the wrong way: a shell inside an odd number of others is the
+/// wall of a cavity and looks inwards, any other looks outwards.
 std::size_t count_inverted_shells(const TriangleMesh& mesh, const Components& shells);
 
 }  // namespace tegotae

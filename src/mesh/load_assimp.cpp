@@ -70,7 +70,7 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
   const std::string bytes = plain_mesh_bytes(path);
   const std::string extension = lower_extension(path);
   const aiScene* scene = nullptr;
-  if (extension == ".obj") {  // the only format that names other files
+  if (extension == ".obj") {                      // the only format that names other files
     importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
     scene = importer.ReadFile(path, 0);
   } else {

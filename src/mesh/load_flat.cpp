@@ -45,8 +45,7 @@ void append_groups(const aiScene& scene, const aiNode& node, const Matrix34& par
   const Matrix34 X = product(parent, transform_of(node.mTransformation));
   for (unsigned m = 0; m < node.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
-    groups.push_back(
-        {static_cast<std::uint32_t>(to.triangles.size()), node.mName.C_Str(), color_of(scene, mesh)});
+    groups.push_back({static_cast<std::uint32_t>(to.triangles.size()), node.mName.C_Str(), color_of(scene, mesh)});
     append(triangles_of(mesh), X, unit, to);
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) append_groups(scene, *node.mChildren[c], X, unit, to, groups);

@@ -42,15 +42,19 @@ bool has(const std::string& text, const char* part) {
 bool is_beside_shape(const std::string& type) {
   for (const char* start : {"StepVisual_", "StepDimTol_", "StepAP203_", "StepAP214_", "StepFEA_", "StepElement_"})
     if (begins(type, start)) return true;
-  static constexpr std::array kManaged = {"Approval", "Date",          "Time",     "Person",   "Organization", "Address",
-                                          "Security", "Certification", "Contract", "Document", "Action",       "Group"};
-  return begins(type, "StepBasic_") && std::any_of(kManaged.begin(), kManaged.end(), [&](auto m) { return has(type, m); });
+  static constexpr std::array kManaged = {"Approval",     "Date",     "Time",     "Person",
+                                          "Organization", "Address",  "Security", "Certification",
+                                          "Contract",     "Document", "Action",   "Group"};
+  return begins(type, "StepBasic_") &&
+         std::any_of(kManaged.begin(), kManaged.end(), [&](auto m) { return has(type, m); });
 }
 
 /// Whether reading colors does not go through entities of this class, or looks before it does.
 bool is_beside_color(const std::string& type) {
-  static constexpr std::array kOthers = {"Point", "Curve", "Text", "Camera", "View", "Annotation", "Draughting", "Tessellated"};
-  return !begins(type, "StepVisual_") || std::any_of(kOthers.begin(), kOthers.end(), [&](auto o) { return has(type, o); });
+  static constexpr std::array kOthers = {"Point", "Curve",      "Text",       "Camera",
+                                         "View",  "Annotation", "Draughting", "Tessellated"};
+  return !begins(type, "StepVisual_") ||
+         std::any_of(kOthers.begin(), kOthers.end(), [&](auto o) { return has(type, o); });
 }
 
 bool is_tessellated(const Entity& entity) {
@@ -65,7 +69,8 @@ std::string product_of(const Entity& entity) {
   const Handle(StepRepr_PropertyDefinition) property = shown->Definition().PropertyDefinition();
   if (property.IsNull()) return "";
   const Handle(StepBasic_ProductDefinition) definition = property->Definition().ProductDefinition();
-  if (definition.IsNull() || definition->Formation().IsNull() || definition->Formation()->OfProduct().IsNull()) return "";
+  if (definition.IsNull() || definition->Formation().IsNull() || definition->Formation()->OfProduct().IsNull())
+    return "";
   const Handle(TCollection_HAsciiString) name = definition->Formation()->OfProduct()->Name();
   return name.IsNull() ? "" : name->ToCString();
 }
@@ -75,7 +80,8 @@ gp_Vec vector_of(const Handle(StepGeom_Direction) & direction) {
   return {direction->DirectionRatiosValue(1), direction->DirectionRatiosValue(2), direction->DirectionRatiosValue(3)};
 }
 
-/// What an operator does besides turning and shifting; empty when nothing. Axes that it leaves out are made right-handed.
+/// What an operator does besides turning and shifting; empty when nothing. Axes that it leaves out are made
+/// right-handed.
 std::string scale_or_mirror(const StepGeom_CartesianTransformationOperator3d& map) {
   if (map.HasScale() && std::abs(map.Scale() - 1) > 1e-9) return "scales";
   if (!map.HasAxis1() || !map.HasAxis2() || !map.HasAxis3()) return "";

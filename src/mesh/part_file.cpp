@@ -4,6 +4,7 @@
 
 #include "mesh/file_check.hpp"
 #include "mesh/gltf_read.hpp"
+#include "mesh/threemf_read.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -16,11 +17,11 @@ Matrix34 product(const Matrix34& a, const Matrix34& b) {
 
 bool is_part_file(const std::string& path) {
   const std::string extension = lower_extension(path);
-  return extension == ".gltf" || extension == ".glb";
+  return extension == ".gltf" || extension == ".glb" || extension == ".3mf";
 }
 
 PartFile read_part_file(const std::string& path) {
-  return read_gltf(path);
+  return lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
 }
 
 void append(const TriangleMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {

@@ -325,9 +325,11 @@ class PlyReader {
       }
       strip.push_back(vertex(value, place));
       const std::size_t n = strip.size();
-      if (n < 3 || strip[n - 1] == strip[n - 2] || strip[n - 2] == strip[n - 3] || strip[n - 3] == strip[n - 1]) continue;
+      if (n < 3 || strip[n - 1] == strip[n - 2] || strip[n - 2] == strip[n - 3] || strip[n - 3] == strip[n - 1])
+        continue;
       put(face_bytes_, std::uint32_t{3});
-      for (const std::size_t k : {n - 3, n % 2 == 1 ? n - 2 : n - 1, n % 2 == 1 ? n - 1 : n - 2}) put(face_bytes_, strip[k]);
+      for (const std::size_t k : {n - 3, n % 2 == 1 ? n - 2 : n - 1, n % 2 == 1 ? n - 1 : n - 2})
+        put(face_bytes_, strip[k]);
       ++faces_;
     }
   }

@@ -19,9 +19,8 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
 }
 
 bool is_word(std::string_view word, std::string_view keyword) {
-  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(), [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == b;
-  });
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
 /// The words of a text STL file, and the plain file as it becomes.
@@ -40,7 +39,8 @@ class TextStl {
         rest_of_line();
         open_ = false;
       } else if (open_ || is_word(word, "facet")) {
-        refuse(path_, "truncated or damaged: \"" + std::string(word.substr(0, 40)) + "\" where a facet or endsolid belongs");
+        refuse(path_,
+               "truncated or damaged: \"" + std::string(word.substr(0, 40)) + "\" where a facet or endsolid belongs");
       }
     }
     if (open_) refuse(path_, "truncated: the last solid has no endsolid");

@@ -288,7 +288,8 @@ class StepReader {
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
     if (parts.empty() && !tessellated_.empty()) throw Error(path_ + only_tessellated());
     for (const std::string& name : tessellated_)
-      assembly_.notes.push_back('"' + name + "\" is tessellated (triangles without exact faces), which is not read: left out");
+      assembly_.notes.push_back('"' + name +
+                                "\" is tessellated (triangles without exact faces), which is not read: left out");
   }
 
   static std::string only_tessellated() {
