@@ -66,7 +66,8 @@ int main(int argc, char** argv) {
 
   CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")->required();
+  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")
+      ->required();
 
   check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
   add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
