@@ -25,6 +25,9 @@ void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
   if (r.boundary_edges + r.non_manifold_edges + r.degenerate_faces + r.duplicate_faces > 0)
     std::printf("  %zu boundary edges, %zu non-manifold edges, %zu degenerate faces, %zu duplicate faces\n",
                 r.boundary_edges, r.non_manifold_edges, r.degenerate_faces, r.duplicate_faces);
+  if (r.inverted_shells > 0)
+    std::printf("  %zu of %zu shells look%s the wrong way: a shell faces outwards, the wall of a cavity inwards\n",
+                r.inverted_shells, r.components, r.inverted_shells == 1 ? "s" : "");
   const Vec3 lo = r.box_min / unit_in_m, hi = r.box_max / unit_in_m;
   std::printf("  box %.6g..%.6g  %.6g..%.6g  %.6g..%.6g %s\n", lo.x(), hi.x(), lo.y(), hi.y(), lo.z(), hi.z(), unit);
 }

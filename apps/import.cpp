@@ -86,8 +86,8 @@ int in_child(const std::string& file, const std::function<int()>& body) {
 }  // namespace
 
 CLI::App* add_import(CLI::App& app, ImportOptions& options) {
-  CLI::App* import = app.add_subcommand("import", "Turn an assembly (STEP, glTF) or a mesh file into a scene");
-  import->add_option("FILE", options.file, "STEP, glTF, GLB; or STL, OBJ, PLY, OFF")->required();
+  CLI::App* import = app.add_subcommand("import", "Turn an assembly (STEP, glTF, 3MF) or a mesh file into a scene");
+  import->add_option("FILE", options.file, "STEP, glTF, GLB, 3MF; or STL, OBJ, PLY, OFF")->required();
   import->add_option("-o", options.folder, "Folder to write into; it gets scene.toml and meshes/")
       ->required()
       ->type_name("DIR");

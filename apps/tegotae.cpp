@@ -66,7 +66,8 @@ int main(int argc, char** argv) {
 
   CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF) and scene files")->required();
+  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")
+      ->required();
 
   check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
   add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
@@ -81,9 +82,9 @@ int main(int argc, char** argv) {
   tries::TryOptions try_options;
   const CLI::App* tries = tries::add_try(app, try_options);
 
-  bool isolated = false;
+  bool trusted = false;
   for (CLI::App* reads : {run, check})
-    reads->add_flag("--isolated", isolated, "Load meshes in a process of their own, bounded in time and memory");
+    reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
 
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear programme");
@@ -116,8 +117,8 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
-    const MeshLoader load = [isolated](const std::string& mesh, double unit) {
-      return isolated ? load_mesh_isolated(mesh, unit) : load_mesh(mesh, unit);
+    const MeshLoader load = [trusted](const std::string& mesh, double unit) {
+      return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };
     check_options.load = load;
     if (check->parsed()) return check_files(check_options);

@@ -61,7 +61,7 @@ check_format() {
 }
 
 # What reads files, walks over meshes by index, or shares memory; the fuzz targets of the same tree do the rest.
-asan_quick=(core mesh assembly isolated_load step device record recording patch feature servo scene_file)
+asan_quick=(core mesh gltf 3mf flat_files assembly isolated_load step device record recording patch feature servo scene_file)
 check_asan() {
   local select=(--label-exclude '^(long|browser)$') targets=()
   needs_clang || return 0

@@ -21,6 +21,9 @@ constexpr double kMaxQuaternionNorm = 1e100;
 // No hand moves at this speed (m/s, rad/s); beyond it, numbers run out.
 constexpr double kFastest = 1e12, kHalfTurn = 3.15;
 
+// What spreadsheets write in front of UTF-8.
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 constexpr std::array<std::string_view, 8> kColumns = {"t", "px", "py", "pz", "qw", "qx", "qy", "qz"};
 
 std::string_view trimmed(std::string_view s) {
@@ -78,8 +81,9 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
     throw Error(std::to_string(cells.size()) + " values where the header row has " + std::to_string(order.size()));
   std::array<double, kColumns.size()> value{};
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const char* end = cells[i].data() + cells[i].size();
-    const auto [rest, error] = std::from_chars(cells[i].data(), end, value[order[i]]);
+    const char *begin = cells[i].data(), *end = begin + cells[i].size();
+    if (cells[i].size() > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars takes no plus
+    const auto [rest, error] = std::from_chars(begin, end, value[order[i]]);
     if (error != std::errc() || rest != end)
       throw Error(std::string(kColumns[order[i]]) + " is not a number: \"" + std::string(cells[i]) + "\"");
   }
@@ -127,6 +131,8 @@ StylusScript read_script(const std::string& path) {
   std::vector<StylusScript::Key> keys;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1 && line.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
+      line.erase(0, kByteOrderMark.size());
     const std::string_view text = trimmed(line);
     if (text.empty() || text.front() == '#') continue;
     try {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "mesh/components.hpp"
+#include "mesh/part_file.hpp"
 #include "mesh/read_parts.hpp"
 #include "mesh/reading.hpp"
 #include "mesh/utf8.hpp"
@@ -122,7 +123,9 @@ Assembly read_assembly(const std::string& path, const AssemblyOptions& options) 
     if (!(chord > 0) || !std::isfinite(chord)) throw Error(path + ": the chord error must be a positive length");
   }
   return reading(path, [&] {
-    Assembly assembly = is_step(path) ? read_step(path, options) : read_tree(path, options);
+    Assembly assembly = is_step(path)        ? read_step(path, options)
+                        : is_part_file(path) ? read_tree(path, options)
+                                             : read_flat(path, options);
     if (options.split) split_parts(assembly);
     share_equal_shapes(assembly);
     center_far_shapes(assembly);

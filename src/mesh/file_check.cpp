@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -11,36 +10,12 @@
 #include <string_view>
 
 #include "mesh/check_text.hpp"
-#include "mesh/gltf_check.hpp"
 #include "mesh/off_check.hpp"
-#include "mesh/ply_check.hpp"
+#include "mesh/plain_ply.hpp"
+#include "mesh/plain_stl.hpp"
 
 namespace tegotae {
 namespace {
-
-std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
-  return value;
-}
-
-void check_stl(const std::string& path, std::string_view bytes) {
-  constexpr std::size_t kHeader = 84, kFacet = 50;
-  const std::uint64_t facets = bytes.size() < kHeader ? 0 : little_endian_32(bytes, kHeader - 4);
-  if (bytes.size() >= kHeader && kHeader + kFacet * facets == bytes.size()) return;  // binary
-  const std::size_t start = std::min(bytes.find_first_not_of(kBlank), bytes.size());
-  if (bytes.substr(start, 5) == "solid") {
-    const std::size_t end = bytes.rfind("endsolid");
-    if (end == std::string_view::npos || bytes.find("facet", end) != std::string_view::npos) {
-      refuse(path, "truncated: the last solid has no endsolid");
-    }
-    return;
-  }
-  if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
-  refuse(path, (kHeader + kFacet * facets > bytes.size() ? "truncated: " : "damaged: ") + std::to_string(facets) +
-                   " triangles are announced, the file has room for " +
-                   std::to_string((bytes.size() - kHeader) / kFacet));
-}
 
 /// An OBJ file that stops in the middle of a line: assimp takes a face of two corners for a line, and drops it.
 void check_obj(const std::string& path, std::string_view bytes) {
@@ -74,27 +49,30 @@ std::string lower_extension(const std::string& path) {
   return e;
 }
 
-void check_mesh_file(const std::string& path) {
-  const std::string bytes = read_bytes(path);
-  if (bytes.find_first_not_of(kBlank) == std::string::npos) refuse(path, "empty file");
+std::string read_mesh_bytes(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  const std::size_t start = bytes.find_first_not_of(kBlank);
+  if (start == std::string::npos) refuse(path, "empty file");
   const std::string extension = lower_extension(path);
-  const std::string_view start = std::string_view(bytes).substr(bytes.find_first_not_of(kBlank));
-  if (start.substr(0, 12) == "ISO-10303-21" || extension == ".step" || extension == ".stp") {
+  if (bytes.compare(start, 12, "ISO-10303-21") == 0 || extension == ".step" || extension == ".stp") {
     refuse(path, "a STEP file has no triangles: turn it into a scene first (tegotae import FILE -o DIR)");
   }
-  if (extension == ".stl") {
-    check_stl(path, bytes);
-  } else if (extension == ".obj") {
+  return bytes;
+}
+
+std::string plain_mesh_bytes(const std::string& path) {
+  std::string bytes = read_mesh_bytes(path);
+  const std::string extension = lower_extension(path);
+  if (extension == ".stl") return plain_stl(path, bytes);
+  if (extension == ".ply") return plain_ply(path, bytes);
+  if (extension == ".obj") {
     check_obj(path, bytes);
   } else if (extension == ".off") {
     check_off(path, bytes);
-  } else if (extension == ".ply") {
-    check_ply(path, bytes);
-  } else if (extension == ".glb" || extension == ".gltf") {
-    check_gltf(path, bytes);
   } else {
-    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb)");
+    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
   }
+  return bytes;
 }
 
 }  // namespace tegotae

@@ -4,10 +4,13 @@
 
 namespace tegotae {
 
-/// Looks through the bytes of the mesh file `path` for what assimp 5.2 passes over in silence (indices out of range in
-/// OFF and PLY, cut text files) or chokes on (counts that the file has no room for). Throws Error with the file and the
-/// reason; returns if nothing speaks against reading it.
-void check_mesh_file(const std::string& path);
+/// The bytes of the mesh file `path` (STL, OBJ, PLY, OFF) in the one way of writing that assimp 5.2 reads without fail.
+/// Looked through before for what assimp passes over in silence (indices out of range in OFF and PLY, cut text files)
+/// or chokes on (counts that the file has no room for). Throws Error with the file and the reason.
+std::string plain_mesh_bytes(const std::string& path);
+
+/// All bytes of the file `path`; throws Error when it is empty or STEP.
+std::string read_mesh_bytes(const std::string& path);
 
 /// All bytes of the regular file `path`. Throws Error with the file and the reason.
 std::string read_bytes(const std::string& path);

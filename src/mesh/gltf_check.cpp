@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "core/whole_number.hpp"
@@ -16,12 +17,41 @@ using nlohmann::json;
 
 // Far deeper than any assembly, and far from the end of the stack for those who walk the tree.
 constexpr std::size_t kDeepest = 1000;
-// assimp's JSON reader goes down into lists and objects by recursion.
+// Some JSON readers go down into lists and objects by recursion.
 constexpr int kDeepestJson = 100;
+// Streams of EXT_meshopt_compression that say that they hold more than this many times their size are damaged.
+constexpr std::uint64_t kMostCompression = 2000;
+// Elements of an accessor without data: each costs up to 64 bytes.
+constexpr std::uint64_t kMostZeros = 10'000'000;
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+
+/// Whether the extension is read, or changes nothing of shape and place.
+bool is_known_extension(const std::string& name) {
+  static const std::set<std::string> known = {
+      kMeshopt, "EXT_mesh_gpu_instancing", "KHR_draco_mesh_compression", "KHR_mesh_quantization",
+      // Lights, and what is told about the file.
+      "KHR_lights_punctual", "EXT_lights_ies", "EXT_lights_image_based", "KHR_xmp", "KHR_xmp_json_ld",
+      "EXT_mesh_features", "EXT_structural_metadata", "EXT_instance_features", "MSFT_texture_dds"};
+  const auto begins = [&](const char* start) { return name.rfind(start, 0) == 0; };
+  return known.count(name) > 0 || begins("KHR_materials_") || begins("EXT_materials_") || begins("ADOBE_materials_") ||
+         begins("KHR_texture_") || begins("EXT_texture_");
+}
 
 class GltfCheck {
  public:
   GltfCheck(const std::string& path, const json& top, std::uint64_t chunk) : path_(path), top_(top), chunk_(chunk) {}
+
+  /// Extensions that are not read, a note each; throws for those without which the file must not be read.
+  std::vector<std::string> check_extensions() const {
+    for (const json& name : list("extensionsRequired"))
+      if (!is_known_extension(name.get<std::string>()))
+        refuse("it requires the glTF extension " + name.get<std::string>() + ", which is not read");
+    std::vector<std::string> notes;
+    for (const json& name : list("extensionsUsed"))
+      if (!is_known_extension(name.get<std::string>()))
+        notes.push_back("the glTF extension " + name.get<std::string>() + " is not read");
+    return notes;
+  }
 
   void run() const {
     for (std::size_t i = 0; i < list("buffers").size(); ++i) check_buffer(i);
@@ -58,6 +88,7 @@ class GltfCheck {
   void check_buffer(std::size_t i) const {
     const json& buffer = list("buffers")[i];
     const auto bytes = whole_number<std::uint64_t>(buffer.at("byteLength"));
+    if (!buffer.contains("uri") && is_fallback(buffer)) return;
     std::uint64_t there = chunk_;
     if (buffer.contains("uri")) {
       const auto uri = buffer["uri"].get<std::string>();
@@ -74,6 +105,18 @@ class GltfCheck {
     if (there < bytes)
       refuse("truncated: buffer " + std::to_string(i) + " has " + std::to_string(there) + " of " +
              std::to_string(bytes) + " bytes");
+  }
+
+  /// Whether a buffer stands for what others hold compressed, and has no data of its own.
+  static bool is_fallback(const json& buffer) {
+    const json* meshopt = extension(buffer, kMeshopt);
+    return meshopt != nullptr && meshopt->value("fallback", false);
+  }
+
+  static const json* extension(const json& of, const char* name) {
+    const auto all = of.find("extensions");
+    if (all == of.end() || !all->is_object() || !all->contains(name)) return nullptr;
+    return &(*all)[name];
   }
 
   static std::string decoded(const std::string& uri) {
@@ -98,42 +141,78 @@ class GltfCheck {
                         from = number(view, "byteOffset", 0);
     if (from > whole || whole_number<std::uint64_t>(view.at("byteLength")) > whole - from)
       refuse("damaged: " + self + " reaches past the end of its buffer");
+    if (const json* meshopt = extension(view, kMeshopt))
+      check_meshopt(*meshopt, whole_number<std::uint64_t>(view.at("byteLength")), self);
+  }
+
+  /// What the decoder takes for granted; `bytes` are those of the view that it fills.
+  void check_meshopt(const json& from, std::uint64_t bytes, const std::string& self) const {
+    const json& buffer = list("buffers")[reference(from.at("buffer"), "buffers", self)];
+    const auto whole = whole_number<std::uint64_t>(buffer.at("byteLength")), offset = number(from, "byteOffset", 0),
+               size = whole_number<std::uint64_t>(from.at("byteLength")),
+               stride = whole_number<std::uint64_t>(from.at("byteStride")),
+               count = whole_number<std::uint64_t>(from.at("count"));
+    const std::string mode = from.at("mode").get<std::string>(), filter = from.value("filter", "NONE");
+    const bool attributes = mode == "ATTRIBUTES";
+    const bool shape =
+        attributes ? stride > 0 && stride % 4 == 0 && stride <= 256
+                   : (mode == "INDICES" || (mode == "TRIANGLES" && count % 3 == 0)) && (stride == 2 || stride == 4);
+    const bool filtered =
+        filter == "NONE" || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                                            (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL"));
+    if (offset > whole || size > whole - offset || !shape || !filtered || count > bytes || count * stride != bytes ||
+        bytes > kMostCompression * size)
+      refuse("damaged: " + self + " has no sizes that " + kMeshopt + " allows");
   }
 
   void check_accessor(std::size_t i) const {
     const json& accessor = list("accessors")[i];
     const std::string self = called("accessor", i);
-    if (accessor.contains("sparse")) refuse(self + " is sparse, which is not read; export it dense");
     const auto count = whole_number<std::uint64_t>(accessor.at("count"));
     const std::uint64_t size = element_bytes(accessor, self);
-    if (!accessor.contains("bufferView")) return;
-    const json& view = list("bufferViews")[reference(accessor["bufferView"], "bufferViews", self)];
-    const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")),
-                        from = number(accessor, "byteOffset", 0);
+    if (accessor.contains("sparse")) {
+      const json& sparse = accessor["sparse"];
+      const auto few = whole_number<std::uint64_t>(sparse.at("count"));
+      check_elements(sparse.at("indices"), few, scalar_bytes(sparse.at("indices"), self), self);
+      check_elements(sparse.at("values"), few, size, self);
+      if (few > count) refuse("damaged: " + self + " changes more elements than it has");
+    }
+    if (accessor.contains("bufferView")) {
+      check_elements(accessor, count, size, self);
+    } else if (count > kMostZeros) {
+      // Of zeros, or told by an extension; too many to be believed.
+      refuse("damaged: " + self + " has no bufferView and " + std::to_string(count) + " elements");
+    }
+  }
+
+  /// Whether the bufferView that `of` names has room for `count` elements of `size` bytes.
+  void check_elements(const json& of, std::uint64_t count, std::uint64_t size, const std::string& self) const {
+    const json& view = list("bufferViews")[reference(of.at("bufferView"), "bufferViews", self)];
+    const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")), from = number(of, "byteOffset", 0);
     const std::uint64_t stride = std::max(size, number(view, "byteStride", size));
     if (count == 0) return;
     if (from > whole || size > whole - from || (count - 1) > (whole - from - size) / stride)
       refuse("damaged: " + self + " reaches past the end of its bufferView");
   }
 
-  std::uint64_t element_bytes(const json& accessor, const std::string& self) const {
-    std::uint64_t scalar = 0, n = 0;
-    switch (whole_number<int>(accessor.at("componentType"))) {
+  std::uint64_t scalar_bytes(const json& of, const std::string& self) const {
+    switch (whole_number<int>(of.at("componentType"))) {
       case 5120:
       case 5121:
-        scalar = 1;
-        break;
+        return 1;
       case 5122:
       case 5123:
-        scalar = 2;
-        break;
+        return 2;
       case 5125:
       case 5126:
-        scalar = 4;
-        break;
+        return 4;
       default:
         refuse("damaged: " + self + " has an unknown componentType");
     }
+  }
+
+  std::uint64_t element_bytes(const json& accessor, const std::string& self) const {
+    std::uint64_t n = 0;
     const auto type = accessor.at("type").get<std::string>();
     for (const auto& [name, numbers] : {std::pair<const char*, int>{"SCALAR", 1},
                                         {"VEC2", 2},
@@ -144,13 +223,11 @@ class GltfCheck {
                                         {"MAT4", 16}})
       if (type == name) n = static_cast<std::uint64_t>(numbers);
     if (n == 0) refuse("damaged: " + self + " has an unknown type " + type);
-    return scalar * n;
+    return scalar_bytes(accessor, self) * n;
   }
 
   void check_mesh(std::size_t i) const {
     for (const json& primitive : list("meshes")[i].at("primitives")) {
-      if (primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression"))
-        refuse("its meshes are Draco-compressed, which is not read; export it without compression");
       for (const json& accessor : primitive.at("attributes")) reference(accessor, "accessors", called("mesh", i));
       if (primitive.contains("indices")) reference(primitive["indices"], "accessors", called("mesh", i));
       if (primitive.contains("material")) reference(primitive["material"], "materials", called("mesh", i));
@@ -203,8 +280,8 @@ std::uint32_t word(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// The JSON of a GLB file; `chunk` is the size of its binary chunk.
-std::string_view glb_json(const std::string& path, std::string_view bytes, std::uint64_t& chunk) {
+/// The JSON of a GLB file; `chunk` becomes its binary chunk.
+std::string_view glb_json(const std::string& path, std::string_view bytes, std::string_view& chunk) {
   constexpr std::size_t kHeader = 12, kChunkHeader = 8;
   if (bytes.size() < kHeader || bytes.substr(0, 4) != "glTF") throw Error(path + ": damaged: no glTF binary header");
   if (word(bytes, 8) > bytes.size()) throw Error(path + ": truncated: shorter than its header says");
@@ -214,19 +291,20 @@ std::string_view glb_json(const std::string& path, std::string_view bytes, std::
   const std::uint64_t end = kHeader + kChunkHeader + length;
   if (end > bytes.size()) throw Error(path + ": truncated: its JSON chunk reaches past the end");
   if (end + kChunkHeader <= bytes.size()) {
-    chunk = word(bytes, end);
-    if (chunk > bytes.size() - end - kChunkHeader)
+    const std::uint64_t size = word(bytes, end);
+    if (size > bytes.size() - end - kChunkHeader)
       throw Error(path + ": truncated: its binary chunk reaches past the end");
+    chunk = bytes.substr(end + kChunkHeader, size);
   }
   return bytes.substr(kHeader + kChunkHeader, length);
 }
 
 }  // namespace
 
-void check_gltf(const std::string& path, std::string_view bytes) {
-  std::uint64_t chunk = 0;
+CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
+  CheckedGltf out;
   const bool binary = lower_extension(path) == ".glb";
-  const std::string_view text = binary ? glb_json(path, bytes, chunk) : bytes;
+  const std::string_view text = binary ? glb_json(path, bytes, out.chunk) : bytes;
   const auto shallow = [&path](int depth, json::parse_event_t, json&) {
     if (depth > kDeepestJson)
       throw Error(path + ": its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");
@@ -237,10 +315,14 @@ void check_gltf(const std::string& path, std::string_view bytes) {
   try {
     const auto version = top.at("asset").at("version").get<std::string>();
     if (version.rfind("2.", 0) != 0) throw Error(path + ": glTF version " + version + " is not read (2.0 is)");
-    GltfCheck(path, top, chunk).run();
+    const GltfCheck check(path, top, out.chunk.size());
+    out.notes = check.check_extensions();
+    check.run();
+    out.json = top.dump();
   } catch (const json::exception& e) {
     throw Error(path + ": damaged: " + e.what());
   }
+  return out;
 }
 
 }  // namespace tegotae

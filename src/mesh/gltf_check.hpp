@@ -2,12 +2,20 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tegotae {
 
+/// A glTF file whose references were checked.
+struct CheckedGltf {
+  std::string json;                ///< written anew: no two readers can read it differently
+  std::string_view chunk;          ///< the binary chunk of a GLB file; into its bytes
+  std::vector<std::string> notes;  ///< extensions that the file uses and that are not read, a line each
+};
+
 /// Walks through a glTF or GLB file: throws Error when it is cut short, names a buffer, view, accessor, mesh or node
-/// that does not exist or lies past the end of another, or when its nodes are no tree. assimp 5.2 follows some of
-/// these.
-void check_gltf(const std::string& path, std::string_view bytes);
+/// that does not exist or lies past the end of another, has nodes that are no tree, or requires an extension that is
+/// not read.
+CheckedGltf check_gltf(const std::string& path, std::string_view bytes);
 
 }  // namespace tegotae

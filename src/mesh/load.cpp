@@ -4,21 +4,27 @@
 
 #include "mesh/load_assimp.hpp"
 #include "mesh/reading.hpp"
+#include "mesh/usable.hpp"
 
 namespace tegotae {
 namespace {
 
 void append(const aiScene& scene, const aiNode& node, const Matrix34& parent, double unit, TriangleMesh& to) {
   const Matrix34 X = product(parent, transform_of(node.mTransformation));
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) append(*scene.mMeshes[node.mMeshes[m]], X, unit, to);
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) append(triangles_of(*scene.mMeshes[node.mMeshes[m]]), X, unit, to);
   for (unsigned c = 0; c < node.mNumChildren; ++c) append(scene, *node.mChildren[c], X, unit, to);
 }
 
 TriangleMesh import(const std::string& path, double unit) {
-  Assimp::Importer importer;
-  const aiScene& scene = read_scene(importer, path);
   TriangleMesh mesh;
   mesh.name = path;
+  if (is_part_file(path)) {
+    const PartFile file = read_part_file(path);
+    for (const PartFile::Placed& part : file.parts) append(file.meshes[part.mesh], part.X, unit, mesh);
+    return mesh;
+  }
+  Assimp::Importer importer;
+  const aiScene& scene = read_scene(importer, path);
   append(scene, *scene.mRootNode, Matrix34::Identity(), unit, mesh);
   return mesh;
 }

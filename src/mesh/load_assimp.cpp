@@ -3,18 +3,13 @@
 #include <assimp/postprocess.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "mesh/file_check.hpp"
 #include "mesh/load_files.hpp"
-#include "mesh/precision.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
 namespace {
-
-/// Coordinates beyond this (m) are taken for a damaged file or a wrong unit.
-constexpr double kLargestCoordinate = 1e6;
 
 /// assimp cuts a polygon of n corners into triangles in about n^2 * 1e-8 s: at most ten seconds for a file.
 constexpr double kMostPolygonWork = 1e9;
@@ -71,16 +66,16 @@ Matrix34 transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
-Matrix34 product(const Matrix34& a, const Matrix34& b) {
-  Matrix34 c = a.leftCols<3>() * b;
-  c.col(3) += a.col(3);
-  return c;
-}
-
 const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
-  check_mesh_file(path);
-  importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
-  const aiScene* scene = importer.ReadFile(path, 0);
+  const std::string bytes = plain_mesh_bytes(path);
+  const std::string extension = lower_extension(path);
+  const aiScene* scene = nullptr;
+  if (extension == ".obj") {                      // the only format that names other files
+    importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
+    scene = importer.ReadFile(path, 0);
+  } else {
+    scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str() + 1);
+  }
   if (scene == nullptr) throw Error(path + ": " + importer.GetErrorString());
   require_valid_indices(*scene, path);
   require_small_polygons(*scene, path);
@@ -90,47 +85,17 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
   return *scene;
 }
 
-void append(const aiMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {
-  const std::size_t base = to.vertices.size();
-  // Indices are 32 bits wide, and so are half-edges (3 per triangle).
-  if (base + from.mNumVertices > std::numeric_limits<std::uint32_t>::max() / 4 ||
-      to.triangles.size() + from.mNumFaces > std::numeric_limits<std::uint32_t>::max() / 4) {
-    throw Error(to.name + ": too large: more than a billion vertices or triangles");
-  }
-  to.vertices.reserve(base + from.mNumVertices);
-  for (unsigned v = 0; v < from.mNumVertices; ++v) {
-    const Vec3 p(from.mVertices[v].x, from.mVertices[v].y, from.mVertices[v].z);
-    to.vertices.push_back(unit * (X.leftCols<3>() * p + X.col(3)));
-  }
-  const bool mirrored = X.leftCols<3>().determinant() < 0;  // turns faces inside out
+TriangleMesh triangles_of(const aiMesh& from) {
+  TriangleMesh mesh;
+  mesh.name = from.mName.C_Str();
+  mesh.vertices.reserve(from.mNumVertices);
+  for (unsigned v = 0; v < from.mNumVertices; ++v)
+    mesh.vertices.emplace_back(from.mVertices[v].x, from.mVertices[v].y, from.mVertices[v].z);
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
-    if (from.mFaces[f].mNumIndices != 3) continue;  // points and lines
     const unsigned* i = from.mFaces[f].mIndices;
-    const auto at = [base](unsigned k) { return static_cast<std::uint32_t>(base + k); };
-    to.triangles.push_back(mirrored ? std::array<std::uint32_t, 3>{at(i[0]), at(i[2]), at(i[1])}
-                                    : std::array<std::uint32_t, 3>{at(i[0]), at(i[1]), at(i[2])});
+    if (from.mFaces[f].mNumIndices == 3) mesh.triangles.push_back({i[0], i[1], i[2]});  // else points and lines
   }
-}
-
-void require_usable(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error(mesh.name + ": no triangles");
-  for (const auto& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      const Vec3& p = mesh.vertices[v];
-      if (!p.allFinite()) throw Error(mesh.name + ": a coordinate is not a finite number");
-      if (p.cwiseAbs().maxCoeff() > kLargestCoordinate) {
-        throw Error(mesh.name + ": a coordinate lies beyond 1000 km: damaged, or a wrong unit");
-      }
-    }
-  }
-}
-
-void require_area(const TriangleMesh& welded) {
-  const double step = rounding_step(welded);
-  for (const auto& t : welded.triangles) {
-    if (!is_degenerate(welded, t, step)) return;
-  }
-  throw Error(welded.name + ": no triangle has an area");
+  return mesh;
 }
 
 }  // namespace tegotae

@@ -1,16 +1,9 @@
-#include <assimp/material.h>
-
 #include <Eigen/SVD>
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <map>
 
-#include "mesh/components.hpp"
-#include "mesh/file_check.hpp"
-#include "mesh/load_assimp.hpp"
+#include "mesh/part_file.hpp"
 #include "mesh/read_parts.hpp"
-#include "tegotae/core/error.hpp"
+#include "mesh/usable.hpp"
 #include "tegotae/mesh/load.hpp"
 
 namespace tegotae {
@@ -38,120 +31,53 @@ Placement placement_of(const Matrix34& X) {
   return placement;
 }
 
-double srgb(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-}
-
-/// `linear`: of a glTF file, whose colors are linear.
-std::optional<Color> color_of(const aiScene& scene, const aiMesh& mesh, bool linear) {
-  if (mesh.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
-  // For meshes without a material assimp adds one: to glTF always, as the last; to others by its name.
-  if (linear && mesh.mMaterialIndex + 1 == scene.mNumMaterials) return std::nullopt;
-  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
-  aiString name;
-  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME)
-    return std::nullopt;
-  aiColor4D c;
-  if (material.Get(AI_MATKEY_BASE_COLOR, c) != aiReturn_SUCCESS &&
-      material.Get(AI_MATKEY_COLOR_DIFFUSE, c) != aiReturn_SUCCESS)
-    return std::nullopt;
-  const Color given = {double{c.r}, double{c.g}, double{c.b}, double{c.a}};
-  Color color;
-  for (int k = 0; k < 4; ++k) {
-    if (!std::isfinite(given[k])) return std::nullopt;
-    color[k] = linear && k < 3 ? srgb(given[k]) : std::clamp(given[k], 0.0, 1.0);
-  }
-  return color;
-}
-
-/// The color of the mesh of `node` with the most faces.
-std::optional<Color> color_of(const aiScene& scene, const aiNode& node, bool linear) {
-  const aiMesh* largest = nullptr;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh* mesh = scene.mMeshes[node.mMeshes[m]];
-    if (largest == nullptr || mesh->mNumFaces > largest->mNumFaces) largest = mesh;
-  }
-  return largest == nullptr ? std::nullopt : color_of(scene, *largest, linear);
-}
-
-TriangleMesh usable(TriangleMesh mesh, const std::string& path, const std::string& name) {
-  mesh.name = path + ": \"" + name + '"';
-  require_usable(mesh);
-  TriangleMesh welded = weld(mesh);
-  require_area(welded);
-  welded.name = name;
-  return welded;
-}
-
-/// Walks over the nodes of a glTF file.
+/// Makes an assembly of the parts of a file.
 class TreeReader {
  public:
-  TreeReader(const std::string& path, const aiScene& scene, const AssemblyOptions& options)
-      : path_(path), scene_(scene), options_(options) {}
+  TreeReader(const std::string& path, PartFile file, const AssemblyOptions& options)
+      : path_(path), file_(std::move(file)), options_(options), known_(file_.meshes.size()) {}
 
   Assembly read() {
-    count(*scene_.mRootNode);
-    // Of several roots assimp makes the children of one that it calls ROOT.
-    std::vector<std::string> path;
-    if (std::string(scene_.mRootNode->mName.C_Str()) == "ROOT" && scene_.mRootNode->mNumMeshes == 0) {
-      const Matrix34 X = transform_of(scene_.mRootNode->mTransformation);
-      for (unsigned c = 0; c < scene_.mRootNode->mNumChildren; ++c) add(*scene_.mRootNode->mChildren[c], X, path);
-    } else {
-      add(*scene_.mRootNode, Matrix34::Identity(), path);
-    }
-    assembly_.unit = "m";
+    assembly_.unit = file_.unit;
+    assembly_.notes = std::move(file_.notes);
+    for (const PartFile::Placed& part : file_.parts) add(part);
     return std::move(assembly_);
   }
 
  private:
-  void count(const aiNode& node) {
-    total_ += node.mNumMeshes > 0;
-    for (unsigned c = 0; c < node.mNumChildren; ++c) count(*node.mChildren[c]);
-  }
-
-  void add(const aiNode& node, const Matrix34& parent, std::vector<std::string>& path) {
-    const Matrix34 X = product(parent, transform_of(node.mTransformation));
-    if (node.mNumMeshes > 0) add_part(node, X, path);
-    path.emplace_back(node.mName.C_Str());
-    for (unsigned c = 0; c < node.mNumChildren; ++c) add(*node.mChildren[c], X, path);
-    path.pop_back();
-  }
-
-  void add_part(const aiNode& node, const Matrix34& X, const std::vector<std::string>& path) {
+  void add(const PartFile::Placed& placed) {
     AssemblyPart part;
-    part.name = node.mName.C_Str();
-    part.path = path;
-    const Placement placement = placement_of(X);
+    part.name = placed.name;
+    part.path = placed.path;
+    part.color = placed.color;
+    const Placement placement = placement_of(placed.X);
     part.pose = placement.pose;
-    if (!find_shape(node, placement.rest, part.name, part.shape)) return;
-    part.color = color_of(scene_, node, true);
+    part.pose.p *= unit_length(file_.unit);
+    if (!find_shape(placed, placement.rest, part.shape)) return;
     assembly_.parts.push_back(std::move(part));
-    if (options_.progress) options_.progress("reading parts", ++done_, total_);
+    if (options_.progress) options_.progress("reading parts", ++done_, file_.parts.size());
   }
 
-  /// The shape of the meshes of `node`, mapped by `map`; false when they have no triangles.
-  bool find_shape(const aiNode& node, const Mat3& map, const std::string& name, std::size_t& shape) {
-    const std::vector<unsigned> meshes(node.mMeshes, node.mMeshes + node.mNumMeshes);
-    for (const Known& known : known_[meshes]) {
+  /// The shape of the mesh of `placed`, mapped by `map`; false when it has no triangles.
+  bool find_shape(const PartFile::Placed& placed, const Mat3& map, std::size_t& shape) {
+    for (const Known& known : known_[placed.mesh]) {
       if ((known.map - map).cwiseAbs().maxCoeff() > kMapNoise * map.cwiseAbs().maxCoeff()) continue;
       shape = known.shape;
       return true;
     }
-    TriangleMesh mesh;
-    mesh.name = name;
-    Matrix34 X = Matrix34::Zero();
-    X.leftCols<3>() = map;
-    for (const unsigned m : meshes) append(*scene_.mMeshes[m], X, 1.0, mesh);
-    if (mesh.triangles.empty()) {
-      assembly_.notes.push_back("\"" + name + "\" has no triangles: left out");
+    const TriangleMesh& from = file_.meshes[placed.mesh];
+    if (from.triangles.empty()) {
+      assembly_.notes.push_back("\"" + placed.name + "\" has no triangles: left out");
       return false;
     }
+    TriangleMesh mesh;
+    Matrix34 X = Matrix34::Zero();
+    X.leftCols<3>() = map;
+    append(from, X, unit_length(file_.unit), mesh);
     shape = assembly_.shapes.size();
-    known_[meshes].push_back({map, shape});
-    const std::string mesh_name = scene_.mMeshes[meshes.front()]->mName.C_Str();
-    assembly_.shapes.push_back(
-        std::make_shared<const TriangleMesh>(usable(std::move(mesh), path_, mesh_name.empty() ? name : mesh_name)));
+    known_[placed.mesh].push_back({map, shape});
+    assembly_.shapes.push_back(std::make_shared<const TriangleMesh>(
+        usable(std::move(mesh), path_, from.name.empty() ? placed.name : from.name)));
     return true;
   }
 
@@ -161,72 +87,18 @@ class TreeReader {
   };
 
   const std::string& path_;
-  const aiScene& scene_;
+  PartFile file_;
   const AssemblyOptions& options_;
-  std::map<std::vector<unsigned>, std::vector<Known>> known_;
+  std::vector<std::vector<Known>> known_;  // of each mesh of the file
   Assembly assembly_;
-  std::size_t done_ = 0, total_ = 0;
+  std::size_t done_ = 0;
 };
-
-/// Where the faces of the groups of a flat file begin.
-struct Group {
-  std::uint32_t first_face;
-  std::string name;
-  std::optional<Color> color;
-};
-
-void append_groups(const aiScene& scene, const aiNode& node, const Matrix34& parent, double unit, TriangleMesh& to,
-                   std::vector<Group>& groups) {
-  const Matrix34 X = product(parent, transform_of(node.mTransformation));
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
-    groups.push_back(
-        {static_cast<std::uint32_t>(to.triangles.size()), node.mName.C_Str(), color_of(scene, mesh, false)});
-    append(mesh, X, unit, to);
-  }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) append_groups(scene, *node.mChildren[c], X, unit, to, groups);
-}
-
-/// One part; or, split, one for every piece, called like the group of its first face.
-Assembly read_flat(const std::string& path, const aiScene& scene, const AssemblyOptions& options) {
-  Assembly assembly;
-  assembly.unit = options.unit;
-  const std::string stem = std::filesystem::path(path).stem().string();
-  TriangleMesh mesh;
-  mesh.name = path;
-  std::vector<Group> groups;
-  append_groups(scene, *scene.mRootNode, Matrix34::Identity(), unit_length(options.unit), mesh, groups);
-  const TriangleMesh welded = usable(std::move(mesh), path, stem);
-  std::vector<std::uint32_t> first_face = {0};
-  std::vector<TriangleMesh> pieces;
-  if (options.split)
-    pieces = split(welded, first_face);
-  else
-    pieces.push_back(welded);
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const auto after = std::upper_bound(groups.begin(), groups.end(), first_face[i],
-                                        [](std::uint32_t f, const Group& g) { return f < g.first_face; });
-    const Group& group = *std::prev(after);
-    AssemblyPart part;
-    part.name = pieces.size() > 1 && !group.name.empty() ? group.name : stem;
-    part.color = group.color;
-    part.shape = i;
-    pieces[i].name = part.name;
-    assembly.shapes.push_back(std::make_shared<const TriangleMesh>(std::move(pieces[i])));
-    assembly.parts.push_back(std::move(part));
-  }
-  return assembly;
-}
 
 }  // namespace
 
 Assembly read_tree(const std::string& path, const AssemblyOptions& options) {
   if (options.progress) options.progress("reading the file", 0, 0);
-  Assimp::Importer importer;
-  const aiScene& scene = read_scene(importer, path);
-  const std::string extension = lower_extension(path);
-  if (extension == ".gltf" || extension == ".glb") return TreeReader(path, scene, options).read();
-  return read_flat(path, scene, options);
+  return TreeReader(path, read_part_file(path), options).read();
 }
 
 }  // namespace tegotae

@@ -7,7 +7,9 @@
 namespace tegotae {
 
 /// Readers of one kind of file each. Shapes come welded; names may repeat or be empty, shapes may lie anywhere.
-Assembly read_tree(const std::string& path, const AssemblyOptions& options);  ///< glTF, GLB and the flat formats
+Assembly read_tree(const std::string& path,
+                   const AssemblyOptions& options);  ///< files of placed meshes (part_file.hpp)
+Assembly read_flat(const std::string& path, const AssemblyOptions& options);  ///< STL, OBJ, PLY, OFF
 Assembly read_step(const std::string& path, const AssemblyOptions& options);
 
 /// Whether the bytes of `path` begin like a STEP file, or its name ends like one's.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mesh/components.hpp"
+#include "mesh/inverted_shells.hpp"
 #include "mesh/precision.hpp"
 #include "mesh/topology.hpp"
 
@@ -28,7 +29,8 @@ MeshReport report(const TriangleMesh& mesh) {
   MeshReport out;
   out.vertices = mesh.vertices.size();
   out.triangles = mesh.triangles.size();
-  out.components = components(mesh, topology).count;
+  const Components shells = components(mesh, topology);
+  out.components = shells.count;
   out.duplicate_faces = count_duplicates(mesh);
 
   const double step = rounding_step(mesh);
@@ -45,6 +47,7 @@ MeshReport report(const TriangleMesh& mesh) {
     if (topology.twin[3 * edge.f[0] + k] == kNone) ++out.non_manifold_edges;
   }
   out.closed = !topology.edges.empty() && out.boundary_edges == 0 && out.non_manifold_edges == 0;
+  if (out.closed) out.inverted_shells = count_inverted_shells(mesh, shells);
 
   if (!mesh.vertices.empty()) out.box_min = out.box_max = mesh.vertices[0];
   for (const Vec3& p : mesh.vertices) {

@@ -1,7 +1,6 @@
 // Reads STEP files with OpenCASCADE: products, instances, names, colors.
 #include <BRepGProp.hxx>
 #include <GProp_GProps.hxx>
-#include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -25,6 +24,7 @@
 #include <map>
 #include <set>
 
+#include "mesh/occt_check.hpp"
 #include "mesh/occt_shape.hpp"
 #include "mesh/read_parts.hpp"
 #include "tegotae/core/error.hpp"
@@ -119,13 +119,21 @@ class StepReader {
     application->NewDocument("MDTV-XCAF", document_);
     STEPCAFControl_Reader reader;
     reader.SetNameMode(true);
-    reader.SetColorMode(true);
+    // Beside colors nothing else is looked at.
+    reader.SetLayerMode(false);
+    reader.SetPropsMode(false);
+    reader.SetGDTMode(false);
+    reader.SetMatMode(false);
+    reader.SetViewMode(false);
     if (reader.ReadFile(path_.c_str()) != IFSelect_RetDone) throw Error(path_ + ": damaged: not a readable STEP file");
-    // Of entities that do not fit together OpenCASCADE makes null handles, which its own transfer then follows.
-    const Interface_CheckIterator checks = reader.ChangeReader().WS()->ModelCheckList(true);
-    if (!checks.IsEmpty(true))
-      throw Error(path_ + ": damaged: OpenCASCADE finds entities that cannot be (wrong or missing references)");
-    if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
+    const StepEntities entities = check_entities(path_, reader.ChangeReader().WS());
+    tessellated_ = entities.tessellated;
+    reader.SetColorMode(entities.colors);
+    if (!entities.colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
+    if (!reader.Transfer(document_)) {
+      if (!tessellated_.empty()) throw Error(path_ + only_tessellated());
+      throw Error(path_ + ": no shapes can be read from it");
+    }
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
   }
@@ -271,11 +279,22 @@ class StepReader {
   void drop_empty() {
     auto& parts = assembly_.parts;
     for (const AssemblyPart& part : parts) {
-      if (assembly_.shapes[part.shape]->triangles.empty())
+      if (!assembly_.shapes[part.shape]->triangles.empty())
+        tessellated_.erase(leaves_[part.shape].name);
+      else if (tessellated_.count(leaves_[part.shape].name) == 0)
         assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
     }
     const auto empty = [&](const AssemblyPart& part) { return assembly_.shapes[part.shape]->triangles.empty(); };
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
+    if (parts.empty() && !tessellated_.empty()) throw Error(path_ + only_tessellated());
+    for (const std::string& name : tessellated_)
+      assembly_.notes.push_back('"' + name +
+                                "\" is tessellated (triangles without exact faces), which is not read: left out");
+  }
+
+  static std::string only_tessellated() {
+    return ": its shapes are tessellated (triangles without exact faces), which is not read: export exact shapes, or a "
+           "mesh file";
   }
 
   struct Leaf {
@@ -294,6 +313,7 @@ class StepReader {
   Handle(XCAFDoc_ColorTool) colors_;
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
+  std::set<std::string> tessellated_;  // products
   Assembly assembly_;
 };
 

@@ -22,7 +22,8 @@ if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtegotae${abi} (= ${PROJECT_VERSION}), libeigen3-dev")
 else()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-      "libeigen3-dev, libfcl-dev, libccd-dev, libassimp-dev, libtomlplusplus-dev, zlib1g-dev, libzstd-dev")
+      "libeigen3-dev, libfcl-dev, libccd-dev, libassimp-dev, libdraco-dev, libmeshoptimizer-dev, libpugixml-dev, libminizip-dev, libtomlplusplus-dev, \
+zlib1g-dev, libzstd-dev")
   if(TEGOTAE_READS_STEP)
     string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libocct-data-exchange-dev")
   endif()

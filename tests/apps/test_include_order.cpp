@@ -62,6 +62,14 @@ std::string violation(const std::string& file, const std::string& line) {
   if (!test && inc.size() > 4 && inc.substr(inc.size() - 4) == ".hxx" && !starts_with(file, "src/mesh/occt") &&
       !starts_with(file, "src/mesh/step_occt"))
     return "OpenCASCADE belongs to src/mesh/*occt*";
+  static const std::pair<const char*, const char*> kOnlyIn[] = {{"draco/", "src/mesh/gltf_"},
+                                                                {"meshoptimizer.h", "src/mesh/gltf_"},
+                                                                {"mesh/cgltf/", "src/mesh/gltf_"},
+                                                                {"pugixml.hpp", "src/mesh/threemf_"},
+                                                                {"minizip/", "src/mesh/zip_archive"}};
+  for (const auto& [library, place] : kOnlyIn)
+    if (!test && starts_with(inc, library) && !starts_with(file, place))
+      return std::string(library) + " belongs to " + place + "*";
   if (starts_with(file, "include/") && !inc.empty() && !may_be_public(inc)) return inc + " is no public include";
   return "";
 }
@@ -89,6 +97,7 @@ TEST_CASE("the check sees an arrow to the right", "[include]") {
   CHECK(violation("include/tegotae/core/a.hpp", "#include \"tegotae/mesh/load.hpp\"") == "core may not include mesh");
   CHECK(violation("src/sim/a.cpp", "#include <fcl/fcl.h>") == "FCL and libccd belong to src/narrowphase");
   CHECK(violation("apps/a.cpp", "#include <assimp/scene.h>") == "assimp belongs to src/mesh/load*");
+  CHECK(violation("src/mesh/a.cpp", "#include <pugixml.hpp>") == "pugixml.hpp belongs to src/mesh/threemf_*");
   CHECK(violation("src/mesh/a.cpp", "#include <BRep_Tool.hxx>") == "OpenCASCADE belongs to src/mesh/*occt*");
   CHECK(violation("include/tegotae/sim/a.hpp", "#include <toml++/toml.h>") == "toml++/toml.h is no public include");
   CHECK(violation("include/tegotae/sim/a.hpp", "#include \"sim/a.hpp\"") == "sim/a.hpp is no public include");
@@ -128,6 +137,43 @@ TEST_CASE("every public header says what the shared library shows", "[include]")
     const bool macros_only = file == "include/tegotae/core/export.hpp" || file == "include/tegotae/core/version.hpp";
     INFO(file);
     CHECK(times == (macros_only ? 0 : 1));
+  }
+}
+
+TEST_CASE("public headers include the standard headers of what they name", "[include]") {
+  // Themselves, or by another public header. A standard header may have others along, in one compiler's library and not
+  // in the next one's; <stdint.h> has no names in std.
+  const std::pair<const char*, std::regex> named[] = {{"cstdint", std::regex(R"(std::u?int\d+_t)")},
+                                                      {"string", std::regex(R"(std::string\b)")},
+                                                      {"string_view", std::regex(R"(std::string_view)")},
+                                                      {"vector", std::regex(R"(std::vector)")},
+                                                      {"array", std::regex(R"(std::array)")},
+                                                      {"optional", std::regex(R"(std::optional)")},
+                                                      {"functional", std::regex(R"(std::function)")},
+                                                      {"memory", std::regex(R"(std::(unique|shared|weak)_ptr)")},
+                                                      {"atomic", std::regex(R"(std::atomic)")},
+                                                      {"limits", std::regex(R"(std::numeric_limits)")}};
+  std::map<std::string, std::set<std::string>> includes, needs;
+  for (const auto& [file, line] : project_lines()) {
+    if (!starts_with(file, "include/")) continue;
+    includes[file.substr(8)].insert(included(line));
+    for (const auto& [header, pattern] : named)
+      if (std::regex_search(line, pattern)) needs[file.substr(8)].insert(header);
+  }
+  CHECK(needs.size() > 10);
+  for (const auto& [file, headers] : needs) {
+    std::set<std::string> reached;
+    std::vector<std::string> next = {file};
+    while (!next.empty()) {
+      const std::string from = next.back();
+      next.pop_back();
+      for (const std::string& to : includes[from])
+        if (reached.insert(to).second) next.push_back(to);
+    }
+    for (const std::string& header : headers) {
+      INFO(file << " needs <" << header << ">");
+      CHECK(reached.count(header) == 1);
+    }
   }
 }
 

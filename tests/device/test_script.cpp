@@ -75,6 +75,16 @@ TEST_CASE("columns may come in another order", "[device]") {
   CHECK(script.pose(0).p == Vec3(1, 2, 3));
 }
 
+TEST_CASE("a script may have a byte order mark, and numbers a plus", "[device]") {
+  const ScriptFile file("\xef\xbb\xbf" + kHeader + "+0.5,+1,-2,+3e-1,+1,0,0,0\r\n");
+  const StylusScript script = read_script(file.path);
+  CHECK(script.begin() == 0.5);
+  CHECK(script.pose(0).p == Vec3(1, -2, 0.3));
+  CHECK_THAT(error_of(kHeader + "+-1,0,0,0,1,0,0,0\n"), Catch::Contains(":2: t is not a number"));
+  CHECK_THAT(error_of(kHeader + "0,++1,0,0,1,0,0,0\n"), Catch::Contains(":2: px is not a number"));
+  CHECK_THAT(error_of(kHeader + "0,+,0,0,1,0,0,0\n"), Catch::Contains(":2: px is not a number"));
+}
+
 TEST_CASE("a bad script is refused with file, line and reason", "[device]") {
   const std::string row = "0,0,0,0,1,0,0,0\n";
   CHECK_THROWS_WITH(read_script("/nonexistent/s.csv"), Catch::Contains("/nonexistent/s.csv: cannot be opened"));

@@ -1,6 +1,12 @@
 #include "fuzz/mesh_seeds.hpp"
 
+#include <minizip/zip.h>
+#include <unistd.h>
+
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace tegotae {
 namespace {
@@ -54,7 +60,13 @@ std::vector<Seed> stl() {
     text += "endloop\nendfacet\n";
     put(binary, std::uint16_t{0});
   }
-  return {{"text", text + "endsolid t\n"}, {"binary", binary}, {"empty_solid", "solid Empty\nendsolid Empty"}};
+  return {{"odd",
+           "\xef\xbb\xbf\n SOLID facet endsolid\nFACET NORMAL -nan(ind) 1.#IND 0\nOUTER LOOP\nVERTEX 0 0 0\n"
+           "VERTEX +1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID\n\x1a"},
+          {"padded", binary + "\r\n"},
+          {"text", text + "endsolid t\n"},
+          {"binary", binary},
+          {"empty_solid", "solid Empty\nendsolid Empty"}};
 }
 
 std::vector<Seed> obj() {
@@ -143,14 +155,80 @@ std::string base64(const std::string& bytes) {
   return s;
 }
 
+/// A tetrahedron with a skin, a morph target and instances; the bytes are those of corner_bytes() and zeros.
+std::string posed_gltf() {
+  return R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing"],
+    "scenes":[{"nodes":[0,1]}],"nodes":[{"translation":[1,2,3],"children":[2]},{"mesh":0,"skin":0},
+    {"mesh":0,"weights":[0.5],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":0}}}}],
+    "skins":[{"joints":[0,2],"inverseBindMatrices":3}],
+    "meshes":[{"weights":[1],"primitives":[{"mode":5,"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2},
+      "targets":[{"POSITION":0}]}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+      {"bufferView":1,"componentType":5121,"count":4,"type":"VEC4"},
+      {"bufferView":0,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"},
+      {"bufferView":1,"componentType":5126,"count":2,"type":"MAT4"}],
+    "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":128}],
+    "buffers":[{"byteLength":176,"uri":"data:application/octet-stream;base64,)" +
+         std::string(236, 'A') + R"("}]})";
+}
+
+/// A bufferView of EXT_meshopt_compression whose stream is none.
+std::string packed_gltf() {
+  return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}],
+    "bufferViews":[{"buffer":1,"byteLength":48,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteLength":30,
+      "byteStride":12,"count":4,"mode":"ATTRIBUTES","filter":"EXPONENTIAL"}}}],
+    "buffers":[{"byteLength":30,"uri":"data:application/octet-stream;base64,oAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"},
+      {"byteLength":48,"extensions":{"EXT_meshopt_compression":{"fallback":true}}}]})";
+}
+
 std::vector<Seed> gltf() {
   const std::string uri = R"("uri":"data:application/octet-stream;base64,)" + base64(corner_bytes()) + "\",";
   return {{"data_uri", gltf_json(uri, "")},
           {"no_file", gltf_json(R"("uri":"missing.bin",)", "")},
           {"sparse", gltf_json(uri, R"(,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},)"
                                     R"("values":{"bufferView":0}})")},
+          {"posed", posed_gltf()},
+          {"packed", packed_gltf()},
           {"version_1", R"({"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":["n"]}},)"
                         R"("nodes":{"n":{"meshes":[]}}})"}};
+}
+
+/// An archive of these files, read back from `archive`.
+std::string zipped(const std::vector<Seed>& files) {
+  const std::string archive =
+      (std::filesystem::temp_directory_path() / ("tegotae-seed-" + std::to_string(getpid()))).string();
+  zipFile zip = zipOpen(archive.c_str(), APPEND_STATUS_CREATE);
+  for (const auto& [name, bytes] : files) {
+    zipOpenNewFileInZip(zip, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, 0, 0);  // stored, not packed
+    zipWriteInFileInZip(zip, bytes.data(), static_cast<unsigned>(bytes.size()));
+    zipCloseFileInZip(zip);
+  }
+  zipClose(zip, nullptr);
+  std::ifstream in(archive, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::filesystem::remove(archive);
+  return bytes;
+}
+
+std::vector<Seed> threemf() {
+  std::string mesh = "<mesh><vertices>";
+  for (const auto& c : kCorners)
+    mesh +=
+        "<vertex x='" + std::to_string(c[0]) + "' y='" + std::to_string(c[1]) + "' z='" + std::to_string(c[2]) + "'/>";
+  mesh += "</vertices><triangles>";
+  for (const auto& f : kFaces)
+    mesh += "<triangle v1='" + std::to_string(f[0]) + "' v2='" + std::to_string(f[1]) + "' v3='" +
+            std::to_string(f[2]) + "'/>";
+  mesh += "</triangles></mesh>";
+  const std::string relations = "<Relationships><Relationship Target='/m' Type='x/3dmodel'/></Relationships>";
+  const std::string model =
+      "<model unit='inch'><resources><object id='1' pid='5'>" + mesh +
+      "</object><object id='2'><components><component objectid='1' transform='0 1 0 -1 0 0 0 0 2 3 4 5'/>"
+      "</components></object><basematerials id='5'><base displaycolor='#12345678'/></basematerials>"
+      "</resources><build><item objectid='2'/><item objectid='1'/></build></model>";
+  return {{"whole", zipped({{"_rels/.rels", relations}, {"m", model}})},
+          {"empty", zipped({{"_rels/.rels", relations}})}};
 }
 
 std::vector<Seed> glb() {
@@ -174,6 +252,7 @@ std::vector<Seed> mesh_seeds(const std::string& extension) {
   if (extension == "obj") return obj();
   if (extension == "ply") return ply();
   if (extension == "off") return off();
+  if (extension == "3mf") return threemf();
   return extension == "glb" ? glb() : gltf();
 }
 

@@ -7,7 +7,7 @@
 
 namespace tegotae {
 
-/// Small files of the format with this extension: stl, obj, ply, off, gltf or glb.
+/// Small files of the format with this extension: stl, obj, ply, off, gltf, glb or 3mf.
 std::vector<Seed> mesh_seeds(const std::string& extension);
 
 }  // namespace tegotae

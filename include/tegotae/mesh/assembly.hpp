@@ -44,7 +44,7 @@ struct AssemblyOptions {
   std::function<void(const char* what, std::size_t done, std::size_t total)> progress;
 };
 
-/// Reads glTF/GLB and STEP (AP203, AP214, AP242) with their tree, or STL, OBJ, PLY and OFF as one part.
+/// Reads glTF/GLB, 3MF and STEP (AP203, AP214, AP242) with their tree, or STL, OBJ, PLY and OFF as one part.
 ///
 /// Every leaf of the tree is a part; instances share a shape, placed by a rotation and a translation (a scale or a
 /// mirroring is in the shape). A shape that lies farther from its origin than it is large gets an origin at the middle

@@ -10,14 +10,14 @@ namespace tegotae TEGOTAE_EXPORT {
 /// Length of one file unit in m: "m", "cm", "mm", "um" or "in". Throws Error for any other name.
 double unit_length(const std::string& unit);
 
-/// Reads STL, OBJ, PLY, OFF or glTF/GLB (node transforms applied, all meshes of the file in one surface), scales it by
-/// `unit_in_m` (the length of one file unit) and welds vertices that coincide.
+/// Reads STL, OBJ, PLY, OFF, glTF/GLB or 3MF (of these two all placed meshes in one surface), scales it by `unit_in_m`
+/// (the length of one file unit) and welds vertices that coincide. docs/formats.md lists what is read of each format.
 ///
 /// Dirty surfaces load (see report.hpp for what is counted); a file that cannot be used throws Error with the file and
 /// the reason: unreadable, empty, truncated, no triangles, indices out of range, non-finite or absurd coordinates,
-/// no triangle with an area, STEP, unknown format; polygons that would take more than some ten seconds to cut into
-/// triangles; in text PLY and OFF, vertices or faces that do not take a line each; in OFF, faces of more than 9
-/// corners. Coordinates have the precision of a float of the file's numbers.
+/// no triangle with an area, STEP, unknown format, a required extension that is not read; polygons that would take more
+/// than some ten seconds to cut into triangles; in text PLY and OFF, vertices or faces that do not take a line each; in
+/// OFF, faces of more than 9 corners. Coordinates have the precision of a float of the file's numbers.
 TriangleMesh load_mesh(const std::string& path, double unit_in_m = 1.0);
 
 /// Welds bit-equal vertices, then those within one step of single precision at the largest coordinate (3 nm at 25 mm),

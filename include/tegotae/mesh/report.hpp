@@ -16,6 +16,7 @@ struct MeshReport {
   std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two that turn against each other
   std::size_t degenerate_faces = 0;    ///< collapsed, or lower than 8 steps of single precision (normals not used)
   std::size_t duplicate_faces = 0;     ///< the same three vertices as an earlier face, in any order; none collapsed
+  std::size_t inverted_shells = 0;     ///< closed meshes: components that look in where they should look out, or out
   bool closed = false;                 ///< every edge joins exactly two faces that turn the same way
   Vec3 box_min = Vec3::Zero();         ///< m, file frame
   Vec3 box_max = Vec3::Zero();         ///< m, file frame

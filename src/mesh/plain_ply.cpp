@@ -1,6 +1,7 @@
-#include "mesh/ply_check.hpp"
+#include "mesh/plain_ply.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -92,8 +93,7 @@ class Body {
     return number && with_type(type, [&](auto zero) { return fits(value, zero); });
   }
 
-  /// To the next element. False when values are left over on an ASCII file's line: assimp takes a line for an element,
-  /// and would read others than those that were checked.
+  /// To the next element. False when values are left over on an ASCII file's line, which is an element.
   bool end_element() {
     if (encoding_ != Encoding::ascii) return true;
     at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size());
@@ -168,9 +168,6 @@ Element read_element(const std::string& path, const Words& line) {
   std::string_view count = line[2];
   if (!take_number(count, element.count))
     refuse(path, "damaged: the count of element " + element.name + " is no number");
-  // Of strips, assimp believes every length; of elements that it does not know it takes the name for the count.
-  if (element.name != "vertex" && element.name != "face" && element.name != "edge" && element.name != "material")
-    refuse(path, "element " + element.name + " is not supported: export vertices and faces alone");
   return element;
 }
 
@@ -216,66 +213,139 @@ bool has_corners(const Property& property) {
   return property.length != Scalar::none && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// What assimp takes for granted of elements and properties that it knows.
+/// What has one meaning only: names given once, faces with corners, vertices with places.
 void check_elements(const std::string& path, const Header& header) {
   for (const Element& element : header.elements) {
     const auto same = [&](const Element& e) { return e.name == element.name; };
     if (std::count_if(header.elements.begin(), header.elements.end(), same) > 1)
       refuse(path, "damaged: its header has element " + element.name + " twice");
-    // assimp takes lines for elements that have nothing on them.
     if (element.count > 0 && element.properties.empty())
       refuse(path, "damaged: element " + element.name + " of its header has no properties");
     std::set<std::string> names;
     for (const Property& property : element.properties)
       if (!names.insert(property.name).second)
         refuse(path, "damaged: its header has property " + property.name + " of " + element.name + " twice");
-    const auto list = [](const Property& p) { return p.length != Scalar::none; };
-    if (element.name == "vertex" && std::any_of(element.properties.begin(), element.properties.end(), list))
-      refuse(path, "damaged: its vertices have lists");
-    // Texture coordinates of faces without corners are read through a null pointer.
-    if (element.name == "face" && element.count > 0 &&
+    for (const char* axis : {"x", "y", "z"}) {
+      const auto is_axis = [&](const Property& p) { return p.name == axis && p.length == Scalar::none; };
+      if (element.name == "vertex" && std::none_of(element.properties.begin(), element.properties.end(), is_axis))
+        refuse(path, std::string("damaged: its vertices have no ") + axis);
+    }
+    if ((element.name == "face" || element.name == "tristrips") && element.count > 0 &&
         std::none_of(element.properties.begin(), element.properties.end(), has_corners))
-      refuse(path, "damaged: its faces have no list vertex_indices or vertex_index");
+      refuse(path, "damaged: element " + element.name + " has no list vertex_indices or vertex_index");
   }
 }
 
-/// One property of one element; `place` says which.
-template <class Place>
-void check_values(const std::string& path, const Property& property, double vertices, Body& body, Place place) {
-  const bool corners = has_corners(property);
-  double length = 1, value = 0;
-  if (property.length != Scalar::none && (!body.next(property.length, length) || !fits(length, std::uint32_t{})))
-    refuse(path, "truncated or damaged at " + place());
-  for (double k = 0; k < length; ++k) {
-    if (!body.next(property.value, value)) refuse(path, "truncated or damaged at " + place());
-    if (corners && !(value >= 0 && value < vertices)) {
-      refuse(path, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) + " of " +
-                       std::to_string(std::llround(vertices)));
+template <class T>
+void put(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+/// Reads the body, and writes what is shape of it.
+class PlyReader {
+ public:
+  PlyReader(const std::string& path, std::string_view bytes)
+      : path_(path), header_(read_header(path, bytes)), body_(bytes.substr(header_.size), header_.encoding) {
+    check_elements(path, header_);
+    for (const Element& element : header_.elements)
+      if (element.name == "vertex") vertices_ = element.count;
+  }
+
+  std::string plain() {
+    for (const Element& element : header_.elements) {
+      // Every element takes at least a byte, so a count that the file cannot hold is found without counting to it.
+      if (element.count > body_.left()) {
+        refuse(path_, "truncated: " + std::to_string(element.count) + " of element " + element.name +
+                          " are announced, more than the file has bytes");
+      }
+      for (std::uint64_t i = 0; i < element.count; ++i) read(element, i);
+    }
+    const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices_) +
+                             "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                             std::to_string(faces_) + "\nproperty list uint uint vertex_indices\nend_header\n";
+    return head + vertex_bytes_ + face_bytes_;
+  }
+
+ private:
+  void read(const Element& element, std::uint64_t number) {
+    const auto place = [&] { return element.name + ' ' + std::to_string(number); };
+    std::array<double, 3> p{};
+    for (const Property& property : element.properties) {
+      read(property, place);
+      if (element.name == "vertex" && property.length == Scalar::none && property.name.size() == 1 &&
+          property.name[0] >= 'x' && property.name[0] <= 'z')
+        p[static_cast<std::size_t>(property.name[0] - 'x')] = values_[0];
+      if (element.name == "face" && has_corners(property)) add_face(place);
+      if (element.name == "tristrips" && has_corners(property)) add_strips(place);
+    }
+    if (element.name == "vertex")
+      for (const double x : p) put(vertex_bytes_, x);
+    if (!body_.end_element()) refuse(path_, "damaged: more values on its line than " + place() + " has");
+  }
+
+  /// One property of one element into `values_`; `place` says which.
+  template <class Place>
+  void read(const Property& property, Place place) {
+    double length = 1, value = 0;
+    if (property.length != Scalar::none && (!body_.next(property.length, length) || !fits(length, std::uint32_t{})))
+      refuse(path_, "truncated or damaged at " + place());
+    values_.clear();
+    for (double k = 0; k < length; ++k) {
+      if (!body_.next(property.value, value)) refuse(path_, "truncated or damaged at " + place());
+      values_.push_back(value);
     }
   }
-}
+
+  template <class Place>
+  std::uint32_t vertex(double value, Place place) const {
+    if (!(value >= 0 && value < static_cast<double>(vertices_))) {
+      refuse(path_, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) + " of " +
+                        std::to_string(vertices_));
+    }
+    return static_cast<std::uint32_t>(value);
+  }
+
+  template <class Place>
+  void add_face(Place place) {
+    put(face_bytes_, static_cast<std::uint32_t>(values_.size()));
+    for (const double value : values_) put(face_bytes_, vertex(value, place));
+    ++faces_;
+  }
+
+  /// Strips of triangles, one after the other; -1 ends one.
+  template <class Place>
+  void add_strips(Place place) {
+    std::vector<std::uint32_t> strip;
+    for (const double value : values_) {
+      if (value == -1) {
+        strip.clear();
+        continue;
+      }
+      strip.push_back(vertex(value, place));
+      const std::size_t n = strip.size();
+      if (n < 3 || strip[n - 1] == strip[n - 2] || strip[n - 2] == strip[n - 3] || strip[n - 3] == strip[n - 1])
+        continue;
+      put(face_bytes_, std::uint32_t{3});
+      for (const std::size_t k : {n - 3, n % 2 == 1 ? n - 2 : n - 1, n % 2 == 1 ? n - 1 : n - 2})
+        put(face_bytes_, strip[k]);
+      ++faces_;
+    }
+  }
+
+  const std::string& path_;
+  Header header_;
+  Body body_;
+  std::uint64_t vertices_ = 0, faces_ = 0;
+  std::vector<double> values_;
+  std::string vertex_bytes_, face_bytes_;
+};
 
 }  // namespace
 
-void check_ply(const std::string& path, std::string_view bytes) {
-  const Header header = read_header(path, bytes);
-  check_elements(path, header);
-  double vertices = 0;
-  for (const Element& element : header.elements)
-    if (element.name == "vertex") vertices = static_cast<double>(element.count);
-  Body body(bytes.substr(header.size), header.encoding);
-  for (const Element& element : header.elements) {
-    // Every element takes at least a byte, so a count that the file cannot hold is found without counting to it.
-    if (element.count > body.left()) {
-      refuse(path, "truncated: " + std::to_string(element.count) + " of element " + element.name +
-                       " are announced, more than the file has bytes");
-    }
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const auto place = [&] { return element.name + ' ' + std::to_string(i); };
-      for (const Property& property : element.properties) check_values(path, property, vertices, body, place);
-      if (!body.end_element()) refuse(path, "damaged: more values on its line than " + place() + " has");
-    }
-  }
+std::string plain_ply(const std::string& path, std::string_view bytes) {
+  return PlyReader(path, bytes).plain();
 }
 
 }  // namespace tegotae

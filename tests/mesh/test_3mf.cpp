@@ -1,0 +1,210 @@
+// What changes shape or place in 3MF: a test for each row of docs/formats.md.
+#include <minizip/zip.h>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/assembly.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/report.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+const char* const kRelations =
+    R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>)";
+
+// Corners 0, x, y, z; edges of 10.
+const char* const kMesh = R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="10" y="0" z="0"/>
+<vertex x="0" y="10" z="0"/><vertex x="0" y="0" z="10"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/>
+<triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh>)";
+
+std::string object(const char* id, const std::string& more, const std::string& inside = kMesh) {
+  return std::string("<object id=\"") + id + "\" " + more + ">" + inside + "</object>";
+}
+
+std::string model(const std::string& resources, const std::string& build,
+                  const std::string& more = "unit=\"millimeter\"") {
+  return "<?xml version=\"1.0\"?><model xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+         "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "
+         "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" " +
+         more + "><resources>" + resources + "</resources><build>" + build + "</build></model>";
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+std::string write(const TempFolder& folder, const Files& files) {
+  const std::string path = folder / "a.3mf";
+  zipFile zip = zipOpen(path.c_str(), APPEND_STATUS_CREATE);
+  REQUIRE(zip != nullptr);
+  for (const auto& [name, bytes] : files) {
+    REQUIRE(zipOpenNewFileInZip(zip, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 6) == ZIP_OK);
+    REQUIRE(zipWriteInFileInZip(zip, bytes.data(), static_cast<unsigned>(bytes.size())) == ZIP_OK);
+    zipCloseFileInZip(zip);
+  }
+  zipClose(zip, nullptr);
+  return path;
+}
+
+std::string write(const TempFolder& folder, const std::string& text) {
+  return write(folder, {{"_rels/.rels", kRelations}, {"3D/3dmodel.model", text}});
+}
+
+Eigen::AlignedBox3d box_of(const Assembly& a, std::size_t part) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
+  return box;
+}
+
+void check_box(const Assembly& a, std::size_t part, const Vec3& lo, const Vec3& hi) {
+  const auto box = box_of(a, part);
+  INFO(box.min().transpose() << " to " << box.max().transpose());
+  CHECK((box.min() - lo).norm() < 1e-9);
+  CHECK((box.max() - hi).norm() < 1e-9);
+  CHECK(report(*a.shapes[a.parts[part].shape]).inverted_shells == 0);
+}
+
+std::string refusal(const std::string& path) {
+  try {
+    read_assembly(path);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("3MF: lengths are in the unit of the file", "[3mf]") {
+  const TempFolder folder;
+  const std::pair<const char*, double> units[] = {{"", 1e-3},
+                                                  {"unit=\"micron\"", 1e-6},
+                                                  {"unit=\"millimeter\"", 1e-3},
+                                                  {"unit=\"centimeter\"", 1e-2},
+                                                  {"unit=\"inch\"", 0.0254},
+                                                  {"unit=\"foot\"", 0.3048},
+                                                  {"unit=\"meter\"", 1}};
+  for (const auto& [unit, meters] : units) {
+    INFO(unit);
+    const Assembly a =
+        read_assembly(write(folder, model(object("1", "name=\"tip\""),
+                                          R"(<item objectid="1" transform="1 0 0 0 1 0 0 0 1 5 0 0"/>)", unit)));
+    REQUIRE(a.parts.size() == 1);
+    CHECK(a.parts[0].name == "tip");
+    const auto box = box_of(a, 0);
+    CHECK(box.min().x() == Approx(5 * meters));
+    CHECK(box.max().x() == Approx(15 * meters));
+  }
+  CHECK_THAT(refusal(write(folder, model(object("1", ""), R"(<item objectid="1"/>)", "unit=\"yard\""))),
+             Catch::Contains("yard"));
+}
+
+TEST_CASE("3MF: items and components are placed, turned, scaled and mirrored", "[3mf]") {
+  const TempFolder folder;
+  const std::string group = object(
+      "2", "name=\"pair\"",
+      R"(<components><component objectid="1"/><component objectid="1" transform="1 0 0 0 1 0 0 0 1 20 0 0"/></components>)");
+  // A quarter turn about z: rows are where x, y, z go.
+  const std::string file = write(folder, model(object("1", "name=\"tip\"") + group,
+                                               R"(<item objectid="2" transform="0 1 0 -1 0 0 0 0 1 100 0 0"/>)"
+                                               R"(<item objectid="1" transform="-1 0 0 0 1 0 0 0 2 0 0 0"/>)"));
+  const Assembly a = read_assembly(file);
+  REQUIRE(a.parts.size() == 3);
+  check_box(a, 0, {0.09, 0, 0}, {0.1, 0.01, 0.01});
+  check_box(a, 1, {0.09, 0.02, 0}, {0.1, 0.03, 0.01});
+  check_box(a, 2, {-0.01, 0, 0}, {0, 0.01, 0.02});
+  CHECK(a.parts[0].shape == a.parts[1].shape);
+  CHECK(a.parts[0].path == std::vector<std::string>{"pair"});
+  // As one surface, in units of the file.
+  const MeshReport whole = report(load_mesh(file));
+  CHECK((whole.box_min - Vec3(-10, 0, 0)).norm() < 1e-9);
+  CHECK((whole.box_max - Vec3(100, 30, 20)).norm() < 1e-9);
+  CHECK(whole.inverted_shells == 0);
+}
+
+TEST_CASE("3MF: objects in other files of the archive (production)", "[3mf]") {
+  const TempFolder folder;
+  const std::string other = model(object("7", "name=\"inner\""), "");
+  const std::string group =
+      object("1", "", R"(<components><component p:path="/3D/Objects/o.model" objectid="7"/></components>)");
+  const Assembly a = read_assembly(write(
+      folder,
+      {{"_rels/.rels", kRelations},
+       {"3D/3dmodel.model", model(group, R"(<item objectid="1"/>)", "unit=\"millimeter\" requiredextensions=\"p\"")},
+       {"3D/Objects/o.model", other}}));
+  REQUIRE(a.parts.size() == 1);
+  CHECK(a.parts[0].name == "inner");
+  check_box(a, 0, Vec3::Zero(), Vec3::Constant(0.01));
+}
+
+TEST_CASE("3MF: what is not built is left out, supports with a note; lattices are told", "[3mf]") {
+  const TempFolder folder;
+  const std::string lattice = std::string(kMesh).insert(6, "<b:beamlattice minlength=\"1\" radius=\"1\"/>");
+  const Assembly a =
+      read_assembly(write(folder, model(object("1", "name=\"tip\"", lattice) + object("2", "name=\"spare\"") +
+                                            object("3", "name=\"prop\" type=\"support\""),
+                                        R"(<item objectid="1"/><item objectid="3"/>)")));
+  REQUIRE(a.parts.size() == 1);
+  REQUIRE(a.notes.size() == 2);
+  CHECK_THAT(a.notes[0] + a.notes[1],
+             Catch::Contains("\"tip\" has a beam lattice") && Catch::Contains("\"prop\" is a support"));
+}
+
+TEST_CASE("3MF: a required extension that is not read refuses the file", "[3mf]") {
+  const TempFolder folder;
+  CHECK_THAT(refusal(write(folder, model(object("1", ""), R"(<item objectid="1"/>)", "requiredextensions=\"p b\""))),
+             Catch::Contains("requires the 3MF extension http://schemas.microsoft.com/3dmanufacturing/beamlattice"));
+}
+
+TEST_CASE("3MF: colors of base materials", "[3mf]") {
+  const TempFolder folder;
+  const std::string materials =
+      R"(<basematerials id="5"><base name="a" displaycolor="#FFFFFF"/><base name="b" displaycolor="#3300FF80"/></basematerials>)";
+  const Assembly a =
+      read_assembly(write(folder, model(materials + object("1", "pid=\"5\" pindex=\"1\"") + object("2", ""),
+                                        R"(<item objectid="1"/><item objectid="2"/>)")));
+  REQUIRE(a.parts.size() == 2);
+  REQUIRE(a.parts[0].color);
+  CHECK((*a.parts[0].color)[0] == Approx(0.2));
+  CHECK((*a.parts[0].color)[2] == 1);
+  CHECK((*a.parts[0].color)[3] == Approx(128 / 255.0));
+  CHECK(!a.parts[1].color);
+}
+
+TEST_CASE("3MF: damaged files are refused in one line", "[3mf]") {
+  const TempFolder folder;
+  const std::string whole = read_text(write(folder, model(object("1", "name=\"tip\""), R"(<item objectid="1"/>)")));
+  for (std::size_t n = 1; n + 22 < whole.size(); n += 5) {  // 22: the record at the end, of which the last two may miss
+    folder.write("cut.3mf", whole.substr(0, n));
+    const std::string error = refusal(folder / "cut.3mf");
+    INFO(n << ": " << error);
+    CHECK(error.find("cut.3mf: ") != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  std::string loop = object("1", "", R"(<components><component objectid="1"/></components>)");
+  CHECK_THAT(refusal(write(folder, model(loop, R"(<item objectid="1"/>)"))), Catch::Contains("nested"));
+  // Each of forty levels names the next twice.
+  std::string levels = object("0", "");
+  for (int i = 1; i <= 40; ++i) {
+    const std::string next = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
+    levels += object(std::to_string(i).c_str(), "", "<components>" + next + next + "</components>");
+  }
+  CHECK_THAT(refusal(write(folder, model(levels, R"(<item objectid="40"/>)"))), Catch::Contains("more than a million"));
+  const std::pair<const char*, const char*> bad[] = {
+      {R"(<item objectid="9"/>)", "object 9, which is missing"},
+      {R"(<item objectid="1" transform="1 0 0"/>)", "fewer than 12"},
+      {R"(<item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 x"/>)", "number"},
+      {R"(<item objectid="1" transform="nan 0 0 0 1 0 0 0 1 0 0 0"/>)", ""},
+      {R"(<item objectid="1" p:path="/3D/none.model"/>)", "none.model in it is missing"}};
+  for (const auto& [item, why] : bad)
+    CHECK_THAT(refusal(write(folder, model(object("1", ""), item))),
+               Catch::Contains(std::string("a.3mf: ")) && Catch::Contains(why));
+  const std::string range = std::string(kMesh).replace(std::string(kMesh).find("v3=\"1\""), 6, "v3=\"4\"");
+  CHECK_THAT(refusal(write(folder, model(object("1", "", range), R"(<item objectid="1"/>)"))),
+             Catch::Contains("index out of range"));
+  CHECK_THAT(refusal(write(folder, Files{{"x", "y"}})), Catch::Contains("_rels/.rels in it is missing"));
+}

@@ -1,0 +1,366 @@
+// What changes shape or place in glTF: a test for each row of docs/formats.md.
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <meshoptimizer.h>
+
+#include "catch.hpp"
+#include "mesh/gltf_doc.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/assembly.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/report.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+Box box_of(const Assembly& a, std::size_t part) {
+  Box box;
+  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
+  return box;
+}
+
+void check_box(const Box& box, const Vec3& lo, const Vec3& hi) {
+  INFO(box.min().transpose() << " to " << box.max().transpose());
+  CHECK((box.min() - lo).norm() < 2e-6);
+  CHECK((box.max() - hi).norm() < 2e-6);
+}
+
+double volume(const TriangleMesh& mesh) {
+  double v = 0;
+  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
+  return v;
+}
+
+/// The file read both ways: as parts and as one surface, whose boxes must be the same.
+Assembly read(const std::string& file) {
+  const Assembly a = read_assembly(file);
+  Box parts;
+  for (std::size_t i = 0; i < a.parts.size(); ++i) parts.extend(box_of(a, i));
+  const MeshReport whole = report(load_mesh(file));
+  check_box(parts, whole.box_min, whole.box_max);
+  for (const auto& shape : a.shapes) {
+    CHECK(report(*shape).closed);
+    CHECK(volume(*shape) > 0);
+  }
+  return a;
+}
+
+std::string refusal(const std::string& file) {
+  std::string why;
+  for (int k = 0; k < 2; ++k) {
+    try {
+      if (k == 0) load_mesh(file);
+      if (k == 1) read_assembly(file);
+    } catch (const Error& e) {
+      why += e.what();
+    }
+  }
+  return why;
+}
+
+bool has_note(const Assembly& a, const std::string& text) {
+  for (const std::string& note : a.notes)
+    if (note.find(text) != std::string::npos) return true;
+  return false;
+}
+
+/// A file of one tetrahedron whose positions are the accessor `position` of `doc`.
+Assembly read_with_position(GltfDoc& doc, std::size_t position, const Json& node = {}) {
+  const TempFolder folder;
+  Json of = node.is_null() ? Json::object() : node;
+  of["mesh"] = doc.mesh({{"attributes", {{"POSITION", position}}}, {"indices", doc.faces()}});
+  doc.node(of);
+  return read(doc.save(folder));
+}
+
+}  // namespace
+
+TEST_CASE("glTF: places of nodes: matrix, or scale, rotation, translation; parents; mirrors", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  const std::size_t mesh = doc.mesh(doc.tetrahedron());
+  // x doubled, then a quarter turn about z, then 10 in x.
+  doc.node({{"mesh", mesh},
+            {"scale", {2, 1, 1}},
+            {"rotation", {0, 0, 0.70710678, 0.70710678}},
+            {"translation", {10, 0, 0}}});
+  doc.node({{"mesh", mesh}, {"matrix", {0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 20, 0, 0, 1}}});
+  const std::size_t child = doc.node({{"mesh", mesh}, {"translation", {0, 5, 0}}}, false);
+  doc.node({{"name", "mirror"}, {"scale", {-1, 1, 1}}, {"children", {child}}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 3);
+  check_box(box_of(a, 0), {9, 0, 0}, {10, 2, 1});
+  check_box(box_of(a, 1), {19, 0, 0}, {20, 2, 1});
+  check_box(box_of(a, 2), {-1, 5, 0}, {0, 6, 1});
+  CHECK(a.parts[0].shape == a.parts[1].shape);
+  CHECK(a.parts[2].path == std::vector<std::string>{"mirror"});
+}
+
+TEST_CASE("glTF: the scene that the file names is read, the first without one, all roots without scenes", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  const std::size_t mesh = doc.mesh(doc.tetrahedron());
+  doc.node({{"mesh", mesh}, {"name", "first"}});
+  doc.node({{"mesh", mesh}, {"name", "second"}, {"translation", {3, 0, 0}}}, false);
+  doc.j["scenes"].push_back({{"nodes", {1}}});
+  doc.j["scene"] = 1;
+  CHECK(read(doc.save(folder)).parts.at(0).name == "second");
+  doc.j.erase("scene");
+  CHECK(read(doc.save(folder)).parts.at(0).name == "first");
+  doc.j.erase("scenes");
+  CHECK(read(doc.save(folder)).parts.size() == 2);
+}
+
+TEST_CASE("glTF: triangles come as lists, strips and fans, with and without indices; points and lines go", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  std::vector<float> soup;
+  const float c[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const int i : {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}) soup.insert(soup.end(), c[i], c[i] + 3);
+  doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", doc.floats(soup, "VEC3", 3)}}}})}});
+  // 0 2 1 3 goes on to 0 and 2: every face once, turned right.
+  const std::size_t strip = doc.accessor(std::string({0, 2, 1, 3, 0, 2}), 5121, "SCALAR", 6);
+  doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", doc.corners()}}}, {"indices", strip}, {"mode", 5}})}});
+  // Three faces round corner 3, and the one across.
+  const std::size_t fan = doc.accessor(std::string({3, 0, 1, 2, 0}), 5121, "SCALAR", 5);
+  const std::size_t rest = doc.accessor(std::string({0, 2, 1}), 5121, "SCALAR", 3);
+  const std::size_t corners = doc.corners();
+  const std::size_t both = doc.mesh({{"attributes", {{"POSITION", corners}}}, {"indices", fan}, {"mode", 6}});
+  doc.j["meshes"][both]["primitives"].push_back({{"attributes", {{"POSITION", corners}}}, {"indices", rest}});
+  doc.j["meshes"][both]["primitives"].push_back({{"attributes", {{"POSITION", corners}}}, {"mode", 0}});
+  doc.j["meshes"][both]["primitives"].push_back({{"attributes", {{"POSITION", corners}}}, {"mode", 1}});
+  doc.node({{"mesh", both}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 3);
+  for (const AssemblyPart& part : a.parts) {
+    CHECK(a.shapes[part.shape]->triangles.size() == 4);
+    CHECK(volume(*a.shapes[part.shape]) == Approx(1.0 / 6));
+  }
+}
+
+TEST_CASE("glTF: positions of integers mean what they stand for (KHR_mesh_quantization)", "[gltf]") {
+  const auto check = [](auto one, int type, bool normalized, double scale) {
+    using T = decltype(one);
+    INFO(type << (normalized ? " normalized" : ""));
+    GltfDoc doc;
+    doc.uses("KHR_mesh_quantization");
+    std::vector<T> rows;  // of four numbers: attributes begin at multiples of four bytes
+    for (int corner = -1; corner < 3; ++corner)
+      for (int k = 0; k < 4; ++k) rows.push_back(k == corner ? one : T{0});
+    const std::size_t position = doc.accessor(GltfDoc::bytes_of(rows), type, "VEC3", 4);
+    doc.j["bufferViews"].back()["byteStride"] = 4 * sizeof(T);
+    doc.j["accessors"][position]["normalized"] = normalized;
+    const Assembly a = read_with_position(doc, position, {{"scale", {scale, scale, scale}}});
+    check_box(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
+  };
+  check(std::int8_t{100}, 5120, false, 0.01);
+  check(std::int8_t{127}, 5120, true, 1);
+  check(std::uint8_t{200}, 5121, false, 0.005);
+  check(std::uint8_t{255}, 5121, true, 1);
+  check(std::int16_t{1000}, 5122, false, 0.001);
+  check(std::int16_t{32767}, 5122, true, 1);
+  check(std::uint16_t{50000}, 5123, false, 2e-5);
+  check(std::uint16_t{65535}, 5123, true, 1);
+}
+
+TEST_CASE("glTF: sparse accessors", "[gltf]") {
+  const auto sparse = [](GltfDoc& doc, std::uint8_t element) {
+    const std::size_t position = doc.corners();
+    doc.j["accessors"][position]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", doc.view(std::string(1, static_cast<char>(element)))}, {"componentType", 5121}}},
+        {"values", {{"bufferView", doc.view(GltfDoc::bytes_of(std::vector<float>{0, 0, 7}))}}}};
+    return position;
+  };
+  GltfDoc doc;
+  check_box(box_of(read_with_position(doc, sparse(doc, 3)), 0), Vec3::Zero(), {1, 1, 7});
+  const TempFolder folder;
+  GltfDoc beyond;
+  beyond.node(
+      {{"mesh", beyond.mesh({{"attributes", {{"POSITION", sparse(beyond, 4)}}}, {"indices", beyond.faces()}})}});
+  CHECK_THAT(refusal(beyond.save(folder)), Catch::Contains("index out of range: a sparse accessor"));
+}
+
+TEST_CASE("glTF: morph weights of the node, or of the mesh, pose it", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  Json primitive = doc.tetrahedron();
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<float> shift(12, 0);
+    shift[static_cast<std::size_t>(9 + axis)] = 4;  // of the tip
+    primitive["targets"].push_back({{"POSITION", doc.floats(shift, "VEC3", 3)}});
+  }
+  const std::size_t mesh = doc.mesh(primitive);
+  doc.j["meshes"][mesh]["weights"] = {0.5, 0};
+  doc.node({{"mesh", mesh}});
+  doc.node({{"mesh", mesh}, {"weights", {0, 1}}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 2);
+  check_box(box_of(a, 0), Vec3::Zero(), {2, 1, 1});
+  check_box(box_of(a, 1), Vec3::Zero(), {1, 4, 1});
+}
+
+TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  Json primitive = doc.tetrahedron();
+  // Three corners hang on joint 0, the tip half on each.
+  primitive["attributes"]["JOINTS_0"] =
+      doc.accessor(std::string({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}), 5121, "VEC4", 4);
+  primitive["attributes"]["WEIGHTS_0"] = doc.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}, "VEC4", 4);
+  const std::size_t mesh = doc.mesh(primitive);
+  const std::size_t far = doc.node({{"name", "far"}, {"translation", {0, 0, 6}}}, false);
+  const std::size_t near = doc.node({{"name", "near"}, {"translation", {10, 0, 0}}, {"children", {far}}});
+  doc.j["skins"] = {{{"joints", {near, far}}}};
+  doc.node({{"mesh", mesh}, {"skin", 0}, {"translation", {100, 100, 100}}});
+  check_box(box_of(read(doc.save(folder)), 0), {10, 0, 0}, {11, 1, 4});
+  // Inverse bind matrices that take the joints' places back: the mesh as it is.
+  doc.j["skins"][0]["inverseBindMatrices"] =
+      doc.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, -6, 1},
+                 "MAT4", 16);
+  check_box(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
+  doc.j["skins"][0]["joints"] = {near};
+  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("a vertex names a joint"));
+}
+
+TEST_CASE("glTF: instances (EXT_mesh_gpu_instancing)", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.uses("EXT_mesh_gpu_instancing");
+  const Json places = {{"TRANSLATION", doc.floats({0, 0, 0, 5, 0, 0, 0, 0, 7}, "VEC3", 3)},
+                       {"ROTATION", doc.floats({0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f, 0, 0, 0, 1}, "VEC4", 4)},
+                       {"SCALE", doc.floats({1, 1, 1, 1, 1, 1, 2, 2, 2}, "VEC3", 3)}};
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())},
+            {"translation", {100, 0, 0}},
+            {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", places}}}}}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 3);
+  check_box(box_of(a, 0), {100, 0, 0}, {101, 1, 1});
+  check_box(box_of(a, 1), {104, 0, 0}, {105, 1, 1});
+  check_box(box_of(a, 2), {100, 0, 7}, {102, 2, 9});
+  CHECK(a.parts[0].shape == a.parts[1].shape);
+}
+
+TEST_CASE("glTF: extensions that are not read refuse the file when required, and are told when used", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.uses("KHR_materials_unlit");
+  CHECK(read(doc.save(folder)).notes.empty());
+  doc.uses("ACME_bends", false);
+  CHECK(has_note(read(doc.save(folder)), "ACME_bends is not read"));
+  doc.uses("ACME_bends");
+  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("requires the glTF extension ACME_bends"));
+}
+
+TEST_CASE("glTF: animations are told, cameras and lights are nothing", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.j["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  doc.node({{"camera", 0}});
+  CHECK(read(doc.save(folder)).notes.empty());
+  const std::size_t times = doc.floats({0, 1}, "SCALAR", 1), places = doc.floats({0, 0, 0, 9, 9, 9}, "VEC3", 3);
+  doc.j["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+                          {"samplers", {{{"input", times}, {"output", places}}}}}};
+  const Assembly a = read(doc.save(folder));
+  check_box(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
+  CHECK(has_note(a, "animations"));
+}
+
+TEST_CASE("glTF: Draco (KHR_draco_mesh_compression)", "[gltf]") {
+  const TempFolder folder;
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(4);
+  const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const float c[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (int f = 0; f < 4; ++f)
+    builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(f)), c[faces[f][0]],
+                                      c[faces[f][1]], c[faces[f][2]]);
+  const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer packed;
+  REQUIRE(encoder.EncodeMeshToBuffer(*mesh, &packed).ok());
+  GltfDoc doc;
+  doc.uses("KHR_draco_mesh_compression");
+  doc.j["accessors"] = {{{"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+                        {{"componentType", 5123}, {"count", 12}, {"type", "SCALAR"}}};
+  const std::size_t view = doc.view(std::string(packed.data(), packed.size()));
+  doc.node(
+      {{"mesh",
+        doc.mesh({{"attributes", {{"POSITION", 0}}},
+                  {"indices", 1},
+                  {"extensions",
+                   {{"KHR_draco_mesh_compression", {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}}}}}})}});
+  const Assembly a = read(doc.save(folder));
+  CHECK(volume(*a.shapes[0]) == Approx(1.0 / 6));
+  doc.j["bufferViews"][view]["byteLength"] = packed.size() / 2;
+  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("Draco is no stream of it"));
+}
+
+TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
+  const TempFolder folder;
+  const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<std::uint32_t> faces = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  const auto vertices = [&](const void* data, std::size_t stride) {
+    std::string out(meshopt_encodeVertexBufferBound(4, stride), '\0');
+    out.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), data, 4, stride));
+    return out;
+  };
+  std::string triangles(meshopt_encodeIndexBufferBound(12, 4), '\0'),
+      sequence(meshopt_encodeIndexSequenceBound(12, 4), '\0');
+  triangles.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(triangles.data()), triangles.size(),
+                                             faces.data(), 12));
+  sequence.resize(meshopt_encodeIndexSequence(reinterpret_cast<unsigned char*>(sequence.data()), sequence.size(),
+                                              faces.data(), 12));
+  // A number is 24 bits times two to the power of 8 bits.
+  const std::vector<std::uint32_t> exponential(corners.begin(), corners.end());
+  const auto file = [&](const std::string& positions, const char* filter, const std::string& indices,
+                        const char* mode) {
+    GltfDoc doc;
+    doc.uses("EXT_meshopt_compression");
+    const std::string packed = positions + indices;
+    doc.view(packed);
+    doc.j["bufferViews"] = Json::array();
+    doc.j["buffers"] = {{{"byteLength", 96}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+    const auto view = [&](std::size_t at, std::size_t offset, std::size_t bytes, std::size_t stride, std::size_t count,
+                          const char* how, const char* with) {
+      doc.j["bufferViews"].push_back({{"buffer", 1},
+                                      {"byteOffset", at},
+                                      {"byteLength", count * stride},
+                                      {"extensions",
+                                       {{"EXT_meshopt_compression",
+                                         {{"buffer", 0},
+                                          {"byteOffset", offset},
+                                          {"byteLength", bytes},
+                                          {"byteStride", stride},
+                                          {"count", count},
+                                          {"mode", how},
+                                          {"filter", with}}}}}});
+    };
+    view(0, 0, positions.size(), 12, 4, "ATTRIBUTES", filter);
+    view(48, positions.size(), indices.size(), 4, 12, mode, "NONE");
+    doc.j["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+                          {{"bufferView", 1}, {"componentType", 5125}, {"count", 12}, {"type", "SCALAR"}}};
+    doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", 0}}}, {"indices", 1}})}});
+    return doc;
+  };
+  const std::string plain = vertices(corners.data(), 12);
+  for (const GltfDoc& doc : {file(plain, "NONE", triangles, "TRIANGLES"), file(plain, "NONE", sequence, "INDICES"),
+                             file(vertices(exponential.data(), 12), "EXPONENTIAL", triangles, "TRIANGLES")}) {
+    const Assembly a = read(doc.save(folder));
+    CHECK(volume(*a.shapes[0]) == Approx(1.0 / 6));
+  }
+  GltfDoc damaged = file(plain, "NONE", triangles, "TRIANGLES");
+  damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = plain.size() - 1;
+  CHECK_THAT(refusal(damaged.save(folder)), Catch::Contains("no stream of EXT_meshopt_compression"));
+  for (const auto& [key, value] : {std::pair("byteStride", 13), {"count", 5}, {"byteLength", 4000}}) {
+    damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;
+    CHECK_THAT(refusal(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));
+  }
+}

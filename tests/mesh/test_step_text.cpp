@@ -1,0 +1,148 @@
+// What CAD systems write into STEP files besides exact shapes: a test for each row of docs/formats.md that test_step
+// has not.
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "mesh/step_text.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/mesh/assembly.hpp"
+#include "tegotae/mesh/report.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+Assembly read(const StepText& step) {
+  const TempFolder folder;
+  folder.write("a.step", step.text());
+  return read_assembly(folder / "a.step");
+}
+
+std::string refusal(const StepText& step) {
+  try {
+    read(step);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+Eigen::AlignedBox3d box_of(const Assembly& a, std::size_t part) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
+  return box;
+}
+
+void check_block(const Assembly& a, std::size_t part, double x_mm = 0) {
+  const auto box = box_of(a, part);
+  CHECK((box.min() - Vec3(1e-3 * x_mm, 0, 0)).norm() < 1e-9);
+  CHECK((box.max() - Vec3(0.04 + 1e-3 * x_mm, 0.03, 0.01)).norm() < 1e-9);
+  CHECK(report(*a.shapes[a.parts[part].shape]).inverted_shells == 0);
+}
+
+std::string r(int id) {
+  return StepText::ref(id);
+}
+
+/// A block, placed by a MAPPED_ITEM or by a relationship of representations.
+StepText placed(bool mapped, double x_axis, double scale) {
+  StepText s;
+  if (mapped) {
+    const int plate = s.product("plate");
+    const int frame = s.origin();
+    const int source = s.representation({s.block(), frame}, "FACETED_BREP_SHAPE_REPRESENTATION");
+    const int map = s.add("REPRESENTATION_MAP(" + r(frame) + "," + r(source) + ")");
+    const int item = s.add("MAPPED_ITEM(''," + r(map) + "," + r(s.placing(x_axis, scale)) + ")");
+    s.shape(plate, {s.origin(), item});
+    return s;
+  }
+  const int top = s.product("all"), plate = s.product("plate");
+  const int all = s.shape(top, {s.origin()});
+  const int one = s.shape(plate, {s.origin(), s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  const int use = s.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','plate',''," + r(top) + "," + r(plate) + ",$)");
+  const int self = s.add("PRODUCT_DEFINITION_SHAPE('',''," + r(use) + ")");
+  const int relation = s.add("(REPRESENTATION_RELATIONSHIP('',''," + r(one) + "," + r(all) +
+                             ")REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(" + r(s.placing(x_axis, scale)) +
+                             ")SHAPE_REPRESENTATION_RELATIONSHIP())");
+  s.add("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(" + r(relation) + "," + r(self) + ")");
+  return s;
+}
+
+/// A plate with a style of its first point that is `style` of a color.
+StepText styled(const std::string& style) {
+  StepText s;
+  const int plate = s.product("plate"), block = s.block();
+  s.shape(plate, {s.origin(), block}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  const int color = s.add("COLOUR_RGB('',0.6,0.4,0.4)");
+  const int marker = s.add("PRE_DEFINED_POINT_MARKER_SYMBOL('plus')");
+  std::string entity = style;
+  for (const auto& [from, to] : {std::pair<std::string, int>{"COLOR", color}, {"MARKER", marker}, {"BLOCK", block}})
+    if (const auto at = entity.find(from); at != std::string::npos) entity.replace(at, from.size(), r(to));
+  const int shown = s.add("PRESENTATION_STYLE_ASSIGNMENT((" + r(s.add(entity)) + "))");
+  const int item = s.add("STYLED_ITEM('',(" + r(shown) + ")," + r(block) + ")");
+  s.representation({item}, "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION");
+  return s;
+}
+
+int tessellated(StepText& s) {
+  const int points = s.add("COORDINATES_LIST('',4,((0.,0.,0.),(10.,0.,0.),(0.,10.,0.),(0.,0.,10.)))");
+  const int face = s.add("TRIANGULATED_FACE(''," + r(points) + ",4,(),$,(1,2,3,4),((1,3,2),(1,2,4),(2,3,4),(3,1,4)))");
+  return s.add("TESSELLATED_SOLID('',(" + r(face) + "),$)");
+}
+
+}  // namespace
+
+TEST_CASE("STEP: operators that move are read, those that scale or mirror are refused by name", "[step]") {
+  for (const bool mapped : {true, false}) {
+    INFO((mapped ? "mapped item" : "relationship"));
+    const Assembly a = read(placed(mapped, 1, 1));
+    REQUIRE(a.parts.size() == 1);
+    check_block(a, 0, 5);
+    CHECK_THAT(refusal(placed(mapped, 1, 2)),
+               Catch::Contains("CARTESIAN_TRANSFORMATION_OPERATOR_3D") && Catch::Contains("scales"));
+    CHECK_THAT(refusal(placed(mapped, -1, 1)),
+               Catch::Contains("CARTESIAN_TRANSFORMATION_OPERATOR_3D") && Catch::Contains("mirrors"));
+  }
+}
+
+TEST_CASE("STEP: how something is drawn refuses no file", "[step]") {
+  for (const char* style : {"POINT_STYLE('',MARKER,POSITIVE_LENGTH_MEASURE(3.),COLOR)",
+                            "CURVE_STYLE('',$,POSITIVE_LENGTH_MEASURE(0.1),COLOR)",
+                            "CURVE_STYLE('',BLOCK,POSITIVE_LENGTH_MEASURE(0.1),COLOR)", "SURFACE_STYLE_USAGE(.BOTH.,$)",
+                            "SURFACE_STYLE_USAGE(.BOTH.,BLOCK)", "FILL_AREA_STYLE_COLOUR('',BLOCK)"}) {
+    INFO(style);
+    const Assembly a = read(styled(style));
+    REQUIRE(a.parts.size() == 1);
+    check_block(a, 0);
+  }
+}
+
+TEST_CASE("STEP: missing references in shapes refuse the file", "[step]") {
+  StepText s;
+  const int plate = s.product("plate");
+  s.shape(plate, {s.origin(), s.add("FACETED_BREP(''," + r(s.origin()) + ")")}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  CHECK_THAT(refusal(s), Catch::Contains("damaged: OpenCASCADE finds entities that cannot be"));
+}
+
+TEST_CASE("STEP: tessellated parts are read, or told by name; never refused as damaged", "[step]") {
+  const char* const schema = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }";
+  StepText both(schema);
+  const int plate = both.product("plate"), bush = both.product("bush");
+  both.shape(plate, {both.origin(), both.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  both.shape(bush, {tessellated(both)}, "TESSELLATED_SHAPE_REPRESENTATION");
+  const Assembly a = read(both);
+  std::string notes;
+  for (const std::string& note : a.notes) notes += note;
+  REQUIRE(!a.parts.empty());
+  check_block(a, 0);
+  if (a.parts.size() == 1) {
+    CHECK_THAT(notes, Catch::Contains("\"bush\" is tessellated"));
+  } else {
+    CHECK((box_of(a, 1).max() - Vec3(0.01, 0.01, 0.01)).norm() < 1e-9);
+  }
+  StepText only(schema);
+  const int product = only.product("bush");
+  only.shape(product, {tessellated(only)}, "TESSELLATED_SHAPE_REPRESENTATION");
+  const std::string why = refusal(only);
+  if (!why.empty()) CHECK_THAT(why, Catch::Contains("its shapes are tessellated"));
+}
