@@ -50,7 +50,7 @@ bool LocalModel::set_rows(const ContactPlanes& planes, const Vec3& center_W) noe
 
 bool LocalModel::update(const ContactPlanes& planes, const Mat3& gyration, const Vec3& center, const Pose& Y,
                         const Twist& Y_velocity, ProxyState& x) noexcept {
-  if (planes.count <= 0 || planes.count > ContactPlanes::kMost) return false;
+  if (planes.count <= 0 || planes.count > ContactPlanes::kMost || !planes.taken_at(x.X)) return false;
   const Displacement before = displacement(x.X, planes.pen, center);
   const Displacement now = displacement(x.X, Y, center);
   if (!(before.dr.norm() < kMostTurn && now.dr.norm() < kMostTurn)) return false;

@@ -14,7 +14,8 @@ class LocalModel {
   LocalModel();
 
   /// `gyration`: inertia over mass of the held part about its center, file frame, m². False and `x` untouched when
-  /// there are no planes, when the numbers make no sense or the pen has turned too far for flat limits.
+  /// there are no planes, they were taken at another pose than `x.X`, the numbers make no sense, or the pen has turned
+  /// too far for flat limits.
   bool update(const ContactPlanes& planes, const Mat3& gyration, const Vec3& center, const Pose& Y,
               const Twist& Y_velocity, ProxyState& x) noexcept;
 

@@ -96,7 +96,8 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   const Mat3& g = gyration_;
   const double gyration[] = {g(0, 0), g(1, 1), g(2, 2), g(0, 1), g(0, 2), g(1, 2)};
   for (int i = 0; i < 6; ++i) out.gyration[i] = gyration[i];
-  store_planes(planes, out);
+  // The slot has room for one pose.
+  if (planes.taken_at(proxy.X)) store_planes(planes, out);
   channel_.write(out);
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -58,28 +57,18 @@ struct HapticLoop::State {
     return report;
   }
 
-  /// A tick that does not follow the pen: X stays.
+  /// The tick that goes over to another held part does not follow the pen, which is still where the old one was.
   const TickReport& suspend() noexcept {
-    report.pieces.clear();
-    report.pieces.push_back(report.proxy.X);
-    report.proxy.velocity = {};
-    report.resolves = report.iterations = 0;
-    report.status = ResolveStatus::not_needed;
-    report.cut = false;
     report.lag_reason = LagReason::suspended;
     return finish();
   }
 
   /// The report before the first tick with a held part.
   void begin() noexcept {
-    std::vector<Pose> pieces = std::move(report.pieces);
-    report = {};
-    report.pieces = std::move(pieces);
-    report.pieces.clear();
+    reset(report);
     report.pieces.push_back(now->loop->pose());
     report.proxy.X = now->loop->pose();
     tell();
-    report.gap = std::numeric_limits<double>::infinity();
     for (const StartPair& pair : now->loop->start().pairs) {
       report.suspended += pair.state == PairState::suspended ? 1 : 0;
       report.relieved += pair.state == PairState::relieved ? 1 : 0;
@@ -118,6 +107,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.suspend();
   const std::int64_t now_ns = monotonic_ns();
   if (s.adopt(now_ns)) return s.suspend();
+  reset(s.report);
   s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
   s.tell();

@@ -59,11 +59,6 @@ bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 }
 
 void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
-  report.pieces.clear();
-  report.resolves = report.iterations = 0;
-  report.status = ResolveStatus::not_needed;
-  report.cut = false;
-  report.candidate_parts = 0;
   collided_ = stuck_ = false;
   deadline_ns_ = deadline_ns;
   if (at_.look_at_start(X_)) tracked_ = false;

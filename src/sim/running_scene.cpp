@@ -94,6 +94,7 @@ void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_n
 
 void RunningScene::warm_up() {
   TickReport tick;
+  reset(tick);
   loop->step(loop->pose(), 1e-3, kNoDeadline, tick);
   loop->take_over(tick, loop->pose(), nullptr, kNoDeadline);
 }

@@ -18,6 +18,7 @@ Mat3 some_gyration() {
 
 ContactPlanes floor_under(const Pose& X) {
   ContactPlanes planes;
+  planes.X = X;
   int i = 0;
   for (double x : {-0.01, 0.01})
     for (double y : {-0.01, 0.01})
@@ -130,6 +131,7 @@ TEST_CASE("the projection is that of every set of planes tried", "[coupling]") {
     const Vec3 center = random(0.02);
     const Vec3 center_W = x.X * center;
     ContactPlanes planes;
+    planes.X = x.X;
     planes.count = 1 + round % ContactPlanes::kMost;
     for (int i = 0; i < planes.count; ++i)
       planes.planes[static_cast<std::size_t>(i)] = {random(1).normalized(), center_W + random(0.02),
@@ -180,5 +182,12 @@ TEST_CASE("without planes, or with senseless ones, the part stays", "[coupling]"
   CHECK(refused(bad, some_gyration(), Y));
   bad = good;
   bad.count = 7;
+  CHECK(refused(bad, some_gyration(), Y));
+  // Taken a micrometer, or a hair of a turn, away from where the part is.
+  bad = good;
+  bad.X.p.x() = 1e-6;
+  CHECK(refused(bad, some_gyration(), Y));
+  bad = good;
+  bad.X.q = rotation(Vec3(0, 0, 1e-9));
   CHECK(refused(bad, some_gyration(), Y));
 }

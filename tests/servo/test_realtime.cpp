@@ -52,6 +52,7 @@ void run_contact(ContactLink& link, double seconds) {
     x.touching = tick % 512 > 400;
     x.X.p.z() = 0.001;
     ContactPlanes planes;
+    planes.X = x.X;
     planes.count = static_cast<int>(tick % 7);
     for (int i = 0; i < planes.count; ++i)
       planes.planes[static_cast<std::size_t>(i)] = {Vec3::UnitZ(), Vec3(0.01 * i, 0.01 * (i % 3), -0.01), 0};
