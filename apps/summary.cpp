@@ -70,6 +70,7 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["recordings"] = s.recordings;
   j["record_dropped"] = s.record_dropped;
   j["device_losses"] = s.device_losses;
+  j["ignored"] = s.ignored;
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
   return j.dump();
@@ -106,6 +107,9 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   if (s.device_losses > 0)
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
                    static_cast<unsigned long long>(s.device_losses));
+  if (s.ignored > 0)
+    text += format("  %-12s %lld ticks had a pose that no pen can have, or no time; the last good one stood in\n",
+                   "ignored", static_cast<long long>(s.ignored));
   for (const std::string& path : s.recordings) text += format("  %-12s ", "recording") + path + "\n";
   return text;
 }

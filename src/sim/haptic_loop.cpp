@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/proper_pose.hpp"
 #include "device/mailbox.hpp"
 #include "sim/handover.hpp"
 #include "sim/lag.hpp"
@@ -18,6 +19,12 @@ namespace {
 
 // Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
 constexpr double kChangeShare = 0.25;
+// Ways divided by less time (s) are no velocities; no loop ticks so often.
+constexpr double kLeastTime = 1e-6;
+
+bool proper_time(double dt) {
+  return dt == 0 || (dt >= kLeastTime && std::isfinite(dt));
+}
 
 std::int64_t deadline(std::int64_t now_ns, double budget) {
   return std::isfinite(budget) ? now_ns + static_cast<std::int64_t>(1e9 * budget) : kNoDeadline;
@@ -104,12 +111,14 @@ HapticLoop::~HapticLoop() = default;
 
 const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   State& s = *state_;
-  if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.suspend();
   const std::int64_t now_ns = monotonic_ns();
   if (s.adopt(now_ns)) return s.suspend();
   reset(s.report);
-  s.Y = {Y.q.normalized(), Y.p};
-  s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  const bool placed = proper(Y), timed = proper_time(dt);
+  s.report.ignored = !(placed && timed);
+  if (placed) s.Y = {Y.q.normalized(), Y.p};
+  s.now->loop->step(s.Y, timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  if (!placed) s.report.lag_reason = LagReason::suspended;
   s.tell();
   return s.finish();
 }

@@ -30,6 +30,9 @@ constexpr double kRecovery = 0.2;
 constexpr double kCutMargin = 1.2;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
+// No hand takes a part along faster (m/s, of any of its points); without a bound a pen that jumps by kilometers makes
+// spins that Euler's equation, taken explicitly, drives past every number.
+constexpr double kFastest = 100;
 // Bends a motion at most so far from the sum of its limits' straight lines (rad a piece).
 constexpr double kMostTurn = 0.1;
 
@@ -97,6 +100,8 @@ void ImpulseLoop::accelerate(const Pose& Y, const Twist& pen, double h) {
              .ldlt()
              .solve(inertia * V_.w - h * V_.w.cross(inertia * V_.w) +
                     h * (c.torsional_stiffness * e.dr + c.torsional_damping * pen.w));
+  const double fast = V_.v.norm() + at_.radius * V_.w.norm();
+  if (fast > kFastest) V_ = {kFastest / fast * V_.v, kFastest / fast * V_.w};
   gained_ = {V_.v - before.v, V_.w - before.w};
 }
 

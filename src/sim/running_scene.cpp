@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/proper_pose.hpp"
 #include "sim/contact_loop.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -53,8 +54,11 @@ ContactSettings completed(ContactSettings s, double radius) {
 }
 
 const Scene& checked(const Scene& scene) {
-  for (const Part& p : scene.parts)
+  for (const Part& p : scene.parts) {
     if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
+    if (!proper(p.pose))
+      throw Error("part \"" + p.name + "\": its pose is not finite, not of unit length, or beyond 10 km");
+  }
   return scene;
 }
 

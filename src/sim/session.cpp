@@ -135,6 +135,7 @@ class Session {
     sequence_ = pen.state.sequence;
 
     tick_times_.add(took);
+    summary_.ignored += report.ignored ? 1 : 0;
     summary_.deepest_m = std::max(summary_.deepest_m, report.depth);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
     count_lag(report);

@@ -137,6 +137,7 @@ struct RunSummary {
   double force_max_n = 0;        ///< largest rendered force, N
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
   std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
+  std::int64_t ignored = 0;          ///< ticks whose pen pose was out of range (TickReport::ignored)
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
   std::vector<std::string> recordings;  ///< their paths: one, and one more for each change of the scene
 };
