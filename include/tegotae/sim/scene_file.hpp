@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/device/script.hpp"
@@ -21,6 +22,8 @@ struct SceneFile {
   SafetySettings safety{};         ///< of the servo in this process; a device in another one has its own
   double scale = 1;                ///< meters that the held part moves for a meter of the pen
   std::string text{};              ///< of the file, as it was read
+  /// All that was read: the file itself, the meshes and the script that it names. A recording replaces none of them.
+  std::vector<std::string> files{};
 };
 
 /// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.
