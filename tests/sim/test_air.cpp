@@ -133,10 +133,11 @@ void random_run(std::mt19937& rng, std::int64_t ticks, Counts& counts) {
     if (i % 150 == 0)
       goal = {rotation(0.6 * Vec3(unit(rng), unit(rng), unit(rng))), 0.04 * Vec3(unit(rng), unit(rng), unit(rng))};
     if (i > 300 && rng() % 50 == 0) {
-      next = random_scene(rng, body);
-      next.parts.back().pose = hand.loop.latest();
+      Scene wish = random_scene(rng, body);
+      wish.parts.back().pose = hand.loop.latest();
       try {
-        hand.loop.change(next);
+        hand.loop.change(wish);
+        next = wish;            // one that is refused leaves an earlier one that waits
       } catch (const Error&) {  // what it adds stands where the body is
         ++counts.refused;
       }
