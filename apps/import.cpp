@@ -12,6 +12,7 @@
 #include <iostream>
 
 #include "length_option.hpp"
+#include "process.hpp"
 #include "run_options.hpp"
 #include "scene_writer.hpp"
 #include "status_line.hpp"
@@ -42,7 +43,7 @@ int import_here(const ImportOptions& options) {
     reading.progress = [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); };
     assembly = read_assembly(options.file, reading);
     require_part(assembly, options);
-    write_scene(assembly, options.folder, options.hold, reading.progress);
+    write_scene(assembly, options.file, options.folder, options.hold, reading.progress);
   }
   for (const std::string& note : assembly.notes) std::cerr << "tegotae: note: " << note << "\n";
   std::size_t triangles = 0;
@@ -71,8 +72,7 @@ int in_child(const std::string& file, const std::function<int()>& body) {
     } catch (const std::exception& e) {
       std::cerr << "tegotae: " << file << ": " << e.what() << "\n";
     }
-    std::cout.flush();
-    _exit(code);
+    _exit(finish_output("tegotae", code));
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

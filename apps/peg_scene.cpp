@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
+#include "core/output_file.hpp"
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
 #include "peg_script.hpp"
@@ -18,13 +18,6 @@ namespace tegotae::apps {
 namespace fs = std::filesystem;
 
 namespace {
-
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw Error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
 
 std::string script_text(const std::vector<StylusScript::Key>& keys) {
   std::string text = "t,px,py,pz,qw,qx,qy,qz\n";
@@ -110,8 +103,8 @@ std::string write_peg_scene(double ratio, const std::string& folder) {
   const fs::path to = folder, scene_file = to / ("peg_in_hole_" + r + ".toml");
   write_obj(shapes::block_with_hole(block), (to / hole_file).string());
   write_obj(shapes::peg(peg), (to / peg_file).string());
-  write_text(to / script_file, script_text(keys));
-  write_text(scene_file, scene_text(r, hole_file, peg_file, script_file, keys.front().pose.p.z()));
+  write_file((to / script_file).string(), script_text(keys));
+  write_file(scene_file.string(), scene_text(r, hole_file, peg_file, script_file, keys.front().pose.p.z()));
   return scene_file.string();
 }
 

@@ -45,6 +45,7 @@ void ProgressLine::print() const {
               progress_.contacts.load(), progress_.force.load());
   const LagReason lag = progress_.lag_reason.load();
   if (lag != LagReason::none && lag != LagReason::contact) std::printf("   held back: %s", to_string(lag));
+  if (progress_.held.load()) std::printf("   held fast in its fit");
   if (!progress_.device.load()) std::printf("   no device, waiting");
   std::fflush(stdout);
 }

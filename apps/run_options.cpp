@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "format.hpp"
+#include "process.hpp"
 #include "progress_line.hpp"
 #include "start_text.hpp"
 #include "summary.hpp"
@@ -31,11 +32,32 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
+  try {
+    app.parse(argc, argv);
+    set_hierarchy_cache(default_cache_folder());
+    return body();
+  } catch (const CLI::Success& e) {  // --help, --version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    std::cerr << app.get_name() << ": " << first_line(e.what()) << " (see --help)\n";
+    return kBadInput;
+  } catch (const Error& e) {
+    std::cerr << app.get_name() << ": " << e.what() << "\n";
+    return kBadInput;
+  } catch (const std::exception& e) {
+    std::cerr << app.get_name() << ": the run failed: " << first_line(e.what()) << "\n";
+    return kRunFailed;
+  }
+}
+
 }  // namespace
 
 std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   return interrupted;
 }
 
@@ -65,29 +87,16 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--record", options.record,
                  "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
       ->type_name("FILE");
+  app.add_flag("--check-all", options.check_all,
+               "Ask FCL about every pose, however long it takes (as many as a quarter of the run's time allows)");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
   auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
   add_view_address(app, options.view_address)->needs(view);
 }
 
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
-  try {
-    app.parse(argc, argv);
-    set_hierarchy_cache(default_cache_folder());
-    return body();
-  } catch (const CLI::Success& e) {  // --help, --version
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    std::cerr << app.get_name() << ": " << first_line(e.what()) << " (see --help)\n";
-    return kBadInput;
-  } catch (const Error& e) {
-    std::cerr << app.get_name() << ": " << e.what() << "\n";
-    return kBadInput;
-  } catch (const std::exception& e) {
-    std::cerr << app.get_name() << ": the run failed: " << first_line(e.what()) << "\n";
-    return kRunFailed;
-  }
+  prepare_process();
+  return finish_output(app.get_name(), guarded_body(app, argc, argv, body));
 }
 
 int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
@@ -100,7 +109,8 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.record = options.record;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
-  settings.stop = &catch_interrupts();
+  settings.stop = settings.stop_check = &catch_interrupts();
+  settings.check_all = options.check_all;
   settings.on_start = [&](const RunStart& start) {
     const std::string text = start_text(start.parts, file.scene);
     if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
@@ -126,6 +136,10 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   // whenever it ends.
   const bool done =
       summary.completed || options.view || !options.device.empty() || (options.seconds > 0 && !interrupted.load());
+  if (!summary.record_failure.empty()) {
+    std::cerr << "tegotae: " << summary.record_failure << "\n";
+    return kBadInput;
+  }
   const bool clean = summary.penetrating == 0 || file.scene.contact.resolver == "penalty";
   return done && clean ? kDone : kRunFailed;
 }

@@ -23,11 +23,13 @@ struct RunOptions {
   double seconds = 0;  ///< 0: to the end of the script
   std::string record;
   bool json = false;
+  bool check_all = false;
   bool view = false;
   std::string view_address;  ///< empty: the loopback, any free port
 };
 
-/// From now on Ctrl-C and SIGTERM set the flag that this returns, and end nothing themselves.
+/// From now on Ctrl-C, SIGTERM and the end of the terminal (SIGHUP, unless it is ignored) set the flag that this
+/// returns, and end nothing themselves.
 std::atomic<bool>& catch_interrupts();
 
 /// The option --view-address.
@@ -42,7 +44,7 @@ void announce_page(const std::string& url, bool quiet = false);
 void add_run_options(CLI::App& app, RunOptions& options);
 
 /// Parses the command line, runs `body` and returns the exit code. Bad usage and Errors are one line on stderr and
-/// kBadInput.
+/// kBadInput, and so is standard output that could not be written to its end.
 int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
 /// Runs the scene with a progress line (on a terminal) and Ctrl-C ending the run with its recording kept, and reports.

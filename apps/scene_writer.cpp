@@ -5,10 +5,11 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <vector>
 
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
 #include "tegotae/mesh/write.hpp"
@@ -100,19 +101,10 @@ std::string part_text(const AssemblyPart& part, const std::string& mesh, bool he
   return text;
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  const fs::path partial = path.string() + ".partial";
-  std::ofstream file(partial, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code status;
-  if (file) fs::rename(partial, path, status);
-  if (!file || status) throw Error(path.string() + ": cannot be written");
-}
-
 }  // namespace
 
-void write_scene(const Assembly& assembly, const std::string& folder, const std::string& hold,
+void write_scene(const Assembly& assembly, const std::string& source, const std::string& folder,
+                 const std::string& hold,
                  const std::function<void(const char* what, std::size_t done, std::size_t total)>& progress) {
   const fs::path meshes = fs::path(folder) / "meshes";
   std::error_code status;
@@ -124,12 +116,14 @@ void write_scene(const Assembly& assembly, const std::string& folder, const std:
   for (const auto& shape : assembly.shapes) {
     if (progress) progress("writing meshes", files.size(), assembly.shapes.size());
     files.push_back(file_name(shape->name, used));
-    write_ply(*shape, (meshes / files.back()).string(), unit);
+    const std::string mesh = (meshes / files.back()).string();
+    refuse_to_replace(mesh, {source});
+    write_ply(*shape, mesh, unit);
   }
   std::string text = "unit = " + quoted(assembly.unit) + "\n";
   for (const AssemblyPart& part : assembly.parts)
     text += part_text(part, files[part.shape], !hold.empty() && part.name == hold);
-  write_text(fs::path(folder) / "scene.toml", text);
+  replace_file((fs::path(folder) / "scene.toml").string(), text);
 }
 
 }  // namespace tegotae::apps

@@ -1,5 +1,6 @@
 #include "start_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -63,6 +64,24 @@ std::string start_text(const StartReport& start, const Scene& scene) {
   for (const StartPair& pair : start.pairs) text += line(pair, scene);
   if (start.shift > 0) text += format("  %-12s moved by ", "start") + length(start.shift) + " off what it touches\n";
   return text;
+}
+
+std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
+  const HeldFast& h = summary.held_fast;
+  std::string text;
+  for (const StartPair& pair : summary.start.pairs) {
+    if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
+    text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
+            " where its pen went " + length(h.pen) + "; there is no room, even with that part taken " +
+            length(pair.relief) + " smaller\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json held_fast_json(const RunSummary& summary, const Scene& scene) {
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (const std::size_t part : summary.held_fast.parts) names.push_back(scene.parts[part].name);
+  return {{"parts", names}, {"moved_m", summary.held_fast.moved}, {"pen_m", summary.held_fast.pen}};
 }
 
 }  // namespace tegotae::apps

@@ -59,8 +59,11 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
     lag["ticks"][to_string(static_cast<LagReason>(i))] = s.lag.ticks[static_cast<std::size_t>(i)];
   j["lag"] = lag;
   j["penetrating"] = s.penetrating;
+  j["checked"] = s.checked;
+  j["poses"] = s.poses;
   j["deepest_m"] = s.deepest_m;
   j["start"] = start_json(s.start, file.scene);
+  j["held_fast"] = held_fast_json(s, file.scene);
   j["tick_us"] = to_json(s.tick_us);
   j["servo"] = {{"rate_hz", s.servo.rate_hz},
                 {"late_us", to_json(s.servo.late_us)},
@@ -69,7 +72,9 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
                 {"force_off", s.servo.force_off}};
   j["recordings"] = s.recordings;
   j["record_dropped"] = s.record_dropped;
+  j["record_failure"] = s.record_failure;
   j["device_losses"] = s.device_losses;
+  j["ignored"] = s.ignored;
   j["force_max_n"] = s.force_max_n;
   j["torque_max_nm"] = s.torque_max_nm;
   return j.dump();
@@ -86,9 +91,12 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   text += format("  %-12s %.1f mm\n", "depth", 1e3 * s.depth_m);
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);
   text += lag_lines(s.lag);
-  text += format("  %-12s %lld of %lld ticks\n", "intersecting", static_cast<long long>(s.penetrating),
-                 static_cast<long long>(s.ticks));
+  text += format(
+      "  %-12s %lld of %lld poses checked%s\n", "intersecting", static_cast<long long>(s.penetrating),
+      static_cast<long long>(s.checked),
+      s.checked < s.poses ? format(" (of %lld; --check-all checks all)", static_cast<long long>(s.poses)).c_str() : "");
   text += start_text(s.start, file.scene);
+  text += held_fast_text(s, file.scene);
   if (file.scene.contact.resolver == "penalty")
     text += format("  %-12s interpenetration is allowed; deepest vertex %.1f um\n", "penalty:", 1e6 * s.deepest_m);
   text += format("  %-12s %.2f N, %.0f mN m\n", "at most", s.force_max_n, 1e3 * s.torque_max_nm);
@@ -106,6 +114,12 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
   if (s.device_losses > 0)
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
                    static_cast<unsigned long long>(s.device_losses));
+  if (s.ignored > 0)
+    text += format("  %-12s %lld ticks had a pose that no pen can have, or no time; the last good one stood in\n",
+                   "ignored", static_cast<long long>(s.ignored));
+  if (s.record_dropped > 0)
+    text += format("  %-12s %llu rows were dropped: the disk could not keep up\n", "recording",
+                   static_cast<unsigned long long>(s.record_dropped));
   for (const std::string& path : s.recordings) text += format("  %-12s ", "recording") + path + "\n";
   return text;
 }

@@ -24,7 +24,7 @@ constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or
 
 int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
                    const std::string& address) {
-  const std::string bundle = view::replay_bundle(recording, scene);
+  const std::string bundle = view::replay_bundle(recording, scene, html);
   if (html.empty())
     view::serve_replay(
         bundle, [&] { return review::recording_report(recording, scene); }, view_address(address), catch_interrupts(),
@@ -130,7 +130,10 @@ int main(int argc, char** argv) {
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
     SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);
-    if (!script.empty()) loaded.script = read_script(script);
+    if (!script.empty()) {
+      loaded.script = read_script(script);
+      loaded.files.push_back(script);
+    }
     return run_and_report(std::move(loaded), options, scene);
   });
 }

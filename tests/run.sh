@@ -1,16 +1,21 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs the tests: `bash tests/run.sh`. With --quick the tests labeled `long` and
-# `browser` are left out; other arguments go to ctest.
+# Installs what is missing, builds, and runs the tests: `bash tests/run.sh [--quick] [--repeat N] [CTEST ARGUMENT...]`.
+# With --quick the tests labeled `long` and `browser` are left out. With --repeat a test labeled `realtime`, which looks at
+# real processes and real time, is asked up to N times until it passes, and the end says which were; every other test is
+# run once, for it can only fail for a reason.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-select=()
+left_out=none
 setup=(--browser)
-if [ "${1:-}" = --quick ]; then
-  select=(--label-exclude '^(long|browser)$')
-  setup=()
-  shift
-fi
+repeat=1
+while :; do
+  case ${1:-} in
+    --quick) left_out='long|browser'; setup=(); shift ;;
+    --repeat) repeat=$2; shift 2 ;;
+    *) break ;;
+  esac
+done
 
 bash .ci/setup.sh "${setup[@]}"
 
@@ -24,4 +29,14 @@ if ! cmp -s tests/requirements.txt $python/requirements.txt; then
   fi
 fi
 
-exec ctest --preset release --parallel "$(nproc)" "${select[@]}" "$@"
+code=0
+ctest --preset release --parallel "$(nproc)" --label-exclude "^($left_out|realtime)\$" "$@" || code=$?
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+ctest --preset release --parallel "$(nproc)" --label-regex '^realtime$' --label-exclude "^($left_out)\$" \
+  --repeat "until-pass:$repeat" "$@" | tee "$log" || code=$?
+# A test that is asked again starts again.
+again=$(sed -n 's/^ *Start *[0-9]*: //p' "$log" | sort | uniq -d | xargs)
+echo "tests/run.sh: $(wc -w <<<"$again") of $(sed -n 's/^ *Start *[0-9]*: //p' "$log" | sort -u | wc -l)" \
+  "realtime tests were repeated${again:+: $again}"
+exit "$code"

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "bench/results.hpp"
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::bench {
@@ -48,13 +50,6 @@ std::string setting(const std::string& command, const Results& results) {
          command + "` (took " + took + ")\n";
 }
 
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw Error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
 }  // namespace
 
 void update_markdown(const std::string& path, const std::string& command, const Results& results) {
@@ -65,10 +60,11 @@ void update_markdown(const std::string& path, const std::string& command, const 
   if (begin == std::string::npos || end == std::string::npos || end < begin)
     throw Error(path + ": has no lines \"<!-- begin generated -->\" and \"<!-- end generated -->\"");
   const fs::path plot = fs::path(path).replace_extension(".svg");
-  write(plot, growth_plot(results));
-  write(path, old.substr(0, begin) + kBegin + "\n" + setting(command, results) + "\n" + tables(results) +
-                  "\n![Median of the tick against the number of triangles](" + plot.filename().string() + ")\n\n" +
-                  old.substr(end));
+  refuse_to_replace(plot.string(), {path});
+  write_file(plot.string(), growth_plot(results));
+  write_file(path, old.substr(0, begin) + kBegin + "\n" + setting(command, results) + "\n" + tables(results) +
+                       "\n![Median of the tick against the number of triangles](" + plot.filename().string() + ")\n\n" +
+                       old.substr(end));
 }
 
 }  // namespace tegotae::bench

@@ -51,7 +51,7 @@ static struct tegotae_shm_segment* create(const char* name) {
     close(fd);
   }
   fd = shm_open(name, O_RDWR | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
-  if (fd < 0 || !lock_device_byte(fd) || ftruncate(fd, sizeof(struct tegotae_shm_segment)) != 0) return NULL;
+  if (fd < 0 || !lock_device_byte(fd) || posix_fallocate(fd, 0, sizeof(struct tegotae_shm_segment)) != 0) return NULL;
   struct tegotae_shm_segment* s = mmap(NULL, sizeof *s, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (s == MAP_FAILED) return NULL;
   s->version = TEGOTAE_SHM_VERSION;

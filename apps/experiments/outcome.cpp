@@ -1,13 +1,11 @@
 #include "experiments/outcome.hpp"
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
+#include "core/output_file.hpp"
 #include "tegotae/core/error.hpp"
 #include "web/page.hpp"
 
@@ -86,13 +84,6 @@ std::string csv_text(const Csv& csv) {
   return text;
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw Error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
 }  // namespace
 
 Claim at_most(const std::string& name, double value, double limit, const std::string& unit) {
@@ -126,9 +117,9 @@ void write_outcome(const Outcome& outcome, const std::string& name, const std::s
   std::error_code failed;
   std::filesystem::create_directories(to, failed);
   if (failed) throw Error(folder + ": cannot be made: " + failed.message());
-  for (const Csv& csv : outcome.csv) write_text(to / (csv.name + ".csv"), csv_text(csv));
+  for (const Csv& csv : outcome.csv) write_file((to / (csv.name + ".csv")).string(), csv_text(csv));
   const Json claims = to_json(outcome.claims);
-  write_text(to / "summary.json", Json{{"experiment", name}, {"claims", claims}}.dump(1) + "\n");
+  write_file((to / "summary.json").string(), Json{{"experiment", name}, {"claims", claims}}.dump(1) + "\n");
   Json report = {{"title", outcome.title}, {"subtitle", subtitle}, {"intro", outcome.intro}, {"claims", claims}};
   report["sections"] = Json::array();
   for (const Section& s : outcome.sections) {
@@ -137,7 +128,7 @@ void write_outcome(const Outcome& outcome, const std::string& name, const std::s
     for (const Table& t : s.tables) one["tables"].push_back(to_json(t));
     report["sections"].push_back(one);
   }
-  write_text(to / "report.html", apps::report_page(report));
+  write_file((to / "report.html").string(), apps::report_page(report));
 }
 
 }  // namespace tegotae::experiments

@@ -9,6 +9,7 @@
 
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
+#include "process.hpp"
 
 namespace {
 
@@ -38,9 +39,7 @@ void write_models(const std::string& folder, const std::vector<double>& ratios, 
   write_obj(shapes::moved(shapes::box({0.2, 0.2, 0.01}), {0, 0, -0.005}), path("floor.obj"));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "Writes the parts of the experiments as OBJ files, in mm: pegs for a hole of 20 mm, a block with that "
       "hole, a cube, a wall and a floor.");
@@ -66,4 +65,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  apps::prepare_process();
+  return apps::finish_output("tegotae-models", run(argc, argv));
 }

@@ -1,11 +1,9 @@
 #include "models/write_obj.hpp"
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
-#include "tegotae/core/error.hpp"
+#include "core/output_file.hpp"
 
 namespace tegotae {
 namespace {
@@ -20,15 +18,17 @@ double millimeters(double meters) {
 }  // namespace
 
 void write_obj(const TriangleMesh& mesh, const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) throw Error(path + ": cannot be written: " + std::strerror(errno));
-  std::fprintf(file, "# %s, mm\n", mesh.name.c_str());
+  std::string text = "# " + mesh.name + ", mm\n";
+  char line[128];
   for (const Vec3& p : mesh.vertices) {
-    std::fprintf(file, "v %.9g %.9g %.9g\n", millimeters(p.x()), millimeters(p.y()), millimeters(p.z()));
+    std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", millimeters(p.x()), millimeters(p.y()), millimeters(p.z()));
+    text += line;
   }
-  for (const auto& t : mesh.triangles) std::fprintf(file, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  const bool written = std::ferror(file) == 0;
-  if (std::fclose(file) != 0 || !written) throw Error(path + ": cannot be written: " + std::strerror(errno));
+  for (const auto& t : mesh.triangles) {
+    std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    text += line;
+  }
+  write_file(path, text);
 }
 
 }  // namespace tegotae

@@ -1,25 +1,19 @@
 #include "review/review_command.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
 #include "pose_option.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
-#include "tegotae/core/error.hpp"
 #include "view/replay.hpp"
 
 namespace tegotae::review {
 namespace {
-
-void write(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text << std::flush;
-  if (!file) throw Error(path + ": cannot be written");
-}
 
 std::string beside(const std::string& recording) {
   return std::filesystem::path(recording).replace_extension().string() + ".review.html";
@@ -57,15 +51,18 @@ int run_review(const ReviewOptions& o) {
   SceneOptions how;
   how.progress = [&](std::size_t done, std::size_t total) { progress("reading meshes of part", done, total); };
   SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
+  std::vector<std::string> inputs = scene.files;
+  inputs.insert(inputs.end(), {o.recording, recording_info_path(o.recording)});
+  refuse_to_replace({out, o.csv, o.script, o.gltf}, inputs);
   std::optional<Pose> goal;
   if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
   const Review r = review_recording(o.recording, std::move(recording), std::move(scene), goal, progress);
   const auto& rows = r.recording.frames;
-  write(out, report_html(r, progress));
-  if (!o.csv.empty()) write(o.csv, path_csv(r.file.scene, rows, r.scan));
-  if (!o.script.empty()) write(o.script, path_script(r.file, rows, r.center));
+  write_file(out, report_html(r, progress));
+  if (!o.csv.empty()) write_file(o.csv, path_csv(r.file.scene, rows, r.scan));
+  if (!o.script.empty()) write_file(o.script, path_script(r.file, rows, r.center));
   if (!o.gltf.empty())
-    write(o.gltf, path_gltf(r.file.scene, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
+    write_file(o.gltf, path_gltf(r.file.scene, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
   std::cout << r.verdict.headline << "\n";
   for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";

@@ -9,6 +9,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "sim/run_goal.hpp"
 #include "sim/scene_parts.hpp"
+#include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/session.hpp"
@@ -176,9 +177,12 @@ std::optional<Result> run_try(const Task& task, int number, const std::atomic<bo
   settings.hand = &hand;
   settings.observer = &watcher;
   settings.stop = &watcher.end;
+  settings.check_all = true;  // the same result on any machine
+  settings.stop_check = &stop;
   settings.record = record;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   const RunSummary summary = run_session(file, settings);
+  if (!summary.record_failure.empty()) throw Error(summary.record_failure);
   if (stop && !result.reached) return std::nullopt;
   result.depth = summary.depth_m;
   result.force = summary.force_max_n;

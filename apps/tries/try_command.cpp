@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/same_file.hpp"
 #include "format.hpp"
 #include "parallel_for.hpp"
 #include "pose_option.hpp"
@@ -79,6 +80,10 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
 
 int run_tries(const TryOptions& o) {
   const Task task = load_task(o);
+  std::vector<std::string> outputs;
+  for (const char* name : {"/tries.csv", "/summary.json", "/report.html", "/best.csv", "/best.csv.info.json"})
+    outputs.push_back(o.out + name);
+  refuse_to_replace(outputs, task.file.files);
   TryTable table(o.out, fingerprint(task));
   const std::atomic<bool>& interrupted = apps::catch_interrupts();
   run_missing(task, o, table, interrupted);

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/output_file.hpp"
 #include "format.hpp"
 #include "sim/scene_parts.hpp"
-#include "tegotae/core/error.hpp"
 #include "web/page.hpp"
 
 namespace tegotae::tries {
@@ -192,12 +191,6 @@ Json report(const Task& task, const std::vector<Result>& results) {
       {"sections", sections}};
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw Error(path + ": cannot be written");
-}
-
 }  // namespace
 
 const Result* best_try(const std::vector<Result>& results) {
@@ -218,8 +211,9 @@ std::string summary_text(const std::vector<Result>& results) {
 
 void write_report(const Task& task, const std::vector<Result>& results, const std::string& folder) {
   // Names come from files and may not be UTF-8.
-  write(folder + "/summary.json", summary(task, results).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  write(folder + "/report.html", apps::report_page(report(task, results)));
+  write_file(folder + "/summary.json",
+             summary(task, results).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(folder + "/report.html", apps::report_page(report(task, results)));
 }
 
 }  // namespace tegotae::tries

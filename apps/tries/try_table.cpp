@@ -8,7 +8,9 @@
 #include <fstream>
 #include <vector>
 
+#include "core/output_file.hpp"
 #include "format.hpp"
+#include "sim/scene_text.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
 
@@ -130,6 +132,7 @@ std::string fingerprint(const Task& task) {
         s.coupling.torsional_stiffness, s.coupling.torsional_damping, s.torsional_stiffness_most.value_or(-1),
         task.file.safety.limits.force, task.file.safety.limits.torque, task.file.safety.continuous_force, task.seconds})
     hash.add(std::isnan(x) ? -1 : x);
+  hash.add(scene_settings(task.file));  // whatever the file sets, known here or not
   hash.add(task.file.script.pose(task.file.script.end()));
   return apps::format("tegotae %s, seed %llu, task %016llx", TEGOTAE_VERSION_STRING,
                       static_cast<unsigned long long>(task.seed), static_cast<unsigned long long>(hash.value()));
@@ -148,8 +151,9 @@ void TryTable::read() {
   std::string line;
   std::getline(in, line);
   if (line != task_)
-    throw Error(path_ +
-                ":1: holds tries of another scene, goal, seed, time or version; choose another --out or delete it");
+    throw Error(
+        path_ +
+        ":1: holds tries of another scene, settings, goal, seed, time or version; choose another --out or delete it");
   std::getline(in, line);
   if (line + "\n" != kHeader) throw Error(path_ + ":2: has other columns; choose another --out or delete it");
   for (int number = 3; std::getline(in, line); ++number) {
@@ -165,14 +169,9 @@ void TryTable::add(const Result& result) {
 }
 
 void TryTable::write() const {
-  const std::string partial = path_ + ".partial";
-  std::ofstream out(partial, std::ios::binary);
-  out << task_ << '\n' << kHeader;
-  for (const auto& [number, result] : rows_) out << row(result);
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(partial, path_, failed);
-  if (!out || failed) throw Error(path_ + ": cannot be written");
+  std::string text = task_ + '\n' + kHeader;
+  for (const auto& [number, result] : rows_) text += row(result);
+  replace_file(path_, text);
 }
 
 }  // namespace tegotae::tries

@@ -1,6 +1,8 @@
 #include "view/address.hpp"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 
 #include <charconv>
 
@@ -27,6 +29,25 @@ Address parse_address(const std::string& text) {
                    inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), bytes) == 1;
   if (!six && inet_pton(AF_INET, host.c_str(), bytes) != 1) fail();
   return address;
+}
+
+std::vector<std::string> machine_addresses(bool six) {
+  std::vector<std::string> found;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return found;
+  for (const ifaddrs* i = list; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != (six ? AF_INET6 : AF_INET)) continue;
+    if ((i->ifa_flags & IFF_LOOPBACK) != 0 || (i->ifa_flags & IFF_UP) == 0) continue;
+    const void* bytes = six ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in6*>(i->ifa_addr)->sin6_addr)
+                            : static_cast<const void*>(&reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr);
+    // An address of its link alone needs the name of an interface of the other machine.
+    if (six && IN6_IS_ADDR_LINKLOCAL(static_cast<const in6_addr*>(bytes))) continue;
+    char text[INET6_ADDRSTRLEN];
+    if (inet_ntop(i->ifa_addr->sa_family, bytes, text, sizeof text) != nullptr)
+      found.push_back(six ? "[" + std::string(text) + "]" : text);
+  }
+  freeifaddrs(list);
+  return found;
 }
 
 }  // namespace tegotae::view

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tegotae::view {
 
@@ -15,5 +16,8 @@ struct Address {
 
 /// Reads "127.0.0.1", "127.0.0.1:8080" or "[::1]:8080". Throws Error.
 Address parse_address(const std::string& text);
+
+/// The addresses by which others may reach this machine, none of the loopback; those of IPv6 with their brackets.
+std::vector<std::string> machine_addresses(bool six);
 
 }  // namespace tegotae::view

@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <iostream>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -94,11 +96,14 @@ std::vector<std::string> scene_changes(const RecordingInfo& info) {
   return texts;
 }
 
-std::string replay_bundle(const std::string& path, const std::string& scene) {
+std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
   SceneFile file = load_recorded_scene(path, recording.info, scene);
+  std::vector<std::string> inputs = file.files;
+  inputs.insert(inputs.end(), {path, recording_info_path(path)});
+  refuse_to_replace(html, inputs);
   Follower follower(file.scene, path, rows.front().x);
   const FrameMaker maker(file.scene);
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
@@ -140,13 +145,12 @@ void serve_replay(const std::string& bundle, const std::function<std::string()>&
   ReplaySource source(bundle, make_review);
   Server server(address, source);
   announce(server.url());
+  if (const std::string warning = server.warning(); !warning.empty()) std::cerr << "warning: " << warning << std::endl;
   while (!stop) std::this_thread::sleep_for(kPoll);
 }
 
 void write_replay(const std::string& bundle, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << apps::view_file(bundle) << std::flush;
-  if (!file) throw Error(path + ": cannot be written");
+  write_file(path, apps::view_file(bundle));
 }
 
 }  // namespace tegotae::view

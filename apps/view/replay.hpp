@@ -23,8 +23,9 @@ std::vector<std::string> scene_changes(const RecordingInfo& info);
 /// The bundle of the recording at `path` over its scene (as load_recorded_scene has it), for the page. Contacts
 /// are not in a recording: they are found anew, by a contact loop that is led along the recorded poses and a little
 /// towards the pen. Long recordings are thinned.
-/// Throws Error when the recording cannot be read, its scene is not known, or the part would stand in another one.
-std::string replay_bundle(const std::string& path, const std::string& scene = {});
+/// Throws Error when the recording cannot be read, its scene is not known, the part would stand in another one, or
+/// `html`, where the page will be written, is one of the files that are read.
+std::string replay_bundle(const std::string& path, const std::string& scene = {}, const std::string& html = {});
 
 /// Serves a bundle until `stop`; `announce` gets the address to open. `make_review` makes the HTML report on the
 /// recording when the page asks for it, in a thread of the server.

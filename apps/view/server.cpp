@@ -15,6 +15,7 @@
 
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
+#include "view/doorkeeper.hpp"
 #include "view/request_guard.hpp"
 #include "view/wire.hpp"
 #include "web/page.hpp"
@@ -22,8 +23,11 @@
 namespace tegotae::view {
 namespace {
 
-// Threads that serve; each watcher keeps one, the rest is for requests.
+// Threads that serve; each watcher keeps one, the rest is for requests, and for strangers while the doorkeeper lets
+// them. The servo locks their stacks into memory, so they are not many.
 const std::string kThreads = std::to_string(kMostWatchers + 12);
+// Connections that wait for a thread where the doorkeeper sees them.
+constexpr const char* kQueue = "200";
 // CivetWeb gives up on a client that it waits for so long (ms) without a byte going either way.
 constexpr const char* kTimeout = "10000";
 constexpr std::size_t kMostHeader = 8192;
@@ -76,10 +80,12 @@ struct Server::Impl {
   ViewSource& source;
   std::unique_ptr<RequestGuard> guard;
   std::string url, log;
-  Address local;  ///< as seen from this machine
+  Address address;  ///< as asked for
+  Address local;    ///< as seen from this machine
   std::atomic<int> watchers{0};
   std::atomic<bool> started{false}, ending{false};
   Rate rate;
+  std::unique_ptr<Doorkeeper> door;
   mg_context* context = nullptr;
 
   explicit Impl(ViewSource& source_in) : source(source_in) {}
@@ -96,6 +102,7 @@ struct Server::Impl {
         guard->refusal({or_empty(mg_get_header(connection, "Host")), or_empty(mg_get_header(connection, "Origin")),
                         or_empty(mg_get_header(connection, "Sec-Fetch-Site")),
                         page ? query : or_empty(mg_get_header(connection, "X-Tegotae-Token"))});
+    if (why.empty()) door->welcome(request.remote_port);
     if (!why.empty()) {
       respond(connection, 403, "Forbidden", "text/plain; charset=utf-8", why + "\n");
     } else if (method == "GET" && page) {
@@ -215,21 +222,11 @@ struct Server::Impl {
 Server::Server(const Address& address, ViewSource& source) : impl_(std::make_unique<Impl>(source)) {
   const std::string port = address.text();
   const std::string header = std::to_string(kMostHeader);
-  const char* options[] = {"listening_ports",
-                           port.c_str(),
-                           "num_threads",
-                           kThreads.c_str(),
-                           "request_timeout_ms",
-                           kTimeout,
-                           "keep_alive_timeout_ms",
-                           "5000",
-                           "enable_keep_alive",
-                           "yes",
-                           "max_request_size",
-                           header.c_str(),
-                           "tcp_nodelay",
-                           "1",
-                           nullptr};
+  const char* options[] = {"listening_ports", port.c_str(), "num_threads", kThreads.c_str(), "request_timeout_ms",
+                           kTimeout, "keep_alive_timeout_ms", "5000", "enable_keep_alive", "yes", "max_request_size",
+                           header.c_str(), "tcp_nodelay", "1", "connection_queue", kQueue,
+                           // Or it answers OPTIONS by itself, whoever asks, with "*".
+                           "access_control_allow_methods", "", "access_control_allow_origin", "", nullptr};
   mg_callbacks callbacks{};
   callbacks.log_message = [](const mg_connection* connection, const char* message) {
     auto* impl = static_cast<Impl*>(mg_get_user_data(mg_get_context(connection)));
@@ -248,8 +245,10 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
   Address listening = address;
   listening.port = ports[0].port;
   impl_->guard = std::make_unique<RequestGuard>(listening);
+  impl_->address = address;
   impl_->local = listening;
   if (address.wildcard()) impl_->local.host = address.host == "[::]" ? "[::1]" : "127.0.0.1";
+  impl_->door = std::make_unique<Doorkeeper>(listening.port, impl_->guard->token());
   impl_->url = "http://" + impl_->local.text() + "/?token=" + impl_->guard->token();
   mg_set_request_handler(
       impl_->context, "**",
@@ -259,6 +258,7 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
 // civetweb's listening thread looks whether it should stop when somebody calls, or every two seconds: so call.
 Server::~Server() {
   impl_->ending = true;
+  impl_->door->close();
   std::atomic<bool> stopped{false};
   std::thread caller([&] {
     const Address& a = impl_->local;
@@ -277,6 +277,21 @@ Server::~Server() {
 
 const std::string& Server::url() const {
   return impl_->url;
+}
+
+std::string Server::warning() const {
+  const Address& a = impl_->address;
+  const bool loopback = a.host.rfind("127.", 0) == 0 || a.host == "[::1]";
+  if (loopback) return "";
+  std::string text =
+      "Anybody who can reach this machine can reach the page, and who listens in on the way reads its token: it is "
+      "plain "
+      "HTTP. A tunnel is safer.";
+  if (!a.wildcard()) return text;
+  text += " From other machines it is at";
+  for (const std::string& host : machine_addresses(a.host == "[::]"))
+    text += " http://" + host + ":" + std::to_string(impl_->local.port) + "/?token=" + impl_->guard->token();
+  return text + " .";
 }
 
 }  // namespace tegotae::view

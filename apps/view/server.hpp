@@ -21,6 +21,8 @@ class Server {
 
   /// The one address to open: http://127.0.0.1:PORT/?token=...
   const std::string& url() const;
+  /// What whoever opened the page to other machines should know, and where it is for them; empty on the loopback.
+  std::string warning() const;
 
  private:
   struct Impl;

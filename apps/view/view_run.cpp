@@ -1,5 +1,7 @@
 #include "view/view_run.hpp"
 
+#include <iostream>
+
 #include "tegotae/core/error.hpp"
 #include "view/live_view.hpp"
 #include "view/server.hpp"
@@ -17,6 +19,7 @@ RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address
   LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop);
   Server server(address, live);
   announce(server.url());
+  if (const std::string warning = server.warning(); !warning.empty()) std::cerr << "warning: " << warning << std::endl;
   if (settings.seconds == 0) settings.seconds = kForever;
   settings.observer = &live;
   settings.on_start = [&live, told = settings.on_start](const RunStart& start) {

@@ -78,7 +78,7 @@ const QpResult* LocalModel::nearest(const Pose& X, const Vec3& center, const Pos
 
 bool LocalModel::update(const ContactPlanes& planes, double radius, const Vec3& center, const Pose& Y,
                         const Twist& Y_velocity, ProxyState& x) noexcept {
-  if (planes.count <= 0 || planes.count > ContactPlanes::kMost || !(radius > 0)) return false;
+  if (planes.count <= 0 || planes.count > ContactPlanes::kMost || !(radius > 0) || !planes.taken_at(x.X)) return false;
   const double since = displacement(planes.pen, Y, center).dr.norm();
   const double error = displacement(x.X, Y, center).dr.norm();
   if (!(since < kMostTurn && error < kMostError)) return false;

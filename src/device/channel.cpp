@@ -30,6 +30,7 @@ ChannelReader ChannelReader::open(const std::string& name) {
 }
 
 Channel Channel::create(const std::string& name) {
+  remove_left_segments();
   return Channel(Segment::create(name.empty() ? unique_segment_name() : with_slash(name)));
 }
 

@@ -8,10 +8,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <utility>
 
+#include "core/file_descriptor.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -20,6 +23,8 @@ namespace tegotae {
 namespace {
 
 constexpr std::size_t kSize = sizeof(tegotae_shm_segment);
+
+const std::string kUniqueName = "/tegotae-";  // then the process and a number
 
 // Each try that fails means that another process created or removed the segment in between.
 constexpr int kCreateAttempts = 100;
@@ -31,20 +36,20 @@ constexpr int kCreateAttempts = 100;
   fail(name, what + ": " + std::strerror(errno));
 }
 
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
+/// shm_open, above the standard descriptors.
+FileDescriptor opened(const std::string& name, int how) {
+  return FileDescriptor(above_standard(shm_open(name.c_str(), how | O_CLOEXEC, S_IRUSR | S_IWUSR)));
+}
 
- private:
-  int fd_;
-};
+/// Sets the size, with memory for every page: one that is not there when it is written ends the process by SIGBUS.
+void allocate(int fd, const std::string& name) {
+  if (ftruncate(fd, kSize) != 0) fail_errno(name, "cannot be sized");
+  int error = EINTR;
+  while (error == EINTR) error = posix_fallocate(fd, 0, kSize);
+  if (error != 0)
+    fail(name,
+         "no room for its " + std::to_string(kSize) + " bytes: " + std::strerror(error) + "; make room in /dev/shm");
+}
 
 struct flock one_byte(short type, off_t byte) {
   struct flock lock {};
@@ -75,7 +80,7 @@ struct stat examined(int fd, const std::string& name) {
 
 /// Whether `name` still stands for what `fd` has open.
 bool is_named(int fd, const std::string& name) {
-  const FileDescriptor again(shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
+  const FileDescriptor again = opened(name, O_RDONLY);
   struct stat a, b;
   return again.get() >= 0 && fstat(fd, &a) == 0 && fstat(again.get(), &b) == 0 && a.st_ino == b.st_ino;
 }
@@ -101,7 +106,7 @@ std::string process(const Header& header) {
 
 /// Unlinks what a dead process left under `name`. Throws when the name is in use.
 void remove_stale(const std::string& name) {
-  const FileDescriptor fd(shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0));
+  const FileDescriptor fd = opened(name, O_RDWR);
   if (fd.get() < 0) {
     if (errno == ENOENT) return;  // gone by now
     fail_errno(name, "the name is in use and cannot be opened");
@@ -115,6 +120,11 @@ void remove_stale(const std::string& name) {
   if (!lock_byte(fd.get(), TEGOTAE_SHM_LOCK_DEVICE))
     fail(name, "the name is in use by a device that is alive, " + process(header) + "; end it or choose another name");
   if (is_named(fd.get(), name)) shm_unlink(name.c_str());
+}
+
+bool is_unique_name(const std::string& name) {
+  static const std::regex form(kUniqueName + "[0-9]+-[0-9]+");
+  return std::regex_match(name, form);
 }
 
 /// When this process started, as in the header; 0 when not known.
@@ -154,7 +164,7 @@ Segment::Segment(std::string name, int fd, SegmentRole role) : name_(std::move(n
 
 std::unique_ptr<Segment> Segment::create(const std::string& name) {
   for (int attempt = 0; attempt < kCreateAttempts; ++attempt) {
-    FileDescriptor fd(shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+    FileDescriptor fd = opened(name, O_RDWR | O_CREAT | O_EXCL);
     if (fd.get() < 0) {
       if (errno != EEXIST) fail_errno(name, "cannot be created");
       remove_stale(name);
@@ -166,7 +176,7 @@ std::unique_ptr<Segment> Segment::create(const std::string& name) {
     try {
       // Whatever the umask took away.
       if (fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0) fail_errno(name, "cannot be protected");
-      if (ftruncate(fd.get(), kSize) != 0) fail_errno(name, "cannot be sized");
+      allocate(fd.get(), name);
       segment.reset(new Segment(name, fd.get(), SegmentRole::device));
     } catch (const Error&) {
       shm_unlink(name.c_str());
@@ -186,12 +196,13 @@ std::unique_ptr<Segment> Segment::create(const std::string& name) {
 }
 
 std::unique_ptr<Segment> Segment::open(const std::string& name, SegmentRole role) {
-  const int access = role == SegmentRole::observer ? O_RDONLY : O_RDWR;
-  FileDescriptor fd(shm_open(name.c_str(), access | O_CLOEXEC, 0));
+  FileDescriptor fd = opened(name, role == SegmentRole::observer ? O_RDONLY : O_RDWR);
   if (fd.get() < 0) fail_errno(name, "cannot be opened");
   check_file(fd.get(), name);
   if (role == SegmentRole::application && !lock_byte(fd.get(), TEGOTAE_SHM_LOCK_APPLICATION))
     fail(name, "another application is attached");
+  // A device of another maker may have set the size only.
+  if (role == SegmentRole::application) allocate(fd.get(), name);
   std::unique_ptr<Segment> segment(new Segment(name, fd.get(), role));
   fd.release();
   return segment;
@@ -205,7 +216,22 @@ Segment::~Segment() {
 
 std::string unique_segment_name() {
   static std::atomic<unsigned> count{0};
-  return "/tegotae-" + std::to_string(getpid()) + "-" + std::to_string(count++);
+  return kUniqueName + std::to_string(getpid()) + "-" + std::to_string(count++);
+}
+
+void remove_left_segments() {
+  std::error_code failed;  // where nothing can be listed nothing is removed
+  for (std::filesystem::directory_iterator i("/dev/shm", failed), end; !failed && i != end; i.increment(failed)) {
+    const std::string name = "/" + i->path().filename().string();
+    if (!is_unique_name(name)) continue;
+    const FileDescriptor fd = opened(name, O_RDWR | O_NONBLOCK);
+    struct stat info;
+    if (fd.get() < 0 || fstat(fd.get(), &info) != 0 || info.st_uid != geteuid()) continue;
+    const std::uint64_t magic = read_header(fd.get()).magic;
+    if (magic != TEGOTAE_SHM_MAGIC && magic != 0) continue;
+    // A living owner has the lock; whoever gets it is the only one who may unlink.
+    if (lock_byte(fd.get(), TEGOTAE_SHM_LOCK_DEVICE) && is_named(fd.get(), name)) shm_unlink(name.c_str());
+  }
 }
 
 }  // namespace tegotae

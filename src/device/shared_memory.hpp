@@ -36,6 +36,9 @@ class Segment {
   tegotae_shm_segment* memory_;
 };
 
+/// Removes the segments with names of their own (unique_segment_name) that killed processes of this user left.
+void remove_left_segments();
+
 /// A name that no other segment of this process has had.
 std::string unique_segment_name();
 

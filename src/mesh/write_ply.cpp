@@ -1,10 +1,8 @@
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 
-#include "tegotae/core/error.hpp"
+#include "core/output_file.hpp"
 #include "tegotae/mesh/write.hpp"
 
 namespace tegotae {
@@ -40,10 +38,7 @@ void write_ply(const TriangleMesh& mesh, const std::string& path, double unit_in
     bytes.push_back(3);
     for (const std::uint32_t v : t) append(bytes, v);
   }
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) throw Error(path + ": cannot be written: " + std::strerror(errno));
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (std::fclose(file) != 0 || !written) throw Error(path + ": cannot be written: " + std::strerror(errno));
+  write_file(path, bytes);
 }
 
 }  // namespace tegotae

@@ -52,6 +52,13 @@ std::vector<FclPairs::Faces> FclPairs::intersections(const TriangleMesh& a, cons
   return pairs;
 }
 
+bool FclPairs::intersect(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA) {
+  const fcl::CollisionRequestd request(1, false);  // no points, normals or depths
+  fcl::CollisionResultd result;
+  fcl::collide((*models_)[a], in_units(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
+  return result.isCollision();
+}
+
 double FclPairs::distance_below(double bound, const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA,
                                 Faces& nearest) {
   const fcl::DistanceRequestd request;

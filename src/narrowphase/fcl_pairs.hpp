@@ -24,6 +24,8 @@ class FclPairs {
   /// The intersecting triangle pairs of `a` at `X_BA` (A in B's file frame) with `b`, at most `most` of them. Triangles
   /// that touch count.
   std::vector<Faces> intersections(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA, std::size_t most);
+  /// Whether any do; stops at the first.
+  bool intersect(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA);
   /// The distance (m) of surfaces that do not intersect, if it is less than `bound`, else `bound`; `nearest` is set
   /// when it is less.
   double distance_below(double bound, const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA, Faces& nearest);

@@ -23,11 +23,13 @@ void CsvFile::add(const RecordFrame& frame) noexcept {
   if (rows_.size() + kMaxRecordRow > kBufferSize) flush();
   char row[kMaxRecordRow];
   rows_.append(row, format_row(frame, row));
+  ++frames_;
 }
 
 void CsvFile::flush() noexcept {
   file_.write(rows_);
   rows_.clear();
+  if (!file_.failed()) written_ = frames_;
 }
 
 void CsvFile::close(const std::string& goes_on) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "record/output_file.hpp"
+#include "core/output_file.hpp"
 #include "record/record_file.hpp"
 
 namespace tegotae {
@@ -14,6 +14,8 @@ class CsvFile final : public RecordFile {
 
   void add(const RecordFrame& frame) noexcept override;
   void flush() noexcept override;
+  void hurry() noexcept override { file_.hurry(); }
+  std::uint64_t written() const noexcept override { return written_; }
   void close(const std::string& goes_on) override;
 
  private:
@@ -21,6 +23,7 @@ class CsvFile final : public RecordFile {
   OutputFile file_;
   RecordingInfo info_;
   std::string rows_;
+  std::uint64_t frames_ = 0, written_ = 0;
 };
 
 }  // namespace tegotae

@@ -126,6 +126,7 @@ void McapFile::write_chunk() {
   file_.write(out.text);
   chunks_.push_back(chunk);
   records_.text.clear();
+  if (!file_.failed()) written_ = frames_;
 }
 
 void McapFile::write_summary() {

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/output_file.hpp"
 #include "record/frame_messages.hpp"
 #include "record/mcap_format.hpp"
-#include "record/output_file.hpp"
 #include "record/record_file.hpp"
 
 namespace tegotae {
@@ -18,6 +18,8 @@ class McapFile final : public RecordFile {
 
   void add(const RecordFrame& frame) noexcept override;
   void flush() noexcept override {}  // a chunk leaves when it is full
+  void hurry() noexcept override { file_.hurry(); }
+  std::uint64_t written() const noexcept override { return written_; }
   void close(const std::string& goes_on) override;
 
  private:
@@ -40,7 +42,7 @@ class McapFile final : public RecordFile {
   mcap::Bytes records_;  // of the chunk that is being filled
   std::array<std::vector<TimeAndOffset>, kFrameTopics> index_;
   std::vector<Chunk> chunks_;
-  std::uint64_t frames_ = 0;
+  std::uint64_t frames_ = 0, written_ = 0;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> metadata_;  // where each such record is, and how long
 };
 

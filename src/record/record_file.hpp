@@ -14,6 +14,10 @@ class RecordFile {
   virtual void add(const RecordFrame& frame) noexcept = 0;
   /// Hands over to the system what may be handed over by now.
   virtual void flush() noexcept = 0;
+  /// From now on all that is written has to go within two seconds.
+  virtual void hurry() noexcept = 0;
+  /// Frames of which the system has taken all.
+  virtual std::uint64_t written() const noexcept = 0;
   /// Writes what is left, with `goes_on` in the info where there is one, and throws the first failure, as Error.
   virtual void close(const std::string& goes_on) = 0;
 };

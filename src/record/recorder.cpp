@@ -39,6 +39,7 @@ struct Recorder::Impl {
       drain();
       std::this_thread::sleep_for(kDrainPeriod);
     }
+    file->hurry();
     drain();
   }
 
@@ -48,8 +49,15 @@ struct Recorder::Impl {
     if (writer.joinable()) {
       stopping.store(true, std::memory_order_release);
       writer.join();
+    } else {
+      file->hurry();
     }
-    file->close(goes_on);
+    try {
+      file->close(goes_on);
+    } catch (const Error& e) {
+      throw Error(e.what() + std::string("; it has the first ") + std::to_string(file->written()) + " of " +
+                  std::to_string(rows.load(std::memory_order_relaxed)) + " rows");
+    }
   }
 };
 

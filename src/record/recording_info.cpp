@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "record/output_file.hpp"
+#include "core/output_file.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {

@@ -2,23 +2,15 @@
 
 #include <cmath>
 
-#include "servo/safety_links.hpp"
+#include "core/proper_pose.hpp"
 #include "servo/shm_convert.hpp"
 
 namespace tegotae {
 
 namespace {
 
-// Nothing that a hand moves is farther from the origin (m); beyond, a pose would lose its micrometers.
-constexpr double kFarthest = 1e4;
-
-bool near(const Vec3& v) {
-  return v.allFinite() && v.cwiseAbs().maxCoeff() <= kFarthest;
-}
-
 bool placed(const double (&position)[3], const double (&orientation)[4]) {
-  const Pose pose = {quaternion(orientation), vector(position)};
-  return proper(pose) && near(pose.p);
+  return proper({quaternion(orientation), vector(position)});
 }
 
 bool constant(double x) {
@@ -29,7 +21,7 @@ bool constant(double x) {
 
 bool sane(const tegotae_shm_application& in) noexcept {
   return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
-         vector(in.angular_velocity).allFinite() && near(vector(in.center)) && constant(in.stiffness) &&
+         vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) && constant(in.stiffness) &&
          constant(in.damping) && constant(in.torsional_stiffness) && constant(in.torsional_damping) &&
          in.scale >= kLeastScale && in.scale <= kMostScale && in.clutch <= TEGOTAE_SHM_CLUTCH_ALL &&
          (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
@@ -57,6 +49,7 @@ ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
   out.count = static_cast<int>(in.plane_count);
   for (std::size_t i = 0; i < in.plane_count; ++i)
     out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room};
+  out.X = {quaternion(in.orientation), vector(in.position)};
   out.pen = {quaternion(in.pen_orientation), vector(in.pen_position)};
   return out;
 }

@@ -93,7 +93,8 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.scale = scale_;
   store(home_.p, out.home_position);
   store(home_.q, out.home_orientation);
-  store_planes(planes, out);
+  // The slot has room for one pose.
+  if (planes.taken_at(proxy.X)) store_planes(planes, out);
   channel_.write(out);
 }
 

@@ -7,8 +7,6 @@ namespace tegotae {
 
 namespace {
 
-// Of the squared length of a quaternion.
-constexpr double kUnitTolerance = 1e-3;
 // Two samples whose time stamps are nearer are taken to be this far apart (s): a driver's stamps jitter, and a way
 // divided by next to nothing is no velocity.
 constexpr double kLeastInterval = 1e-4;
@@ -22,10 +20,6 @@ bool within(std::int64_t a, std::int64_t b, std::int64_t limit) noexcept {
 
 bool finite(const Wrench& w) noexcept {
   return w.force.allFinite() && w.torque.allFinite();
-}
-
-bool proper(const Pose& pose) noexcept {
-  return pose.p.allFinite() && std::abs(pose.q.squaredNorm() - 1) < kUnitTolerance;
 }
 
 double workspace_gain(const SafetySettings& settings, const Vec3& pen) noexcept {

@@ -9,8 +9,6 @@ namespace tegotae {
 /// Whether both times are at most `limit` apart; times of garbage may make the difference overflow.
 bool within(std::int64_t a, std::int64_t b, std::int64_t limit) noexcept;
 bool finite(const Wrench& w) noexcept;
-/// Finite, and the quaternion of unit length up to rounding.
-bool proper(const Pose& pose) noexcept;
 
 /// 1 inside the workspace, 0 farther than the margin outside of it, linear between.
 double workspace_gain(const SafetySettings& settings, const Vec3& pen) noexcept;

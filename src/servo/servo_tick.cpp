@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/proper_pose.hpp"
 #include "servo/application_state.hpp"
 #include "servo/shm_convert.hpp"
 #include "tegotae/coupling/stability.hpp"

@@ -123,10 +123,6 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 
 void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
-  report.pieces.clear();
-  report.resolves = report.iterations = 0;
-  report.status = ResolveStatus::not_needed;
-  report.cut = false;
   deadline_ns_ = deadline_ns;
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
@@ -139,6 +135,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
   allowed_ = wanted;
+  double made = 0;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -150,7 +147,6 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
-    double made = 0;
     for (int i = 0; i < kMostMotions && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
@@ -169,8 +165,10 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   moved_ = size(moved);
   const double left = size(displacement(X_, Y, center_));
   report.lag_reason = reason_for(left, report);
-  // Whatever holds the part back, the hand feels it.
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && left > keep_);
+  // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
+  // took away what it touched it comes back to the pen through the air.
+  const bool comes = near_.empty() || made >= kFullShare * travel;
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};

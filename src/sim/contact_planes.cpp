@@ -12,6 +12,7 @@ void PlanePicker::add(const Contact& contact, const Vec3& center_W, double room,
 void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric, const Pose& X, const Pose& Y,
                        const Vec3& center, double keep, ContactPlanes& planes, ContactForces& forces) noexcept {
   planes.count = forces.count = 0;
+  planes.X = X;
   planes.pen = Y;
   const Displacement error = displacement(X, Y, center);
   forces.lag = pull(error);

@@ -3,11 +3,11 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <thread>
 
+#include "core/proper_pose.hpp"
 #include "device/mailbox.hpp"
 #include "sim/handover.hpp"
 #include "sim/lag.hpp"
@@ -19,6 +19,12 @@ namespace {
 
 // Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
 constexpr double kChangeShare = 0.25;
+// Ways divided by less time (s) are no velocities; no loop ticks so often.
+constexpr double kLeastTime = 1e-6;
+
+bool proper_time(double dt) {
+  return dt == 0 || (dt >= kLeastTime && std::isfinite(dt));
+}
 
 std::int64_t deadline(std::int64_t now_ns, double budget) {
   return std::isfinite(budget) ? now_ns + static_cast<std::int64_t>(1e9 * budget) : kNoDeadline;
@@ -58,28 +64,18 @@ struct HapticLoop::State {
     return report;
   }
 
-  /// A tick that does not follow the pen: X stays.
+  /// The tick that goes over to another held part does not follow the pen, which is still where the old one was.
   const TickReport& suspend() noexcept {
-    report.pieces.clear();
-    report.pieces.push_back(report.proxy.X);
-    report.proxy.velocity = {};
-    report.resolves = report.iterations = 0;
-    report.status = ResolveStatus::not_needed;
-    report.cut = false;
     report.lag_reason = LagReason::suspended;
     return finish();
   }
 
   /// The report before the first tick with a held part.
   void begin() noexcept {
-    std::vector<Pose> pieces = std::move(report.pieces);
-    report = {};
-    report.pieces = std::move(pieces);
-    report.pieces.clear();
+    reset(report);
     report.pieces.push_back(now->loop->pose());
     report.proxy.X = now->loop->pose();
     tell();
-    report.gap = std::numeric_limits<double>::infinity();
     for (const StartPair& pair : now->loop->start().pairs) {
       report.suspended += pair.state == PairState::suspended ? 1 : 0;
       report.relieved += pair.state == PairState::relieved ? 1 : 0;
@@ -115,11 +111,14 @@ HapticLoop::~HapticLoop() = default;
 
 const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   State& s = *state_;
-  if (!(Y.p.allFinite() && Y.q.coeffs().allFinite() && Y.q.squaredNorm() > 0)) return s.suspend();
   const std::int64_t now_ns = monotonic_ns();
   if (s.adopt(now_ns)) return s.suspend();
-  s.Y = {Y.q.normalized(), Y.p};
-  s.now->loop->step(s.Y, dt, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  reset(s.report);
+  const bool placed = proper(Y), timed = proper_time(dt);
+  s.report.ignored = !(placed && timed);
+  if (placed) s.Y = {Y.q.normalized(), Y.p};
+  s.now->loop->step(s.Y, timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  if (!placed) s.report.lag_reason = LagReason::suspended;
   s.tell();
   return s.finish();
 }

@@ -30,6 +30,9 @@ constexpr double kRecovery = 0.2;
 constexpr double kCutMargin = 1.2;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
+// No hand takes a part along faster (m/s, of any of its points); without a bound a pen that jumps by kilometers makes
+// spins that Euler's equation, taken explicitly, drives past every number.
+constexpr double kFastest = 100;
 // Bends a motion at most so far from the sum of its limits' straight lines (rad a piece).
 constexpr double kMostTurn = 0.1;
 
@@ -59,11 +62,6 @@ bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 }
 
 void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
-  report.pieces.clear();
-  report.resolves = report.iterations = 0;
-  report.status = ResolveStatus::not_needed;
-  report.cut = false;
-  report.candidate_parts = 0;
   collided_ = stuck_ = false;
   deadline_ns_ = deadline_ns;
   if (at_.look_at_start(X_)) tracked_ = false;
@@ -102,6 +100,8 @@ void ImpulseLoop::accelerate(const Pose& Y, const Twist& pen, double h) {
              .ldlt()
              .solve(inertia * V_.w - h * V_.w.cross(inertia * V_.w) +
                     h * (c.torsional_stiffness * e.dr + c.torsional_damping * pen.w));
+  const double fast = V_.v.norm() + at_.radius * V_.w.norm();
+  if (fast > kFastest) V_ = {kFastest / fast * V_.v, kFastest / fast * V_.w};
   gained_ = {V_.v - before.v, V_.w - before.w};
 }
 

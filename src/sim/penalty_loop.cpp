@@ -124,10 +124,6 @@ bool PenaltyLoop::take_over(const TickReport& last, const Pose&, const std::vect
 
 void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
-  report.pieces.clear();
-  report.resolves = report.iterations = report.limits = 0;
-  report.status = ResolveStatus::not_needed;
-  report.cut = report.overflow = false;
   const double wanted = size(displacement(X_, Y, center_)), most = kStepShare * radius_;
   if (check_) start_.look(X_, *check_, deadline_ns);
   report.suspended = start_.suspended();

@@ -2,11 +2,33 @@
 
 #include <algorithm>
 
-#include "broadphase/bounding_spheres.hpp"
-#include "narrowphase/fcl_pairs.hpp"
 #include "sim/scene_parts.hpp"
 
 namespace tegotae {
+
+PoseJudge::PoseJudge(const Scene& scene, const StartReport& start)
+    : held_(held_part(scene)), ball_(bounding_sphere(*held_.mesh)), freed_(scene.parts.size()) {
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const Part& part = scene.parts[i];
+    if (part.held) continue;
+    fixed_.push_back(&part);
+    number_.push_back(i);
+    spheres_.add(bounding_sphere(*part.mesh), part.pose);
+  }
+  came_free(start);
+}
+
+void PoseJudge::came_free(const StartReport& start) noexcept {
+  for (const StartPair& pair : start.pairs) freed_[pair.part].store(pair.freed, std::memory_order_release);
+}
+
+bool PoseJudge::intersects(const Pose& X, std::uint32_t freed) {
+  spheres_.query(X * ball_.center, ball_.radius, 0.0, near_);
+  return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t i) {
+    if (freed_[number_[i]].load(std::memory_order_acquire) > freed) return false;
+    return fcl_.intersect(*held_.mesh, *fixed_[i]->mesh, fixed_[i]->pose.inverse() * X);
+  });
+}
 
 void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   if (seen_ > 0 && X.p == last_.p && X.q.coeffs() == last_.q.coeffs()) return;
@@ -21,37 +43,10 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   poses_.push_back({X, freed});
 }
 
-std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start,
-                                           std::atomic<double>* share) const {
-  const Part& held = held_part(scene);
-  std::vector<const Part*> fixed;
-  BoundingSpheres spheres;
-  std::vector<std::uint32_t> freed;  // of each fixed part, in which place it came free
-  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    const Part& part = scene.parts[i];
-    if (part.held) continue;
-    fixed.push_back(&part);
-    const auto pair =
-        std::find_if(start.pairs.begin(), start.pairs.end(), [i](const StartPair& p) { return p.part == i; });
-    freed.push_back(pair == start.pairs.end() ? 0 : pair->freed);
-    spheres.add(bounding_sphere(*part.mesh), part.pose);
-  }
-  FclPairs fcl;  // makes the models of just those meshes that some pose is near to
-  const Sphere ball = bounding_sphere(*held.mesh);
-  std::vector<std::uint32_t> near;
-  std::int64_t count = 0, asked = 0;
-  for (const auto& [X, came_free] : poses_) {
-    if (share) share->store(static_cast<double>(asked++) / static_cast<double>(poses_.size()));
-    spheres.query(X * ball.center, ball.radius, 0.0, near);
-    for (const std::uint32_t i : near) {
-      if (freed[i] > came_free ||
-          fcl.intersections(*held.mesh, *fixed[i]->mesh, fixed[i]->pose.inverse() * X, 1).empty())
-        continue;
-      ++count;
-      break;
-    }
-  }
-  return count;
+std::int64_t PoseCheck::count_intersecting(const Scene& scene, const StartReport& start) const {
+  PoseJudge judge(scene, start);
+  return std::count_if(poses_.begin(), poses_.end(),
+                       [&judge](const Kept& kept) { return judge.intersects(kept.X, kept.freed); });
 }
 
 }  // namespace tegotae

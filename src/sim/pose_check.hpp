@@ -5,28 +5,46 @@
 #include <cstdint>
 #include <vector>
 
+#include "broadphase/bounding_spheres.hpp"
+#include "narrowphase/fcl_pairs.hpp"
 #include "tegotae/sim/scene.hpp"
 #include "tegotae/sim/start.hpp"
 
 namespace tegotae {
 
-/// Keeps the poses that a run committed and asks FCL about each of them afterwards, independently of the loop that
-/// committed them.
+/// Asks FCL about poses of a scene's held part, independently of the loop that committed them.
+class PoseJudge {
+ public:
+  /// Pairs of `start` do not count until they have come free. Keeps a reference to `scene`.
+  explicit PoseJudge(const Scene& scene, const StartReport& start = {});
+  /// Tells which pairs have come free by now; from another thread than intersects().
+  void came_free(const StartReport& start) noexcept;
+  /// Whether the held part at `X` intersects a fixed one. `freed`: how many pairs of the start had come free there.
+  bool intersects(const Pose& X, std::uint32_t freed);
+
+ private:
+  const Part& held_;
+  Sphere ball_;
+  std::vector<const Part*> fixed_;
+  std::vector<std::size_t> number_;                // of each fixed part, in the scene
+  std::vector<std::atomic<std::uint32_t>> freed_;  // of each fixed part: StartPair::freed
+  BoundingSpheres spheres_;
+  FclPairs fcl_;  // makes the models of just those meshes that some pose is near to
+  std::vector<std::uint32_t> near_;
+};
+
+/// Keeps poses and asks about them afterwards.
 class PoseCheck {
  public:
-  /// Poses kept; of more, every second, fourth, ... one: a check takes seconds, not minutes.
+  /// Poses kept; of more, every second, fourth, ... one.
   static constexpr std::size_t kMost = 20000;
 
   PoseCheck() { poses_.reserve(kMost); }
 
   /// Never allocates. A pose equal to the last one counts once. `freed`: how many pairs of StartReport had come free.
   void add(const Pose& X, std::uint32_t freed = 0) noexcept;
-  /// No pose comes any more.
-  void shrink() { poses_.shrink_to_fit(); }
   /// How many of the kept poses intersect a fixed part of `scene`, pairs left out that had not come free by then.
-  /// `share` (may be null) is told how far that is, from 0 to 1.
-  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {},
-                                  std::atomic<double>* share = nullptr) const;
+  std::int64_t count_intersecting(const Scene& scene, const StartReport& start = {}) const;
 
  private:
   struct Kept {

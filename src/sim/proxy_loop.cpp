@@ -1,10 +1,21 @@
 #include "sim/proxy_loop.hpp"
 
+#include <limits>
+#include <utility>
+
 #include "sim/contact_loop.hpp"
 #include "sim/impulse_loop.hpp"
 #include "sim/penalty_loop.hpp"
 
 namespace tegotae {
+
+void reset(TickReport& report) noexcept {
+  std::vector<Pose> pieces = std::move(report.pieces);
+  pieces.clear();
+  report = {};
+  report.pieces = std::move(pieces);
+  report.gap = std::numeric_limits<double>::infinity();
+}
 
 std::unique_ptr<ProxyLoop> make_proxy_loop(const Scene& scene, const ContactSettings& settings,
                                            const MassProperties& mass) {

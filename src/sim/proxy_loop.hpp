@@ -12,12 +12,16 @@ namespace tegotae {
 /// Pieces that a report has room for; no loop makes more in a tick.
 inline constexpr std::size_t kMostPieces = 1024;
 
+/// The report of a tick that has not done anything: its owner calls this before each tick, so that nothing is left of
+/// an earlier tick, resolver or scene. Keeps the room of `pieces`.
+void reset(TickReport& report) noexcept;
+
 /// What turns the pen's pose into the held part's, tick by tick: one implementation a family of resolvers.
 class ProxyLoop {
  public:
   virtual ~ProxyLoop() = default;
-  /// See HapticLoop::step; `Y` is finite and its quaternion of unit length. What is not done at `deadline_ns` of
-  /// monotonic_ns() is left.
+  /// See HapticLoop::step; `Y` is proper and `dt` finite and not negative. What is not done at `deadline_ns` of
+  /// monotonic_ns() is left. `report` is as reset() leaves it: whatever this loop does not set says that nothing was.
   virtual void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) = 0;
   /// Goes on from a loop over another scene with the same held part, whose last tick was `last`, for the pen at `Y`.
   /// False, and nothing happens, when the way there from this loop's own pose is not known by `deadline_ns` to be free

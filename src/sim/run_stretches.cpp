@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <thread>
 
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
 #include "sim/scene_parts.hpp"
 #include "sim/scene_text.hpp"
 #include "tegotae/core/error.hpp"
@@ -32,12 +33,6 @@ fs::path numbered(const fs::path& path, std::uint64_t number, const fs::path& ex
   return path.parent_path() / (path.stem().string() + "." + std::to_string(number) + extension.string());
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text << std::flush;
-  if (!file) throw Error(path + ": cannot be written");
-}
-
 void remove_files(const RunStretch& stretch) noexcept {
   std::error_code absent;
   for (const std::string& path : {stretch.recording, recording_info_path(stretch.recording), stretch.scene_file})
@@ -51,15 +46,16 @@ Scene in_its_time(Scene scene, bool real_time) {
   return scene;
 }
 
-RunStretches::RunStretches(const SceneFile& file, const RunSettings& settings, HapticLoop& loop)
-    : file_(file), settings_(settings), loop_(loop) {
+RunStretches::RunStretches(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check)
+    : file_(file), settings_(settings), loop_(loop), check_(check) {
   auto first = std::make_unique<RunStretch>();
-  begin(*first, file.scene);
+  begin(*first, file.scene, loop.start());
   now_ = first.get();
   by_change_[0] = now_;
   now_->start = loop.start();
   now_->waiting = loop.report().suspended + loop.report().relieved;
   if (!settings.record.empty()) record(*now_, now_->start);
+  check_.watch(*first->check);
   stretches_.push_back(std::move(first));
   if (settings.edits == nullptr) return;
   RunEdits::State& edits = settings.edits->state();
@@ -69,6 +65,7 @@ RunStretches::RunStretches(const SceneFile& file, const RunSettings& settings, H
 
 RunStretches::~RunStretches() {
   detach();
+  check_.abandon();
 }
 
 void RunStretches::detach() {
@@ -79,11 +76,12 @@ void RunStretches::detach() {
   if (edits.run == this) edits.run = nullptr;
 }
 
-void RunStretches::begin(RunStretch& stretch, const Scene& scene) const {
+void RunStretches::begin(RunStretch& stretch, const Scene& scene, const StartReport& start) {
   stretch.number = stretches_.size();
   stretch.scene = scene;
   stretch.held = held_part(scene).name;
   stretch.start.pairs.reserve(scene.parts.size());  // follow() must not allocate
+  stretch.check = check_.stretch(stretch.scene, start);
 }
 
 void RunStretches::record(RunStretch& stretch, const StartReport& start) {
@@ -92,18 +90,16 @@ void RunStretches::record(RunStretch& stretch, const StartReport& start) {
   stretch.recording = settings_.record;
   if (stretch.number > 0) {
     const fs::path first = settings_.record;
-    const fs::path folder = first.parent_path();
     if (!fs::is_regular_file(first))
       throw Error(settings_.record + ": is no regular file, beside which recordings of other scenes could be");
     stretch.recording = numbered(first, stretch.number + 1, first.extension()).string();
     stretch.scene_file = numbered(first, stretch.number + 1, ".toml").string();
     info.scene = fs::path(stretch.scene_file).filename().string();
-    std::error_code absent;
-    if (fs::equivalent(stretch.scene_file, file_.path, absent))
-      throw Error(stretch.scene_file + ": is the scene that runs, and would be replaced; record under another name");
     info.follows = fs::path(stretches_.back()->recording).filename().string();
-    write_text(stretch.scene_file, scene_text(file_, stretch.scene, folder.string()));
   }
+  refuse_to_replace({stretch.recording, recording_info_path(stretch.recording), stretch.scene_file}, file_.files);
+  if (stretch.number > 0)
+    write_file(stretch.scene_file, scene_text(file_, stretch.scene, fs::path(settings_.record).parent_path().string()));
   try {
     stretch.recorder.emplace(stretch.recording, settings_.real_time ? RecordMode::threaded : RecordMode::synchronous,
                              info);
@@ -126,6 +122,7 @@ bool RunStretches::follow() noexcept {
   }
   const int freed = now_->waiting - loop_.report().suspended - loop_.report().relieved;
   if (freed != now_->freed) now_->start = loop_.start();
+  if (freed != now_->freed || another) now_->check->came_free(now_->start);
   now_->freed = freed;
   if (another) followed_.store(change, std::memory_order_release);
   return another;
@@ -150,7 +147,7 @@ std::vector<Part> RunStretches::change(std::vector<Part> parts, const std::funct
   RunStretch& stretch = *made;
   const std::uint64_t change =
       loop_.change(in_its_time(scene, settings_.real_time), [&](std::uint64_t number, const StartReport& start) {
-        begin(stretch, scene);
+        begin(stretch, scene, start);
         if (!settings_.record.empty()) record(stretch, start);
         by_change_[number % kSlots].store(&stretch, std::memory_order_release);
         if (ready) ready(stretch.number);
@@ -163,13 +160,13 @@ std::vector<Part> RunStretches::change(std::vector<Part> parts, const std::funct
   }
   // What could not be taken back is in force, and followed in the same tick.
   while (followed_.load(std::memory_order_acquire) != change) std::this_thread::sleep_for(kPoll);
+  check_.watch(*stretch.check);
   stretches_.push_back(std::move(made));
   finish(before, fs::path(stretch.recording).filename().string());
   return stretch.scene.parts;
 }
 
 void RunStretches::finish(RunStretch& stretch, const std::string& goes_on) noexcept {
-  stretch.check.shrink();
   if (!stretch.recorder) return;
   try {
     stretch.recorder->close(goes_on);
@@ -181,13 +178,6 @@ void RunStretches::finish(RunStretch& stretch, const std::string& goes_on) noexc
 void RunStretches::end() {
   detach();
   for (const auto& stretch : stretches_) finish(*stretch, {});
-  if (!failure_.empty()) throw Error(failure_);
-}
-
-std::int64_t RunStretches::penetrating(std::atomic<double>* share) const {
-  std::int64_t count = 0;
-  for (const auto& s : stretches_) count += s->check.count_intersecting(s->scene, s->start, share);
-  return count;
 }
 
 std::uint64_t RunStretches::dropped() const {

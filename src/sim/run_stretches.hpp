@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/pose_check.hpp"
+#include "sim/run_check.hpp"
 #include "tegotae/record/recorder.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 #include "tegotae/sim/scene_file.hpp"
@@ -25,7 +25,7 @@ struct RunStretch {
   StartReport start;  ///< as of the last tick
   int waiting = 0;    ///< pairs that were not free when it began
   int freed = 0;      ///< of them, since
-  PoseCheck check;
+  std::unique_ptr<CheckedStretch> check;
   std::optional<Recorder> recorder;
   std::string recording;   ///< path; empty: none
   std::string scene_file;  ///< that the recording names
@@ -39,7 +39,7 @@ Scene in_its_time(Scene scene, bool real_time);
 class RunStretches {
  public:
   /// `file` is the scene in which `loop` begins. Throws Error when the recording cannot be written. Keeps references.
-  RunStretches(const SceneFile& file, const RunSettings& settings, HapticLoop& loop);
+  RunStretches(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check);
   /// No change() comes or is at work any more.
   ~RunStretches();
   RunStretches(const RunStretches&) = delete;
@@ -49,8 +49,7 @@ class RunStretches {
   RunStretch& now() noexcept { return *now_; }
   /// After each tick, to go over to the stretch that it was in: true in the first tick of one.
   bool follow() noexcept;
-  /// No tick comes any more: a change that waits for one gives up, and the recordings are closed. Throws Error for the
-  /// first of them that could not be written.
+  /// No tick comes any more: a change that waits for one gives up, and the recordings are closed.
   void end();
 
   /// See RunEdits::change.
@@ -58,16 +57,16 @@ class RunStretches {
 
   // After end().
   const StartReport& start() const { return stretches_.front()->start; }  ///< of the run
-  /// `share`: see PoseCheck; from 0 to 1 for each stretch.
-  std::int64_t penetrating(std::atomic<double>* share) const;
   std::uint64_t dropped() const;
+  /// Of the first recording that could not be written to its end; empty when all are whole.
+  const std::string& failure() const { return failure_; }
   std::vector<std::string> recordings() const;
 
  private:
   // A change that waits, the one in force, and room.
   static constexpr std::size_t kSlots = 4;
 
-  void begin(RunStretch& stretch, const Scene& scene) const;
+  void begin(RunStretch& stretch, const Scene& scene, const StartReport& start);
   void record(RunStretch& stretch, const StartReport& start);
   bool wait_for(std::uint64_t change) const;
   void finish(RunStretch& stretch, const std::string& goes_on) noexcept;
@@ -76,6 +75,7 @@ class RunStretches {
   const SceneFile& file_;
   const RunSettings& settings_;
   HapticLoop& loop_;
+  RunCheck& check_;
   std::vector<std::unique_ptr<RunStretch>> stretches_;  // that were in force, and the one that will be
   RunStretch* now_;
   std::uint64_t change_ = 0;  // that now_ is of

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/proper_pose.hpp"
 #include "sim/contact_loop.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -66,8 +67,11 @@ Scene coupled_by(Scene scene, const CouplingSettings& coupling) {
 }
 
 const Scene& checked(const Scene& scene) {
-  for (const Part& p : scene.parts)
+  for (const Part& p : scene.parts) {
     if (!p.mesh || p.mesh->triangles.empty()) throw Error("part \"" + p.name + "\" has no triangles");
+    if (!proper(p.pose))
+      throw Error("part \"" + p.name + "\": its pose is not finite, not of unit length, or beyond 10 km");
+  }
   return scene;
 }
 
@@ -108,6 +112,7 @@ void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_n
 
 void RunningScene::warm_up() {
   TickReport tick;
+  reset(tick);
   loop->step(loop->pose(), 1e-3, kNoDeadline, tick);
   loop->take_over(tick, loop->pose(), nullptr, kNoDeadline);
 }

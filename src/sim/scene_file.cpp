@@ -30,11 +30,13 @@ auto about(const TomlTable& t, const char* key, F f) {
   }
 }
 
-/// The path under `key`, relative to the folder of the scene file; it must be a file.
-std::string file_under(const TomlTable& t, const char* key, const std::filesystem::path& folder) {
+/// The path under `key`, relative to the folder of the scene file; it must be a file. Added to `files`.
+std::string file_under(const TomlTable& t, const char* key, const std::filesystem::path& folder,
+                       std::vector<std::string>& files) {
   const std::filesystem::path file = folder / t.text(key);
   if (!std::filesystem::exists(file)) t.fail(key, file.string() + ": no such file");
   if (!std::filesystem::is_regular_file(file)) t.fail(key, file.string() + ": not a file");
+  files.push_back(file.string());
   return file.string();
 }
 
@@ -78,7 +80,8 @@ std::optional<Color> read_color(const TomlTable& t) {
   return color;
 }
 
-void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene) {
+void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene,
+                std::vector<std::string>& files) {
   const double default_unit = read_unit(top, "m");
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
@@ -98,7 +101,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     part.path = t.texts("path");
     part.color = read_color(t);
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
-    const std::string file = file_under(t, "mesh", folder);
+    const std::string file = file_under(t, "mesh", folder, files);
     auto& mesh = meshes[{file, unit}];
     if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(options.load(file, unit)); });
     part.mesh = mesh;
@@ -197,6 +200,7 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_toml(text, path);
   const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::vector<std::string> files = {path};
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
   read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance",
@@ -213,14 +217,14 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   const SimulatedDeviceSettings settings = read_device(device);
   std::optional<StylusScript> script;
   if (device.has("script")) {
-    const std::string script_file = file_under(device, "script", folder);
+    const std::string script_file = file_under(device, "script", folder, files);
     script = about(device, "script", [&] { return read_script(script_file); });
   }
-  read_parts(top, folder, options, scene);
+  read_parts(top, folder, options, scene, files);
   if (!script) script = rest(scene);
   scene.scale = read_scale(device);
   if (!coupling.has("torsional_stiffness")) scene.torsional_stiffness_most = torsion_bound(settings, scene.coupling);
-  return {path, std::move(scene), settings, std::move(*script), safety, std::move(text)};
+  return {path, std::move(scene), settings, std::move(*script), safety, std::move(text), std::move(files)};
 }
 
 }  // namespace tegotae

@@ -36,6 +36,12 @@ void set_pose(toml::table& t, const Pose& X) {
 
 }  // namespace
 
+std::string scene_settings(const SceneFile& file) {
+  std::ostringstream out;
+  if (!file.text.empty()) out << parse_toml(file.text, file.path);
+  return out.str();
+}
+
 std::string scene_text(const SceneFile& file, const Scene& now, const std::string& folder) {
   if (file.text.empty()) throw Error("a scene that was not read from a file cannot be written to one");
   toml::table top = parse_toml(file.text, file.path);

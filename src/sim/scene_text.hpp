@@ -11,4 +11,7 @@ namespace tegotae {
 /// which is for the part that `file` holds. Throws Error when `file` was not read from a file.
 std::string scene_text(const SceneFile& file, const Scene& now, const std::string& folder);
 
+/// Everything that the scene file sets, without its comments and its layout; empty when `file` was not read from one.
+std::string scene_settings(const SceneFile& file);
+
 }  // namespace tegotae

@@ -8,7 +8,9 @@
 #include <limits>
 #include <optional>
 
+#include "sim/fit_watch.hpp"
 #include "sim/loop_priority.hpp"
+#include "sim/run_check.hpp"
 #include "sim/run_goal.hpp"
 #include "sim/run_pen.hpp"
 #include "sim/run_stretches.hpp"
@@ -69,19 +71,28 @@ class Session {
         pen_(make_pen(file_, settings, loop_)),
         goal_(file_, loop_.center()),
         duration_(duration(file_, settings)),
-        stretches_(file_, settings, loop_) {
+        check_(settings.check_all, settings.real_time),
+        stretches_(file_, settings, loop_, check_) {
     if (settings.progress) settings.progress->duration = duration_;
+    summary_.held_fast.parts.reserve(file.scene.parts.size());
     summary_.stability = pen_->stability();
     if (settings.on_start) settings.on_start({loop_.start(), summary_.stability, torsion_text(file_.scene, loop_)});
   }
 
   RunSummary run() {
+    const std::int64_t begin = monotonic_ns();
     pen_->start();
     settings_.real_time ? run_real_time() : run_virtual_time();
     pen_->stop();
     stretches_.end();
+    check_.end(1e-9 * static_cast<double>(monotonic_ns() - begin), settings_.stop_check,
+               settings_.progress ? &settings_.progress->checked : nullptr);
+    summary_.poses = check_.poses();
+    summary_.checked = check_.checked();
+    summary_.penetrating = check_.intersecting();
     summary_.record_dropped = stretches_.dropped();
     summary_.recordings = stretches_.recordings();
+    summary_.record_failure = stretches_.failure();
     summary_.servo = pen_->statistics();
     summary_.missing_realtime = pen_->missing_realtime();
     if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
@@ -91,7 +102,6 @@ class Session {
     summary_.depth_m = goal_.depth(X_);
     summary_.completed = script_over && holds_first_ && goal_.reached(X_) && !lagging_;
     summary_.start = stretches_.start();
-    summary_.penetrating = stretches_.penetrating(settings_.progress ? &settings_.progress->checked : nullptr);
     return summary_;
   }
 
@@ -142,17 +152,19 @@ class Session {
     sequence_ = pen.state.sequence;
 
     tick_times_.add(took);
+    summary_.ignored += report.ignored ? 1 : 0;
     summary_.deepest_m = std::max(summary_.deepest_m, report.depth);
     summary_.contacts_max = std::max(summary_.contacts_max, report.contacts);
     count_lag(report);
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     RunStretch& stretch = stretches_.now();
-    for (const Pose& X : report.pieces) stretch.check.add(X, static_cast<std::uint32_t>(stretch.freed));
+    for (const Pose& X : report.pieces) stretch.check->add(X, static_cast<std::uint32_t>(stretch.freed));
     if (holds_first_) X_ = report.proxy.X;
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (stretch.recorder) record(number, t, pen, report, tick_us);
     if (settings_.observer) observe(number, t, pen, tick_us);
+    if (report.relieved > 0) watch_.look(loop_, pen.state.pose, dt, summary_.held_fast);
     if (settings_.progress) show(t, pen, report);
   }
 
@@ -165,6 +177,7 @@ class Session {
   /// Another part is held: the pen comes to mean it where it is.
   void hold(PenSample& pen) noexcept {
     const Pose& X = loop_.report().proxy.X;
+    watch_.begin(X);
     pen_->hold(loop_.center(), loop_.coupling(), X);
     pen.state.pose = X;
     pen.state.velocity = {};
@@ -215,6 +228,7 @@ class Session {
     p.force.store(pen.wrench.force.norm(), std::memory_order_relaxed);
     p.lag_reason.store(report.lag > loop_.lag_bound() ? report.lag_reason : LagReason::none, std::memory_order_relaxed);
     p.device.store(true, std::memory_order_relaxed);
+    p.held.store(watch_.held(), std::memory_order_relaxed);
   }
 
   const SceneFile file_;
@@ -223,11 +237,13 @@ class Session {
   std::unique_ptr<RunPen> pen_;
   RunGoal goal_;
   double duration_;
+  RunCheck check_;
   RunStretches stretches_;
   Pose X_ = loop_.report().proxy.X;  // of the part that the file holds
   bool holds_first_ = true;          // that part is held
   bool lagging_ = false;             // at the end of the last tick, over the bound and not for a contact
-  std::uint64_t sequence_ = 0;       // of the pen's sample that the last tick answered
+  FitWatch watch_{loop_, file_.scene};
+  std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   LatencyHistogram tick_times_;
   std::string missing_;  // of real time, for the contact loop
   RunSummary summary_;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "sim/toml_levels.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -59,6 +60,7 @@ std::string read_file(const std::string& path) {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& path) {
+  check_toml_levels(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& e) {

@@ -86,14 +86,19 @@ TEST_CASE("a run that does not arrive is a failure", "[programs]") {
   CHECK(j.at("force_max_n").get<double>() > 0.5);
 }
 
-TEST_CASE("in real time the servo runs at 1 kHz", "[programs]") {
+TEST_CASE("in real time every period of the servo is a tick or a counted miss", "[programs]") {
   const TempFolder folder;
   write_small_scene(folder);
   const json j = summary_of(run_program("tegotae", "run --json " + (folder / "scene.toml")));
-  // Counts, not latencies: the machine may be busy.
-  CHECK(j.at("seconds").get<double>() == Approx(1.1).epsilon(0.2));
-  CHECK(j.at("servo").at("rate_hz").get<double>() == Approx(1000).epsilon(0.2));
-  CHECK(j.at("ticks").get<int>() > 100);
+  // How long it takes and how many periods are missed is the machine's; that none is made twice, and that each is a
+  // tick or counted, is not.
+  const double seconds = j.at("seconds").get<double>();
+  CHECK(seconds >= 1.1);
+  CHECK(j.at("ticks").get<double>() <= 1000 * seconds + 2);
+  CHECK(j.at("ticks").get<int>() > 0);
+  const double rate = j.at("servo").at("rate_hz").get<double>(), missed = j.at("servo").at("missed").get<double>();
+  CHECK(rate <= 1001);
+  CHECK(rate * seconds + missed >= 500 * seconds);
 }
 
 TEST_CASE("the progress line is for terminals", "[programs]") {

@@ -82,3 +82,26 @@ TEST_CASE("an overlap is refused in one line; the tolerance is the scene's", "[s
   CHECK_THAT(run_program("tegotae", "run --fast " + (folder / "scene.toml")).err,
              Contains("initial_overlap") && Contains("refuse, ignore"));
 }
+
+TEST_CASE("a fit without room says which part holds, and by how much", "[start]") {
+  const TempFolder folder;
+  write_scene(folder, 5e-6, 0.02, "");
+  // A second plate on the cube, 5 um into it: between the two there is no way, and none out.
+  std::string scene = read_text(folder / "scene.toml");
+  scene.insert(scene.find("[[part]]\nname = \"post\""),
+               "[[part]]\nname = \"lid\"\nmesh = \"plate.obj\"\nposition = [0, 0, 0.01999]\n");
+  folder.write("scene.toml", scene);
+  const Output text = run_program("tegotae", "run --fast --seconds 1.5 " + (folder / "scene.toml"));
+  INFO(text.out << text.err);
+  CHECK_THAT(text.out, Contains("HELD FAST") && Contains("by lid: went ") && Contains("where its pen went "));
+  const json held =
+      json::parse(run_program("tegotae", "run --fast --json --seconds 1.5 " + (folder / "scene.toml")).out)
+          .at("held_fast");
+  CHECK(held.at("parts").dump().find("lid") != std::string::npos);
+  CHECK(held.at("moved_m").get<double>() < 50e-6);
+  CHECK(held.at("pen_m").get<double>() > 0.005);
+  // The same cube that may be lifted off says nothing of it.
+  write_scene(folder, 5e-6, 0.02, "");
+  const Output free = run_program("tegotae", "run --fast --seconds 1.5 " + (folder / "scene.toml"));
+  CHECK(free.out.find("HELD FAST") == std::string::npos);
+}

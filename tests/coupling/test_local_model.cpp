@@ -13,6 +13,7 @@ constexpr double kRadius = 0.019;  // m, coupling_radius() of the defaults is 19
 
 ContactPlanes floor_under(const Pose& X) {
   ContactPlanes planes;
+  planes.X = X;
   int i = 0;
   for (double x : {-0.01, 0.01})
     for (double y : {-0.01, 0.01})
@@ -129,6 +130,7 @@ RandomCase random_case(std::mt19937& rng, int count, double turn) {
   c.x.X = {rotation(random(1)), random(0.1)};
   c.center = random(0.02);
   const Vec3 center_W = c.x.X * c.center;
+  c.planes.X = c.x.X;
   c.planes.count = count;
   for (int i = 0; i < count; ++i)
     c.planes.planes[static_cast<std::size_t>(i)] = {random(1).normalized(), center_W + random(0.02),
@@ -224,5 +226,12 @@ TEST_CASE("without planes, or with senseless ones, the part stays", "[coupling]"
   CHECK(refused(bad, kRadius, Y));
   bad = good;
   bad.count = 7;
+  CHECK(refused(bad, kRadius, Y));
+  // Taken a micrometer, or a hair of a turn, away from where the part is.
+  bad = good;
+  bad.X.p.x() = 1e-6;
+  CHECK(refused(bad, kRadius, Y));
+  bad = good;
+  bad.X.q = rotation(Vec3(0, 0, 1e-9));
   CHECK(refused(bad, kRadius, Y));
 }

@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <thread>
 #include <vector>
 
 #include "catch.hpp"
+#include "child_process.hpp"
 #include "shm_reader.h"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/channel.hpp"
@@ -169,4 +171,46 @@ TEST_CASE("a segment that is not of this user and protocol is refused", "[device
     }
     CHECK_THROWS_WITH(Channel::attach(name), Catch::Contains("another user"));
   }
+}
+
+TEST_CASE("the memory of a segment is there before it is written", "[device]") {
+  const Channel channel = Channel::create();
+  struct stat info;
+  REQUIRE(stat(("/dev/shm" + channel.name()).c_str(), &info) == 0);
+  CHECK(info.st_size == static_cast<off_t>(sizeof(tegotae_shm_segment)));
+  CHECK(info.st_blocks * 512 >= info.st_size);
+}
+
+TEST_CASE("the segment of a killed process is removed by the next one, that of a living one stays", "[device]") {
+  const Channel living = Channel::create();
+  const auto file_of = [](const std::string& name) { return "/dev/shm" + name; };
+  std::string left;
+  {
+    test::ChildProcess child([](const auto& say) {
+      const Channel channel = Channel::create();
+      say(std::stol(channel.name().substr(channel.name().rfind('-') + 1)));
+      pause();
+    });
+    left = "/tegotae-" + std::to_string(child.pid()) + "-" + std::to_string(child.hear());
+    REQUIRE(std::filesystem::exists(file_of(left)));
+    const Channel beside = Channel::create();
+    CHECK(std::filesystem::exists(file_of(left)));  // it lives
+  }
+  REQUIRE(std::filesystem::exists(file_of(left)));
+  const Channel next = Channel::create();
+  CHECK_FALSE(std::filesystem::exists(file_of(left)));
+  CHECK(std::filesystem::exists(file_of(living.name())));
+  CHECK_NOTHROW(Channel::attach(living.name()));
+}
+
+TEST_CASE("a segment is none of the standard descriptors", "[device]") {
+  test::ChildProcess child([](const auto& say) {
+    for (int fd = 0; fd <= 2; ++fd) close(fd);
+    const Channel channel = Channel::create(), application = Channel::attach(channel.name());
+    std::int64_t used = 0;
+    for (int fd = 0; fd <= 2; ++fd) used += fcntl(fd, F_GETFD) >= 0 ? 1 : 0;
+    say(used);
+  });
+  CHECK(child.hear() == 0);
+  CHECK(child.wait() == 0);
 }

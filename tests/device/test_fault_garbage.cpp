@@ -237,7 +237,12 @@ TEST_CASE("garbage in the pen's slot moves no part through another", "[fault]") 
     std::memcpy(&pen, words, sizeof pen);
     if (i % 2 == 0) {  // a pen that can be, above and below the floor
       for (double& p : pen.position) p = std::uniform_real_distribution<double>(-0.05, 0.05)(rng);
-      for (double& q : pen.orientation) q = std::uniform_real_distribution<double>(-1, 1)(rng);
+      double length = 0;
+      for (double& q : pen.orientation) {
+        q = std::uniform_real_distribution<double>(-1, 1)(rng);
+        length = std::hypot(length, q);
+      }
+      for (double& q : pen.orientation) q /= length;
     }
     channel.write(pen);
     PenSample seen;

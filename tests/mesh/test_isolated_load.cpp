@@ -115,9 +115,8 @@ TEST_CASE("a helper that dies, hangs or lies is an error", "[isolated]") {
   CHECK(contains(refusal(file, {program("noise", "head -c 1000 /dev/urandom >&3")}), "another version"));
   CHECK(contains(refusal(file, {program("partial", "printf 1TEGMSH1 >&3")}), "ended with code 0"));
 
-  const std::int64_t begin = monotonic_ns();
-  CHECK(contains(refusal(file, {program("sleep", "exec sleep 100"), 0.3}), "not loaded within 0.3 s"));
-  CHECK(1e-9 * static_cast<double>(monotonic_ns() - begin) < 60);
+  // Were it waited for, the test would take too long for its own bound.
+  CHECK(contains(refusal(file, {program("sleep", "exec sleep 1000000"), 0.3}), "not loaded within 0.3 s"));
 
   CHECK(contains(refusal(file, {kHelper, -1}), "time"));
   CHECK(contains(refusal(file, {kHelper, 1, 0}), "memory"));

@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +15,7 @@
 #include <thread>
 
 #include "catch.hpp"
+#include "child_process.hpp"
 #include "record/random_frames.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recorder.hpp"
@@ -172,4 +175,44 @@ TEST_CASE("a killed process leaves whole rows, but for the last one", "[record]"
   if (text.back() != '\n') lines.pop_back();
   REQUIRE(lines.size() > 100);
   for (std::size_t i = 1; i < lines.size(); ++i) REQUIRE(split(lines[i]).size() == 27);
+}
+
+TEST_CASE("a limit of size or a reader that goes kills nobody, whatever the program does about signals", "[record]") {
+  const bool mcap = GENERATE(false, true), threaded = GENERATE(false, true), pipe = GENERATE(false, true);
+  const TemporaryFile file;
+  const std::string path = file.path + (mcap ? ".mcap" : ".csv");
+  test::ChildProcess child([&](const auto& say) {
+    std::signal(SIGXFSZ, SIG_DFL);
+    std::signal(SIGPIPE, SIG_DFL);
+    int reader = -1;
+    if (pipe) {
+      if (mkfifo(path.c_str(), 0600) != 0) return;
+      reader = open(path.c_str(), O_RDONLY | O_NONBLOCK);
+    } else {
+      const rlimit limit{50'000, 50'000};
+      setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    Recorder recorder(path, threaded ? RecordMode::threaded : RecordMode::synchronous);
+    if (pipe) close(reader);
+    std::mt19937_64 rng(3);
+    for (int i = 0; i < 2000; ++i) recorder.push(random_frame(rng));
+    try {
+      recorder.close();
+      say(0);
+    } catch (const Error& e) {
+      const std::string text = e.what();
+      say(text.find(pipe ? "Broken pipe" : "File too large") != text.npos && text.find("of 2000 rows") != text.npos);
+    }
+    // The mask is as it was, and nothing waits to be delivered.
+    sigset_t set;
+    pthread_sigmask(SIG_SETMASK, nullptr, &set);
+    const bool blocked = sigismember(&set, SIGPIPE) == 1 || sigismember(&set, SIGXFSZ) == 1;
+    sigpending(&set);
+    say(blocked || sigismember(&set, SIGPIPE) == 1 || sigismember(&set, SIGXFSZ) == 1);
+  });
+  CAPTURE(mcap, threaded, pipe);
+  CHECK(child.hear() == 1);
+  CHECK(child.hear() == 0);
+  CHECK(child.wait() == 0);
+  std::filesystem::remove(path);
 }

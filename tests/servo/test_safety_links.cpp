@@ -3,6 +3,7 @@
 #include <random>
 
 #include "catch.hpp"
+#include "core/proper_pose.hpp"
 #include "servo/safety_links.hpp"
 
 using namespace tegotae;
@@ -37,6 +38,8 @@ TEST_CASE("a pose is proper when it is finite and its quaternion has length one"
   CHECK_FALSE(proper(bad));
   bad = Pose();
   bad.p.y() = std::numeric_limits<double>::infinity();
+  CHECK_FALSE(proper(bad));
+  bad.p.y() = -2 * kFarthest;
   CHECK_FALSE(proper(bad));
 }
 

@@ -187,6 +187,7 @@ TEST_CASE("a servo tick allocates nothing", "[servo]") {
       ProxyState x = touching_at(Vec3(0.001, 0, 0));
       x.touching = i % 200 < 150;
       planes.count = i % 7;
+      planes.X = x.X;
       planes.pen = pen.state.pose;
       for (int k = 0; k < planes.count; ++k)
         planes.planes[static_cast<std::size_t>(k)] = {Vec3::UnitX(), Vec3(0, 0.01 * k, 0.01 * (k % 3)), 0};

@@ -116,7 +116,10 @@ void print(const char* name, const Ticks& t) {
 TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   constexpr int kTicks = 20'000;
   const TempFolder small_folder, folder;
-  HapticLoop small_loop(load_scene(write_grid(small_folder, 100, 71, 10)).scene);
+  const std::string small_path = write_grid(small_folder, 100, 71, 10);
+  const double small_before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+  HapticLoop small_loop(load_scene(small_path).scene);
+  const double small_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - small_before;
 
   const std::string path = write_grid(folder, 100, 71, 20);
   const double before = seconds(CLOCK_PROCESS_CPUTIME_ID), wall = seconds(CLOCK_MONOTONIC);
@@ -128,7 +131,7 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   std::printf("%zu parts, %.1f million triangles: ready in %.1f s of CPU time (%.1f s on the clock), peak %.2f GB\n",
               file.scene.parts.size(), 1e-6 * static_cast<double>(triangles), cpu_s, wall_s, peak_gigabytes());
   REQUIRE(triangles > 19'000'000);
-  CHECK(cpu_s < 20);
+  CHECK(cpu_s < 4 * small_s);  // twice the parts of the same few meshes
   // By turns and the best of two: other work on the machine takes caches and clock rate, not just time.
   Ticks small{}, large{};
   for (int turn = 0; turn < 2; ++turn) {
@@ -140,7 +143,7 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
   // As many triangles near, so the same but for noise.
   CHECK(large.median_us < 1.3 * small.median_us);
   CHECK(large.p99_us < 1.5 * small.p99_us);
-  CHECK(1000 * large.late <= kTicks);
+  CHECK(large.late <= 2 * small.late + kTicks / 1000);
 
   // Parts go and come back while the rod is moved.
   std::atomic<bool> over{false};
@@ -179,6 +182,6 @@ TEST_CASE("20 million instanced triangles load, run and change", "[assembly]") {
               change_s[change_s.size() / 2], static_cast<unsigned long long>(loop.change_in_force()), refused,
               peak_gigabytes());
   CHECK(loop.change_in_force() > 0);
-  CHECK(1000 * changing.late <= 5 * kTicks);
+  CHECK(changing.late <= 5 * (2 * large.late + kTicks / 1000));
   CHECK(peak_gigabytes() < 3);
 }

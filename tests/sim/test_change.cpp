@@ -28,6 +28,8 @@ constexpr bool kSanitized = true;  // too slow for any budget
 constexpr bool kSanitized = false;
 #endif
 
+constexpr double kLong = 0.9e-3;  // s of CPU time, budget and 0.1 ms
+
 const auto kBlock = shared(box(Vec3(0.02, 0.02, 0.02)));
 const auto kBoard = shared(box(Vec3(0.2, 0.2, 0.01)));
 
@@ -268,6 +270,24 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   first.contact.tick_budget = 0.8e-3;
   HapticLoop loop(first);
 
+  // A pen that swings through boards and posts.
+  const auto pen = [](std::uint64_t tick) -> Pose {
+    const double t = 1e-3 * static_cast<double>(tick);
+    return {rotation(Vec3(0.3 * std::sin(3 * t), 0.4 * std::sin(5 * t), 0.2 * std::sin(7 * t))),
+            Vec3(0.04 * std::sin(6 * t), 0.01 * std::sin(4 * t), 0.04 * std::sin(9 * t))};
+  };
+  // How many ticks of 20 000 take long on this machine where nothing changes.
+  constexpr std::uint64_t kAlone = 20'000;
+  std::uint64_t late_alone = 0;
+  {
+    HapticLoop alone(scenes[4]);
+    for (std::uint64_t i = 0; i < kAlone; ++i) {
+      const double begin = thread_seconds();
+      alone.step(pen(i), 1e-3);
+      late_alone += thread_seconds() - begin > kLong ? 1 : 0;
+    }
+  }
+
   std::atomic<bool> over{false};
   std::mutex mutex;  // of X and the scenes that were accepted, by number
   Pose lately;
@@ -303,10 +323,7 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   poses.reserve(kMostPoses);
   std::uint64_t allocations = 0, changes = 0, ticks = 0, late = 0;
   for (; changes < kChanges && ticks < kMostTicks && poses.size() < kMostPoses - 100; ++ticks) {
-    // A pen that swings through boards and posts.
-    const double t = 1e-3 * static_cast<double>(ticks);
-    const Pose Y = {rotation(Vec3(0.3 * std::sin(3 * t), 0.4 * std::sin(5 * t), 0.2 * std::sin(7 * t))),
-                    Vec3(0.04 * std::sin(6 * t), 0.01 * std::sin(4 * t), 0.04 * std::sin(9 * t))};
+    const Pose Y = pen(ticks);
     const std::uint64_t before = loop.change_in_force();
     const double begin = thread_seconds();
     {
@@ -314,7 +331,7 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
       loop.step(Y, 1e-3);
       if (ticks > 100) allocations += guard.count();
     }
-    late += thread_seconds() - begin > 0.9e-3 ? 1 : 0;
+    late += thread_seconds() - begin > kLong ? 1 : 0;
     const std::uint64_t now = loop.change_in_force();
     changes += now != before ? 1 : 0;
     for (const Pose& X : loop.report().pieces) poses.push_back({now, X});
@@ -340,5 +357,6 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   CHECK(changes == kChanges);
   CHECK(intersecting == 0);
   CHECK(allocations == 0);
-  if (!kSanitized) CHECK(1000 * late <= ticks);
+  // A change takes no more of a tick than a share of its budget: ticks are late as without, and one in a thousand more.
+  if (!kSanitized) CHECK(late <= ticks / 1000 + 2 * late_alone * (ticks / kAlone + 1));
 }

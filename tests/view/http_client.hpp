@@ -55,6 +55,7 @@ class Served {
   }
   void interrupt() const { ::kill(child_, SIGINT); }
   std::string out() const { return read_text(folder_ / "out"); }
+  std::string err() const { return read_text(folder_ / "err"); }
   std::string host() const { return "127.0.0.1:" + std::to_string(port); }
 
   int port = 0;

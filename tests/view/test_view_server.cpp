@@ -82,3 +82,56 @@ TEST_CASE("a page sees the force, the tick times and the servo's lateness of ano
   check_end(s);
   CHECK(device.end(SIGINT) == 0);
 }
+
+TEST_CASE("strangers who keep hundreds of connections do not keep the page from who has the token") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  const std::string request = text_of(get(s, "/scene"));
+  std::vector<std::unique_ptr<Connection>> strangers;
+  // Silent ones, and some that begin a request and never end it.
+  for (int i = 0; i < 300; ++i) {
+    strangers.push_back(std::make_unique<Connection>(s.port, 0, 100));
+    if (i % 3 == 0) strangers.back()->send(request.substr(0, static_cast<std::size_t>(i % 60)));
+  }
+  // Many times ten seconds, were each of them waited for by one of twenty threads.
+  for (int i = 0; i < 3; ++i) CHECK(ask(s.port, get(s, "/scene")) == 200);
+  Watcher watcher(s);
+  CHECK(watcher.next() >= 0);
+  for (int i = 0; i < 100; ++i) strangers.push_back(std::make_unique<Connection>(s.port, 0, 100));
+  // Who has brought the token is not taken for one of them, and the end waits for nobody.
+  long last = watcher.next();
+  for (int i = 0; i < 60; ++i) {
+    const long tick = watcher.next();
+    CHECK(tick > last);
+    last = tick;
+  }
+  check_end(s);
+}
+
+TEST_CASE("nobody without the token is answered, whatever is asked for") {
+  Served s({"peg_in_hole", "--view", "--json"});
+  for (const char* method : {"OPTIONS", "HEAD", "PUT", "TRACE", "GET"}) {
+    CAPTURE(method);
+    const Connection connection(s.port);
+    connection.send(std::string(method) + " /command HTTP/1.1\r\nHost: " + s.host() +
+                    "\r\nOrigin: http://elsewhere\r\nAccess-Control-Request-Method: POST\r\n"
+                    "Access-Control-Request-Headers: X-Tegotae-Token\r\nContent-Length: 0\r\n\r\n");
+    const std::string answer = connection.receive();
+    INFO(answer);
+    CHECK(answer.rfind("HTTP/1.1 4", 0) == 0);
+    CHECK(answer.find("Access-Control-Allow") == std::string::npos);
+  }
+  check_going_on(s);
+  check_end(s);
+}
+
+TEST_CASE("a page that is open to other machines says so, and where it is for them") {
+  Served s({"peg_in_hole", "--view", "--view-address", "0.0.0.0", "--json"});
+  check_going_on(s);
+  check_end(s);
+  CHECK(s.err().find("warning: Anybody who can reach this machine") != std::string::npos);
+  CHECK(s.err().find("http://0.0.0.0") == std::string::npos);
+  Served own({"peg_in_hole", "--view", "--json"});
+  check_going_on(own);
+  check_end(own);
+  CHECK(own.err().find("warning") == std::string::npos);
+}

@@ -13,7 +13,8 @@ enum class LagReason : std::uint8_t {
   time = 2,      ///< the tick's time, or the work of one tick, ended first; the part goes on in the next tick
   capacity = 3,  ///< time was left, but no motion could be proved free and no contact is in the way: a capacity of the
                  ///< certificate was used up
-  suspended = 4  ///< the tick did not follow the pen: its pose was not finite, or another part has just been taken up
+  suspended = 4  ///< the tick did not follow the pen: its pose was not one that a pen can have, or another part has
+                 ///< just been taken up
 };
 
 inline constexpr int kLagReasons = 5;

@@ -20,7 +20,11 @@ struct ContactPlanes {
   static constexpr int kMost = 6;          ///< degrees of freedom of a free body
   std::array<ContactPlane, kMost> planes;  ///< the first `count` of them hold
   int count = 0;                           ///< 0: nothing is known, X stays where it is until the next tick
+  Pose X;                                  ///< of the held part's file frame, where they were taken
   Pose pen;                                ///< Y that the tick answered
+
+  /// Whether they were taken at `pose`, bit for bit: planes of another pose would pull the part where no contact is.
+  bool taken_at(const Pose& pose) const noexcept { return X.p == pose.p && X.q.coeffs() == pose.q.coeffs(); }
 };
 
 }  // namespace tegotae

@@ -42,7 +42,8 @@ class ChannelReader {
 class Channel : public ChannelReader {
  public:
   /// Creates a segment that only this user may open; an empty name chooses one that is unique to this process. A
-  /// segment that a dead process left is replaced, that of a living one refused. It is removed when the Channel goes.
+  /// segment that a dead process left is replaced, that of a living one refused; segments with chosen names that killed
+  /// processes left are removed. It is removed when the Channel goes.
   /// Throws Error with the cause.
   static Channel create(const std::string& name = {});
   /// Attaches an application; a segment has one at a time. Throws Error as ChannelReader::open does, and when another

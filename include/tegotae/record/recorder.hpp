@@ -19,6 +19,9 @@ enum class RecordMode {
 /// Writes a recording: MCAP when the path ends in .mcap, otherwise CSV with its info in a file beside it
 /// (recording_info_path). Numbers are written so that reading them gives the same bits, whatever the locale.
 ///
+/// No failed write ends the process (a pipe without a reader, a limit of size, a full disk) or waits for longer than
+/// two seconds (a pipe whose reader does not read); what comes after the first is dropped, and close() tells.
+///
 /// Only whole rows or chunks are handed to the system. A killed process leaves a recording that can be read to its last
 /// row or chunk; what it loses are the last 10 ms (CSV, threaded), 64 KB (CSV, synchronous) or 256 KB (MCAP, some 0.3
 /// s).
@@ -35,7 +38,7 @@ class Recorder {
   /// and counted. After a failed write it does nothing; close() tells.
   void push(const RecordFrame& frame) noexcept;
   /// Writes what is left and closes. `goes_on` is added to the info (RecordingInfo::goes_on). Throws Error naming the
-  /// path and the cause of the first failed write.
+  /// path, the cause of the first failed write, and how many rows were written before it.
   void close(const std::string& goes_on = {});
 
   std::uint64_t rows() const noexcept;     ///< rows taken by push()

@@ -39,7 +39,8 @@ class ContactLink {
   /// The newest sample of the pen; false and `pen` untouched before the servo's first tick.
   bool read(PenSample& pen) const noexcept;
   /// Tells the servo the proxy that answers the pen's sample `device_sequence`, and the commands below. `now_ns` is the
-  /// heartbeat: of the servo's clock, that is monotonic_ns() or the caller's virtual time.
+  /// heartbeat: of the servo's clock, that is monotonic_ns() or the caller's virtual time. `planes` that were taken at
+  /// another pose than `proxy.X` are not told.
   void publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence, std::int64_t now_ns,
                const ContactPlanes& planes = {}) noexcept;
 

@@ -41,6 +41,7 @@ struct TickReport {
   int suspended = 0;      ///< pairs that overlapped at the start and have not come free: nothing keeps them apart
   int relieved = 0;       ///< pairs that touched at the start and have not come free (StartPair::relief)
   bool overflow = false;  ///< a capacity was exceeded; the motion is still free
+  bool ignored = false;   ///< the pen's pose or the time was out of range (see HapticLoop::step) and left out
   /// How far X is behind the pen after the tick: distance of the two centers of mass plus the held part's radius times
   /// the angle between them, m.
   double lag = 0;
@@ -65,17 +66,21 @@ constexpr double lag_bound(double radius) {
 /// start() names.
 class HapticLoop {
  public:
-  /// Builds everything a tick needs. Throws Error when the scene cannot be held: not exactly one held part, an unusable
-  /// setting, an unknown resolver, or parts that overlap at the start (the message names the pair, depth and place; see
-  /// ContactSettings::initial_overlap). Where parts only touch, the held part may start a few micrometers beside its
-  /// pose in the scene: see start().
+  /// Builds everything a tick needs. Throws Error when the scene cannot be held: not exactly one held part, a pose or
+  /// setting that cannot be used, an unknown resolver, or parts that overlap at the start (the message names the pair,
+  /// depth and place; see ContactSettings::initial_overlap). Where parts only touch, the held part may start a few
+  /// micrometers beside its pose in the scene: see start().
   explicit HapticLoop(const Scene& scene);
   ~HapticLoop();
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;
 
   /// One tick: `Y` is where the pen wants the held part's file frame, `dt` the time since the last tick (s). Never
-  /// throws; a pose that is not finite is ignored (X stays). The report is valid until the next call.
+  /// throws. The report is valid until the next call.
+  ///
+  /// Taken are poses that are finite, of unit length (within 5e-4) and no farther than 10 km from the origin in any
+  /// coordinate; for another one the last pose that was taken stands in. Times are 0 (nothing has a velocity then) or
+  /// from a microsecond on; for another one 0 stands in. TickReport::ignored tells both.
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
   /// Goes on in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be

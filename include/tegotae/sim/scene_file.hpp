@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/device/script.hpp"
@@ -20,6 +21,8 @@ struct SceneFile {
   StylusScript script;             ///< what the operator's hand does
   SafetySettings safety{};         ///< of the servo in this process; a device in another one has its own
   std::string text{};              ///< of the file, as it was read
+  /// All that was read: the file itself, the meshes and the script that it names. A recording replaces none of them.
+  std::vector<std::string> files{};
 };
 
 /// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.

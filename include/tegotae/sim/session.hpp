@@ -27,7 +27,8 @@ struct RunProgress {
   std::atomic<double> force{0};                        ///< N
   std::atomic<LagReason> lag_reason{LagReason::none};  ///< of the newest tick; none while the lag is under its bound
   std::atomic<bool> device{true};                      ///< the device is there
-  std::atomic<double> checked{-1};  ///< after the last tick: share of the poses that FCL was asked about; before: < 0
+  std::atomic<bool> held{false};    ///< parts of a fit without room hold it where it started (HeldFast)
+  std::atomic<double> checked{-1};  ///< after the last tick: share of the rest of the check (RunSummary::checked); < 0
 };
 
 /// A tick of the contact loop, for whoever looks on.
@@ -103,6 +104,18 @@ struct RunSettings {
   const HandGuide* guide = nullptr;               ///< leads the simulated hand away from the script
   std::function<void(const RunStart&)> on_start;  ///< told before the first tick
   const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording is kept
+  /// The check of the committed poses with FCL goes on beside the run, and after it for a quarter of the time that the
+  /// run took, or two seconds; in real time it takes a quarter of one processor. true: until all are checked.
+  bool check_all = false;
+  const std::atomic<bool>* stop_check = nullptr;  ///< set it to end the check as it is; null: only its time ends it
+};
+
+/// That a held part stood where it started for half a second although its pen had gone more than a millimeter, and ten
+/// times as far as the part: a fit without room holds it.
+struct HeldFast {
+  std::vector<std::size_t> parts;  ///< relieved parts (StartPair) that it touched then; index into Scene::parts
+  double moved = 0;                ///< how far the held part had gone, its farthest point, m
+  double pen = 0;                  ///< how far the pen had, m
 };
 
 /// How the held part lagged behind the pen in a run.
@@ -126,10 +139,13 @@ struct RunSummary {
   double depth_m = 0;
   int contacts_max = 0;  ///< most TickReport::contacts of a tick
   LagSummary lag;        ///< how far it was behind the pen, and why
-  /// Committed poses that intersect a fixed part, asked again of FCL after the run; of more than 20 000 different poses
-  /// an evenly spread part is asked. Pairs that `start` names do not count until they have come free.
+  /// Of the `checked` poses, how many intersect a fixed part, by FCL. Pairs that `start` names do not count until they
+  /// have come free.
   std::int64_t penetrating = 0;
+  std::int64_t checked = 0;  ///< committed poses that FCL was asked about, spread over the run (RunSettings::check_all)
+  std::int64_t poses = 0;    ///< different poses that were committed
   StartReport start;       ///< what the held part touched or overlapped at the start, as it was at the end or a change
+  HeldFast held_fast;      ///< the last time that it was so; no parts: never
   double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;  ///< time a tick of the contact loop takes
   ServoStatistics servo;   ///< in virtual time only the number of ticks
@@ -138,7 +154,9 @@ struct RunSummary {
   double force_max_n = 0;        ///< largest rendered force, N
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
   std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
+  std::int64_t ignored = 0;          ///< ticks whose pen pose was out of range (TickReport::ignored)
   std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
+  std::string record_failure;        ///< why a recording is not whole, and what it has; empty: all are
   std::vector<std::string> recordings;  ///< their paths: one, and one more for each change of the scene
 };
 
@@ -150,7 +168,9 @@ inline constexpr double kSettleTime = 0.5;
 /// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
 /// script and build give the same recording byte for byte.
 ///
-/// Throws Error when the scene cannot be held (see HapticLoop) or the recording cannot be written.
+/// Throws Error when the scene cannot be held (see HapticLoop), the recording cannot be begun, or it would replace a
+/// file that the scene was read from (SceneFile::files). A recording that fails later ends nothing: the run goes on,
+/// and the summary says what was lost.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);
 
 }  // namespace tegotae

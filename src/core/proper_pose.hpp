@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cmath>
+
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae {
+
+/// Nothing that a hand moves is farther from the origin in any coordinate (m); beyond, a pose would lose its
+/// micrometers. HapticLoop::step tells users this figure.
+inline constexpr double kFarthest = 1e4;
+
+/// Finite, and no coordinate beyond kFarthest.
+inline bool within_reach(const Vec3& p) noexcept {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest;
+}
+
+/// Within reach, and the quaternion of unit length up to rounding.
+inline bool proper(const Pose& pose) noexcept {
+  constexpr double kUnitTolerance = 1e-3;  // of the squared length
+  return within_reach(pose.p) && std::abs(pose.q.squaredNorm() - 1) < kUnitTolerance;
+}
+
+}  // namespace tegotae

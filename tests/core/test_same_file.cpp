@@ -1,0 +1,44 @@
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
+#include "tegotae/core/error.hpp"
+
+using namespace tegotae;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+TEST_CASE("a file is the same under every name", "[core]") {
+  const test::TempFolder folder;
+  folder.write("a", "text");
+  fs::create_symlink("a", folder / "soft");
+  fs::create_hard_link(folder / "a", folder / "hard");
+  fs::create_directory_symlink(".", folder / "here");
+  for (const char* name : {"a", "./a", "soft", "hard", "here/a", "here/./a"}) {
+    CAPTURE(name);
+    CHECK_THROWS_WITH(refuse_to_replace(folder / name, {folder / "x", folder / "a"}), Contains("would be replaced"));
+  }
+  folder.write("b", "text");  // the same content is another file
+  CHECK_NOTHROW(refuse_to_replace(folder / "b", {folder / "a", "", folder / "absent"}));
+  CHECK_NOTHROW(refuse_to_replace("", {folder / "a"}));
+  CHECK_NOTHROW(refuse_to_replace("/dev/null", {"/dev/null"}));
+  // Files that are not there yet are where they would be.
+  CHECK_THROWS_WITH(refuse_to_replace({folder / "n", folder / "here/n"}, {}), Contains("written twice"));
+  CHECK_NOTHROW(refuse_to_replace({folder / "n", folder / "m", "", ""}, {folder / "a"}));
+}
+
+TEST_CASE("a file is written whole or said not to be", "[core]") {
+  const test::TempFolder folder;
+  write_file(folder / "a", "one");
+  CHECK(test::read_text(folder / "a") == "one");
+  replace_file(folder / "a", "two");
+  CHECK(test::read_text(folder / "a") == "two");
+  CHECK_FALSE(fs::exists(folder / "a.partial"));
+  CHECK_THROWS_WITH(write_file("/dev/full", "one"), Contains("/dev/full: cannot be written: No space left"));
+  CHECK_THROWS_WITH(write_file(folder / "no/a", "one"), Contains("No such file"));
+  CHECK_THROWS_WITH(replace_file(folder / "no/a", "one"), Contains("No such file"));
+}

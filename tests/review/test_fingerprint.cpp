@@ -1,0 +1,69 @@
+// What makes two calls of `tegotae try` the same task.
+#include <set>
+
+#include "apps/run_program.hpp"
+#include "catch.hpp"
+#include "tegotae/sim/scene_file.hpp"
+#include "tries/try_table.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+/// A cube of 10 mm over a floor cube, and a roof beside it.
+std::string write_scene(const TempFolder& folder) {
+  folder.write(
+      "cube.obj",
+      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
+               "[[part]]\nname = \"roof\"\nmesh = \"cube.obj\"\nposition = [0.02, 0, 0.04]\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.03]\n");
+  return folder / "scene.toml";
+}
+
+}  // namespace
+
+TEST_CASE("every setting that a scene file knows makes another task, and how it is written does not") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder), text = read_text(scene);
+  const Pose goal{Quat::Identity(), Vec3(0, 0, 0.01002)};
+  const auto print = [&](const std::string& more, std::uint64_t seed = 1, double seconds = 6) {
+    folder.write("scene.toml", text + more);
+    return tries::fingerprint(tries::make_task(load_scene(scene), goal, seed, seconds));
+  };
+  const std::string plain = print("");
+  CHECK(print("") == plain);
+  CHECK(print("\n# a comment\n\n") == plain);
+  std::set<std::string> prints = {plain, print("", 2), print("", 1, 7)};
+  const char* const settings[] = {"[safety]\nforce_slew = 20\n",
+                                  "[safety]\ntorque_slew = 1\n",
+                                  "[safety]\nvelocity_limit = 0.02\n",
+                                  "[safety]\nforce_limit = 2\n",
+                                  "[safety]\ntorque_limit = 0.1\n",
+                                  "[safety]\ncontinuous_force = 0.5\n",
+                                  "[safety]\nheartbeat_timeout = 0.5\n",
+                                  "[device]\nscale = 2\n",
+                                  "[device]\nhand = { stiffness = 40 }\n",
+                                  "[device]\nhand = { damping = 3 }\n",
+                                  "[device]\nhand = { mass = 2.0 }\n",
+                                  "[contact]\nl_min = 1e-5\n",
+                                  "[contact]\ndensity = 100\n",
+                                  "[contact]\nresolver = \"lp\"\n",
+                                  "[contact]\nnarrowphase = \"fcl\"\n",
+                                  "[contact]\ntouch_tolerance = 2e-5\n",
+                                  "[contact]\ninitial_overlap = \"ignore\"\n",
+                                  "[contact]\ntick_budget = 1e-3\n",
+                                  "[contact]\nimpulse = { restitution = 0.1 }\n",
+                                  "[contact]\nimpulse = { substep = 1e-5 }\n",
+                                  "[contact]\npenalty = { stiffness = 100 }\n",
+                                  "[contact]\npenalty = { damping = 1 }\n",
+                                  "[coupling]\nstiffness = 700\n",
+                                  "[coupling]\ndamping = 4\n",
+                                  "[coupling]\ntorsional_stiffness = 0.2\n",
+                                  "[coupling]\ntorsional_damping = 0.003\n"};
+  for (const char* setting : settings) prints.insert(print(setting));
+  CHECK(prints.size() == 3 + std::size(settings));
+}
