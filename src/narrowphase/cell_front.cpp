@@ -12,7 +12,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSumSlack = 1e-9, kLengthSlack = 1e-11;
 /// Normals are kept in single precision: a gap along one is no more than this part too long.
 constexpr double kUnit = 1 - 1e-6;
-/// What is farther from a piece than this part of its size, or so many motions, needs no plane.
+/// What is farther from a piece than this part of its width, or so many motions, needs no plane.
 constexpr double kWantedShare = 0.3, kWantedMotions = 4;
 /// The pieces of B that a cell lists are enough for a new search while the rest is this part of that away.
 constexpr double kKnownShare = 0.3;
@@ -133,6 +133,7 @@ MovingHull CellFront::hull(const Node& node, const Sweep& sweep) const {
     out.end = Hull::triangle(end);
     const Vec3 middle = out.start.middle();
     for (const Vec3& v : start) out.radius = std::max(out.radius, (v - middle).norm());
+    out.width = out.radius;
     return out;
   }
   const PatchNode& n = a_->nodes()[node.a];
@@ -150,6 +151,7 @@ MovingHull CellFront::hull(const Node& node, const Sweep& sweep) const {
   out.end = Hull::box(sweep.end.R * c + sweep.end.t, end, half);
   out.radius = std::sqrt(half2) / kUnit;
   out.reach = c.norm() + out.radius;
+  out.width = half[1];
   return out;
 }
 
@@ -160,7 +162,7 @@ double CellFront::radius(const Node& node) const {
 }
 
 double CellFront::wanted(const MovingHull& a) const {
-  return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.radius});
+  return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.width});
 }
 
 void CellFront::collect_due() {

@@ -61,6 +61,7 @@ struct MovingHull {
   Hull start, end;
   double reach = 0;   ///< largest distance of a point of it from A's center of mass, m
   double radius = 0;  ///< largest distance of a point of it from its middle, m
+  double width = 0;   ///< of a box half its second extent, m: a long strip is as good as a short one
 };
 
 /// Where a piece of A's surface may be without meeting B: above every plane, n · x >= offset, which has all of B that

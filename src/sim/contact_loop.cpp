@@ -251,29 +251,30 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   const Pose goal = turn > most_turn_ ? displaced(X_, center_, error) : Y;
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
-  bool found = false;
-  for (int i = 0; i < kMostResolves && !found; ++i) {
+  bool free = false;
+  for (int i = 0; i < kMostResolves; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
       held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
       return 0;
     }
-    found = is_free(trial, report);
-    if (found) break;
+    free = is_free(trial, report);
+    if (free) break;
     if (blocking_.empty() || late()) {
       // Out of time or work: what is proved of the motion is made, the rest is for the next tick.
       trust_ = 0.5 * std::min(trust_, size(trial.d));
       scale(trial, at_.check->free_share());
       if (!(size(trial.d) > kRest)) return 0;
       trust_ = std::max(trust_, size(trial.d));
+      free = true;
       break;
     }
     if (at_.contacts->seed(blocking_, at_.check->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
         at_.contacts->cut(blocking_, trial.d, kGapFloor, deadline_ns_) == 0)
       break;
   }
-  if (!found && !blocking_.empty() && !late()) {
+  if (!free) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }

@@ -41,7 +41,7 @@ Scene inflated(Scene scene, const Vec3& size) {
 /// A pen, a servo whose chain lets the wrench change at once, and a contact loop, in virtual time.
 struct Hand {
   explicit Hand(const Scene& scene)
-      : loop(scene), link(channel, scene.coupling, loop.center(), loop.gyration()), servo(device, channel, settings()) {
+      : loop(scene), link(channel, loop.coupling(), loop.center()), servo(device, channel, settings()) {
     device.state.pose = loop.latest();
   }
   static ServoSettings settings() {
