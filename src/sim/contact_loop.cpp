@@ -257,18 +257,25 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (size(trial.d) < kRest) {
       held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
+      if (cutting()) {
+        // Planes for one motion hold it, and no surface: the next tick tries a shorter one, without them.
+        trust_ = 0.25 * std::min(trust_, cap);
+        tracked_ = false;
+      }
       return 0;
     }
     free = is_free(trial, report);
     if (free) break;
-    if (blocking_.empty() || late()) {
+    if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
       // Out of time or work: what is proved of the motion is made, the rest is for the next tick.
-      trust_ = 0.5 * std::min(trust_, size(trial.d));
       scale(trial, at_.check->free_share());
-      if (!(size(trial.d) > kRest)) return 0;
-      trust_ = std::max(trust_, size(trial.d));
+      trust_ = std::max(0.5 * trust_, size(trial.d));
       free = true;
       break;
+    }
+    if (late()) {
+      trust_ = 0.5 * std::min(trust_, size(trial.d));
+      return 0;
     }
     if (at_.contacts->seed(blocking_, at_.check->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
         at_.contacts->cut(blocking_, trial.d, kGapFloor, deadline_ns_) == 0)

@@ -60,6 +60,7 @@ void lead(const Loop& loop, ContactPlanes planes, const CouplingSettings& k, con
   for (int i = 0; i <= kSteps && known; ++i) {
     const Pose Y = displaced(X, center, loop.at(static_cast<double>(i % kSteps) / kSteps));
     planes.pen = Y;
+    planes.X = X;
     ProxyState x;
     x.X = X;
     known = model.update(planes, radius, center, Y, {}, x);

@@ -6,7 +6,7 @@
 using namespace tegotae;
 
 /// docs/device-protocol.md: a contact loop of one's own.
-void own_contact_loop(const Scene& scene, HapticLoop& loop, double dt, std::uint64_t ticks) {
+void own_contact_loop(HapticLoop& loop, double dt, std::uint64_t ticks) {
   Attachment pen("shm:tegotae-pen", loop.coupling(), loop.center());
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     PenSample sample;

@@ -24,7 +24,7 @@ SceneFile two_parts() {
   const std::string bytes = mesh_seeds("obj").front().bytes;
   const std::string path = write_input("tet.obj", bytes.data(), bytes.size());
   const auto mesh = std::make_shared<const TriangleMesh>(load_mesh(path, 1.0));
-  SceneFile file{"two.toml", {}, {}, StylusScript({{0.0, Pose{}}}), {}, 1};
+  SceneFile file{"two.toml", {}, {}, StylusScript({{0.0, Pose{}}})};
   for (std::size_t i = 0; i < kParts; ++i) {
     Part part;
     part.name = "part " + std::to_string(i);

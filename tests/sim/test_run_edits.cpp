@@ -166,7 +166,7 @@ TEST_CASE("a change that cannot be recorded changes nothing", "[change]") {
   changer.join();
   CHECK_THAT(error, Contains("run.2.csv"));
   CHECK(kept);
-  CHECK_THAT(other_error, Contains("run.2.toml: is the scene that runs"));
+  CHECK_THAT(other_error, Contains("run.2.toml: would be replaced, but is read"));
   CHECK(looker.went_over == 0);
   CHECK(summary.recordings == std::vector<std::string>{folder / "run.csv"});
   CHECK_FALSE(std::filesystem::exists(folder / "run.2.toml"));
