@@ -1,6 +1,7 @@
 #include "narrowphase/cell_front.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,8 +19,15 @@ constexpr double kWantedShare = 0.3, kWantedMotions = 4;
 constexpr double kKnownShare = 0.3;
 /// Cells looked at between two looks at the clock; nodes of B that count as one search.
 constexpr int kClockStride = 32, kVisitsPerSearch = 8;
-/// So many cells that allow least of the motion are looked at first. When they find what blocks, the rest may wait.
+/// So many cells that allow least of the motion are looked at in any case.
 constexpr std::ptrdiff_t kFirst = 64;
+/// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times.
+constexpr int kGrades = 24;
+
+int grade(double share) {
+  return share > 0 ? std::clamp(kGrades - 1 + std::ilogb(share), 0, kGrades - 1) : 0;
+}
+
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
 constexpr int kFewestRaises = 4, kSearchesPerRaise = 3, kMostLooks = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the
@@ -46,6 +54,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       asked_(fixed_.size(), 0),
       sweeps_(fixed_.size()),
       stamped_(fixed_.size(), 0),
+      unsorted_(capacity),
       due_(capacity) {
   for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
   stack_.reserve(capacity);
@@ -55,7 +64,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 
 std::size_t CellFront::bytes() const {
   return nodes_.size() * sizeof(Node) +
-         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + sizeof(Due));
+         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + 2 * sizeof(Due));
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -168,23 +177,28 @@ double CellFront::wanted(const MovingHull& a) const {
 void CellFront::collect_due() {
   due_count_ = 0;
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
+  std::array<std::uint32_t, kGrades + 1> first{};
   for (std::uint32_t slot = 0; slot < count_; ++slot) {
     if (!(expiry_[slot] < bound)) continue;
     const std::uint32_t id = slots_[slot].node;
     if (asked_[nodes_[id].part] != now_) continue;
     nodes_[id].due = call_;
-    due_[due_count_++] = {id, std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0)};
+    const double share = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
+    unsorted_[due_count_++] = {id, share};
+    ++first[grade(share) + 1];
   }
+  // By halvings of the share: those that allow least come first. Where the part touches something they find it, and
+  // where time runs out before all have been looked at, the others allow more.
+  for (int k = 0; k < kGrades; ++k) first[k + 1] += first[k];
+  for (std::size_t i = 0; i < due_count_; ++i) due_[first[grade(unsorted_[i].share)]++] = unsorted_[i];
 }
 
 void CellFront::settle_due() {
   const auto begin = due_.begin(), end = begin + static_cast<std::ptrdiff_t>(due_count_);
   const auto first = begin + std::min<std::ptrdiff_t>(kFirst, end - begin);
-  // Those that allow least come first: where the part touches something they find it, and the others need no look.
-  const auto less = [](const Due& x, const Due& y) { return x.share < y.share; };
-  std::nth_element(begin, first, end, less);
   int looked = 0;
   for (auto it = begin; it != end; ++it) {
+    // What blocks is known: the others may wait.
     if (it == first && !blocking_.empty()) report_.settled = false;
     if (report_.settled && ++looked % kClockStride == 0 && out_of_work(true)) {
       report_.settled = false;

@@ -136,7 +136,7 @@ class CellFront {
   CellSearch search_;
   FreeCell found_;
   std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
-  std::vector<Due> due_;
+  std::vector<Due> unsorted_, due_;
   std::size_t due_count_ = 0;
   std::vector<std::uint32_t> stack_, freed_;
   std::vector<FacePair> blocking_;

@@ -36,6 +36,8 @@ constexpr int kMostMotions = 16;
 constexpr double kCatchUp = 2.0;
 // A piece of at least this share of its longest was cut short by that, not by contacts.
 constexpr double kFullShare = 0.99;
+// What of a piece was proved in the time there was is tried so many times as long next.
+constexpr double kProvedGrowth = 2;
 // Programmes solved for one piece before it is shortened instead.
 constexpr int kMostResolves = 6;
 // Halvings of a piece that still intersects.
@@ -267,11 +269,13 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     free = is_free(trial, report);
     if (free) break;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
-      // Out of time or work: what is proved of the motion is made, the rest is for the next tick.
+      // Out of time or work: what is proved of the motion is made, and the next piece is not much longer.
       scale(trial, at_.check->free_share());
-      trust_ = std::max(0.5 * trust_, size(trial.d));
-      free = true;
-      break;
+      trust_ = std::max(kProvedGrowth * size(trial.d), kLeastTrust);
+      X_ = trial.X;
+      tracked_ = false;
+      allowed_ = std::max(0.0, allowed_ - size(trial.d));
+      return size(trial.d);
     }
     if (late()) {
       trust_ = 0.5 * std::min(trust_, size(trial.d));
