@@ -247,9 +247,10 @@ CellSearch::Outcome CellFront::search(std::uint32_t id) {
     for (int k = 0; k < 3; ++k) face_[k] = a_->corner(node.a, k) - center_;
   CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, need_, wanted(a)};
   if (node.children == 0) {
-    const Slot& s = slots_[node.slot];
-    query.clear = s.clear_until - travel_;
-    if (items_[node.slot].count > 0 && query.clear >= kKnownShare * query.wanted) query.known = &items_[node.slot];
+    // `clear` of a list in the front is a travel.
+    const CellItems& items = items_[node.slot];
+    query.clear = items.clear - travel_;
+    if (items.count > 0 && query.clear >= kKnownShare * query.wanted) query.known = &items;
   }
   return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
 }
@@ -259,6 +260,7 @@ void CellFront::keep(std::uint32_t id) {
   Slot& s = slots_[slot];
   s.cell = found_;
   items_[slot] = search_.items();
+  items_[slot].clear = s.clear_until;
   s.clear_until = travel_ + kUnit * found_.clear;
   expiry_[slot] = std::min(s.clear_until, travel_ + kUnit * search_.margin());
 }
@@ -341,7 +343,9 @@ bool CellFront::split(std::uint32_t id) {
   // What was known of the whole holds for its parts.
   const Slot known = slots_[p.slot];
   // The pieces of B that are listed are of both its parts.
-  const CellItems items = of_a ? items_[p.slot] : CellItems{};
+  CellItems items;
+  if (of_a) items = search_.items();
+  items.clear = travel_ + kUnit * items.clear;
   const double expiry = expiry_[p.slot];
   leave(p.slot);
   nodes_[id].child = child;

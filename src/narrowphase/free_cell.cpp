@@ -168,6 +168,20 @@ void CellSearch::list(const Entry& e) {
   if (listed_) items_.item[items_.count++] = e.is_face ? e.node | CellItems::kFace : e.node;
 }
 
+void CellSearch::list_rest(const Entry& e) {
+  // What was found of the near ones so far, the one at which the search ended, and those that it had not come to.
+  if (items_.count == 0 || (items_.item[items_.count - 1] & ~CellItems::kFace) != e.node) list(e);
+  for (const Entry& rest : stack_) {
+    if (rest.distance < query_.wanted) {
+      list(rest);
+    } else {
+      clear_ = std::min(clear_, rest.distance);
+    }
+  }
+  if (!listed_) items_.count = 0;
+  items_.clear = clear_;
+}
+
 void CellSearch::open(const Entry& e) {
   const PatchNode& b = query_.tree->nodes()[e.node];
   if (b.leaf()) {
@@ -261,17 +275,19 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   sweep_ = &sweep;
   begin(query);
   for (int visits = 0; !stack_.empty(); ++visits) {
-    if (visits == kMostVisits && !query.is_face) return blocking_.empty() ? Outcome::divide : Outcome::blocked;
     const Entry e = stack_.back();
     stack_.pop_back();
     ++visits_;
-    const Outcome outcome = settle(e);
+    const bool enough = visits == kMostVisits && !query.is_face;
+    const Outcome outcome = enough ? Outcome::divide : settle(e);
+    if (outcome == Outcome::divide && !blocking_.empty()) return Outcome::blocked;
+    if (outcome == Outcome::divide) list_rest(e);
     if (outcome != Outcome::found) return outcome;
   }
   if (!blocking_.empty()) return Outcome::blocked;
   if (passing_) return Outcome::passing;
   if (!listed_) items_.count = 0;
-  cell.clear = clear_;
+  cell.clear = items_.clear = clear_;
   cell.drop_planes();
   for (int k = 0; k < planes_; ++k) {
     cell.nx[k] = static_cast<float>(normal_[k].x());

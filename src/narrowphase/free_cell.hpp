@@ -84,9 +84,10 @@ struct FreeCell {
 /// Most pieces of B that a cell's list has room for.
 inline constexpr int kCellItems = 31;
 
-/// The pieces of B that the planes of a cell stand for: nodes of its tree or, with the highest bit set, faces.
+/// The pieces of B that are near a piece of A: nodes of B's tree or, with the highest bit set, faces.
 struct CellItems {
   static constexpr std::uint32_t kFace = 0x80000000u;
+  double clear = 0;         ///< the rest of B is at least so far (m) from the piece as it was at the search
   std::uint32_t count = 0;  ///< 0: not known, or more than fit
   std::array<std::uint32_t, kCellItems> item;
 };
@@ -142,7 +143,8 @@ class CellSearch {
 
   /// Of the last find(): least distance of the piece at the start from B that was proved, m.
   double margin() const { return std::min(margin_, clear_); }
-  /// Of the last find() that found a cell.
+  /// Of the last find() that found a cell: what its planes stand for. Of one that says to divide: where to go on with
+  /// the parts.
   const CellItems& items() const { return items_; }
   /// Of the last find(): faces of B that stop the triangle.
   const std::vector<std::uint32_t>& blocking() const { return blocking_; }
@@ -165,6 +167,7 @@ class CellSearch {
   /// The normal of a face of either box or triangle along which `b` is farthest below the piece at the start.
   double best_axis(const Hull& b, Vec3& n) const;
   void begin(const Query& query);
+  void list_rest(const Entry& e);
   void list(const Entry& e);
   bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
   bool keeps_off(const Hull& b, const Vec3& n, double at_least);
