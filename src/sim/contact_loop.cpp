@@ -77,8 +77,9 @@ constexpr double kLeastTrust = 1e-8;
 // slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
 // always.
 constexpr double kMostTurn = 0.5;
-// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
-// so many: like static friction, it ends the creep that is left where limits change with every piece.
+// While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
+// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. A part
+// that still comes, as fast as it may, does not creep: it would be stopped short of its place after a long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
@@ -127,7 +128,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  still_ticks_ = pen < kRest ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
+  still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   if (at_.look_at_start(X_)) tracked_ = false;
@@ -167,8 +168,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.lag_reason = reason_for(left, report);
   // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
   // took away what it touched it comes back to the pen through the air.
-  const bool comes = near_.empty() || made >= kFullShare * travel;
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes && left > keep_);
+  comes_ = near_.empty() || made >= kFullShare * travel;
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};

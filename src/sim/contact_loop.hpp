@@ -76,12 +76,13 @@ class ContactLoop final : public ProxyLoop {
   Pose last_Y_;
   double trust_;
   double moved_ = 0;     ///< of X in the last tick, m
-  int still_ticks_ = 0;  ///< since the pen last moved
+  int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
   bool tracked_ = false;           ///< the contacts are those of X_
   bool was_cut_ = false;           ///< the last tick
+  bool comes_ = false;             ///< X went as fast as it may in the last tick
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m
   std::int64_t deadline_ns_ = 0;
