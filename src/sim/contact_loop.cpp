@@ -38,6 +38,10 @@ constexpr double kCatchUp = 2.0;
 constexpr double kFullShare = 0.99;
 // Programmes solved for one piece before it is shortened instead.
 constexpr int kMostResolves = 6;
+// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of its
+// length is tried without them, so often in one tick.
+constexpr double kShorter = 0.25;
+constexpr int kMostShorter = 3;
 // Halvings of a piece that still intersects.
 constexpr int kMostHalvings = 4;
 // Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
@@ -148,12 +152,13 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    int shorter = 0;
     for (int i = 0; i < kMostMotions && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
-      // A piece shorter than it could be is the resolver's own end.
-      if (length < kFullShare * cap) break;
+      // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
+      if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMostShorter)) break;
       made += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
@@ -244,6 +249,7 @@ bool ContactLoop::wedged() const {
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+  held_by_planes_ = false;
   if (!track()) return 0;
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
@@ -258,11 +264,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (size(trial.d) < kRest) {
       held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
-      if (cutting()) {
-        // Planes for one motion hold it, and no surface: the next tick tries a shorter one, without them.
-        trust_ = 0.25 * std::min(trust_, cap);
-        tracked_ = false;
-      }
+      if (cutting()) shorter_than(cap);
       return 0;
     }
     free = is_free(trial, report);
@@ -286,14 +288,20 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }
-  if (!worth_it(wanted, trial, goal)) {
-    held_by_contacts_ = !cutting();
-    return 0;
-  }
+  const bool worth = worth_it(wanted, trial, goal);
+  if (!worth) held_by_contacts_ = !cutting();
+  if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
+  if (!worth) return 0;
   X_ = trial.X;
   tracked_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
+}
+
+void ContactLoop::shorter_than(double cap) {
+  trust_ = kShorter * std::min(trust_, cap);
+  held_by_planes_ = true;
+  tracked_ = false;  // tracking forgets the planes
 }
 
 bool ContactLoop::cutting() const {
