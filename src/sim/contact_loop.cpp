@@ -82,8 +82,8 @@ constexpr double kLeastTrust = 1e-8;
 // always.
 constexpr double kMostTurn = 0.5;
 // While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
-// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. A part
-// that still comes, as fast as it may, does not creep: it would be stopped short of its place after a long way.
+// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. X that
+// still comes, as fast as it may, does not creep: it would be stopped short of its place after a long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
