@@ -40,6 +40,10 @@ constexpr double kFullShare = 0.99;
 constexpr double kProvedGrowth = 2;
 // Programmes solved for one piece before it is shortened instead.
 constexpr int kMostResolves = 6;
+// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of its
+// length is tried without them, so often in one tick.
+constexpr double kShorter = 0.25;
+constexpr int kMostShorter = 3;
 // Halvings of a piece that still intersects.
 constexpr int kMostHalvings = 4;
 // Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
@@ -79,8 +83,9 @@ constexpr double kLeastTrust = 1e-8;
 // slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
 // always.
 constexpr double kMostTurn = 0.5;
-// While the pen stands still, a piece must take this share off the squared error for every tick since it stopped, up to
-// so many: like static friction, it ends the creep that is left where limits change with every piece.
+// While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
+// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. X that
+// still comes, as fast as it may, does not creep: it would be stopped short of its place after a long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
@@ -129,7 +134,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  still_ticks_ = pen < kRest ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
+  still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   if (at_.look_at_start(X_)) tracked_ = false;
@@ -149,12 +154,13 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (track()) adapt_keep(Y);
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    int shorter = 0;
     for (int i = 0; i < kMostMotions && made < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
-      // A piece shorter than it could be is the resolver's own end.
-      if (length < kFullShare * cap) break;
+      // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
+      if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMostShorter)) break;
       made += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
@@ -169,8 +175,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.lag_reason = reason_for(left, report);
   // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
   // took away what it touched it comes back to the pen through the air.
-  const bool comes = near_.empty() || made >= kFullShare * travel;
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes && left > keep_);
+  comes_ = near_.empty() || made >= kFullShare * travel;
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
@@ -245,6 +251,7 @@ bool ContactLoop::wedged() const {
 }
 
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+  held_by_planes_ = false;
   if (!track()) return 0;
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
@@ -259,11 +266,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (size(trial.d) < kRest) {
       held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
-      if (cutting()) {
-        // Planes for one motion hold it, and no surface: the next tick tries a shorter one, without them.
-        trust_ = 0.25 * std::min(trust_, cap);
-        tracked_ = false;
-      }
+      if (cutting()) shorter_than(cap);
       return 0;
     }
     free = is_free(trial, report);
@@ -289,14 +292,20 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
     if (!shorten(trial, report)) return 0;
   }
-  if (!worth_it(wanted, trial, goal)) {
-    held_by_contacts_ = !cutting();
-    return 0;
-  }
+  const bool worth = worth_it(wanted, trial, goal);
+  if (!worth) held_by_contacts_ = !cutting();
+  if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
+  if (!worth) return 0;
   X_ = trial.X;
   tracked_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
+}
+
+void ContactLoop::shorter_than(double cap) {
+  trust_ = kShorter * std::min(trust_, cap);
+  held_by_planes_ = true;
+  tracked_ = false;  // tracking forgets the planes
 }
 
 bool ContactLoop::cutting() const {

@@ -54,6 +54,8 @@ class ContactLoop final : public ProxyLoop {
   bool wedged() const;
   /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
   bool track();
+  /// The next piece is to be shorter than this one, which planes for one motion hold; they are forgotten.
+  void shorter_than(double cap);
   /// Whether a cutting plane, which is no contact, limits the motion.
   bool cutting() const;
   LagReason reason_for(double lag, const TickReport& report) const;
@@ -76,12 +78,14 @@ class ContactLoop final : public ProxyLoop {
   Pose last_Y_;
   double trust_;
   double moved_ = 0;     ///< of X in the last tick, m
-  int still_ticks_ = 0;  ///< since the pen last moved
+  int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
   bool tracked_ = false;           ///< the contacts are those of X_
   bool was_cut_ = false;           ///< the last tick
+  bool comes_ = false;             ///< X went as fast as it may in the last tick
+  bool held_by_planes_ = false;    ///< planes for one motion made the last piece short
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m
   std::int64_t deadline_ns_ = 0;
