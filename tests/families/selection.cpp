@@ -47,9 +47,7 @@ std::vector<SelectedCase> daily_cases() {
     cases.push_back({daily(family, seed++, 2000, 0.05e-3, 0.1, 4), virtual_time});
   // The size that the issues of conforming parts were found at.
   cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), virtual_time});
-  cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), real_time});
   cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), virtual_time});
-  cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), real_time});
   for (const int near : {36, 64, 144, 2000}) cases.push_back({daily("cover", 1, 12, 0, 0.12, near), virtual_time});
   cases.push_back({daily("cover", 1, 12, 0, 0.12, 144), real_time});
   return cases;
@@ -57,6 +55,9 @@ std::vector<SelectedCase> daily_cases() {
 
 std::vector<SelectedCase> all_cases(int seeds) {
   std::vector<SelectedCase> cases;
+  // Full-area contact under a fast pen in real time, which docs/limits.md says is missed: not of every day.
+  cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), {true, {}}});
+  cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), {true, {}}});
   const std::vector<std::string> names = family_names();
   for (int seed = 1; seed <= seeds; ++seed)
     for (std::size_t i = 0; i < names.size(); ++i)
