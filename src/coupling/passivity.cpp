@@ -5,15 +5,6 @@
 
 namespace tegotae {
 
-double step_energy(const Displacement& moved, const CouplingSettings& coupling, double resolution, double dt) noexcept {
-  if (!(dt > 0)) return 0;
-  const double radius = coupling_radius(coupling), most = 3 * resolution * resolution;
-  const double shift = std::min(moved.dp.squaredNorm(), most);
-  const double turn = std::min(moved.dr.squaredNorm(), most / (radius * radius));
-  return (0.5 * coupling.stiffness + coupling.damping / dt) * shift +
-         (0.5 * coupling.torsional_stiffness + coupling.torsional_damping / dt) * turn;
-}
-
 void Passivity::observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole, double dt,
                         double steps) noexcept {
   const double stored_before = stored_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "tegotae/core/pose.hpp"
-#include "tegotae/coupling/coupling.hpp"
 
 namespace tegotae {
 
@@ -24,7 +23,7 @@ class Passivity {
 
   /// Accounts for the last `dt` seconds: the pen moved by `moved` under the constant wrench `rendered`, and the springs
   /// now store `stored` (J). Unless `whole`, the wrench was not the coupling's (faded or cut): the time does not count.
-  /// `steps` (J): see step_energy(); so much may be missing in this time without being called generated.
+  /// `steps` (J): see PenSteps; so much may be missing in this time without being called generated.
   void observe(const Displacement& moved, const Wrench& rendered, double stored, bool whole, double dt,
                double steps = 0) noexcept;
   /// The wrench that damps the pen moving as in the last observe(); `arm2` (m²) weighs rotation: its damping is
@@ -44,11 +43,5 @@ class Passivity {
   Twist velocity_;
   double dt_ = 0;
 };
-
-/// What a coupling that is held over a tick of `dt` (s) can lose to steps of the pen's resolution (m), J: the springs
-/// ½ k Δx², and the damper, whose velocity is known to a step a tick, d Δx² / dt, of a pen that `moved` by no more than
-/// a step along each axis; a turn counts as coupling_radius() times its angle. Between two steps nothing is known of
-/// the pen, so this is no sign of an instability; what a pen gains that moves farther in a tick is.
-double step_energy(const Displacement& moved, const CouplingSettings& coupling, double resolution, double dt) noexcept;
 
 }  // namespace tegotae

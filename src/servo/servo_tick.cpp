@@ -19,9 +19,9 @@ namespace {
 // as comes in, and a swing would never die.
 constexpr double kTrustedDamping = 0.5;
 
-// Of the energy at which the force goes off as unstable, what the controller leaves to itself: what is made of a pen's
-// steps, of contacts found and left, and of filtered velocities is a twentieth of it, a swing passes it in a few ticks.
-constexpr double kIdleShare = 0.01;
+// Of the energy at which the force goes off as unstable, what the controller leaves to itself: contacts found and left
+// and filtered velocities make a sixth of it. It is little, because a swing grows by so much before it is damped.
+constexpr double kIdleShare = 0.005;
 
 /// The chain's settings, no looser than the device's own limits.
 SafetySettings within_device(SafetySettings s, const DeviceInfo& device) {
@@ -122,7 +122,7 @@ void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
   double stored = 0;
   if (attached_ && sane_ && in.pen_proper) in.wanted = coupling(stored);
   passivity_.observe(moved_, rendered_, stored, whole_, in.dt,
-                     step_energy(moved_, coupling_, info_.position_resolution, in.dt));
+                     steps_.energy(moved_, coupling_, info_.position_resolution, in.dt));
   if (safety_.passivity_control && stored > 0 && passivity_.acts() && coupling_.stiffness > 0) {
     const Wrench damping = passivity_.controller(coupling_.torsional_stiffness / coupling_.stiffness);
     in.wanted.force += damping.force;

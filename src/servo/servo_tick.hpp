@@ -6,6 +6,7 @@
 #include "core/nonblocking.hpp"
 #include "coupling/local_model.hpp"
 #include "coupling/passivity.hpp"
+#include "coupling/pen_steps.hpp"
 #include "servo/pen_mapping.hpp"
 #include "servo/safety_chain.hpp"
 #include "tegotae/device/channel.hpp"
@@ -45,6 +46,7 @@ class ServoTick {
   PenMapping mapping_;
   LocalModel local_;
   Passivity passivity_;
+  PenSteps steps_;
 
   tegotae_shm_application application_{};
   bool attached_ = false;
