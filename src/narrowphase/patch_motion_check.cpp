@@ -19,7 +19,6 @@ constexpr int kFrontSearches = 1 << 15, kCellSearches = 1 << 17;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
-// One under which the part does not get on at all is given up whatever its size.
 constexpr std::uint32_t kMostCuts = 6;
 // Cells (about 500 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
@@ -123,16 +122,12 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
                                      std::vector<FacePair>& blocking) noexcept {
   share_ = 1;
   bool moved = false;
-  stood_ = X.p == last_.p && X.q.coeffs() == last_.q.coeffs() ? stood_ + 1 : 0;
-  last_ = X;
-  const bool stands = stood_ > kMostCuts;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
     const CertifyReport report = ask_front(part, X, d, clearance, limit_);
     std::uint32_t& cuts = cuts_[front_of_[part]];
-    cuts = report.exhausted ? cuts + 1 : 0;
-    const bool slow = cuts > kMostCuts && (report.pairs > kManyPairs || stands);
-    if (slow || (report.overflow && report.status == CertifyStatus::cut)) {
+    cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
+    if ((cuts > kMostCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;

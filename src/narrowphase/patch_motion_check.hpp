@@ -56,8 +56,6 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint32_t> near_cells_;   ///< the others
   WorkLimit limit_;
   double share_ = 0;
-  Pose last_;                ///< start of the last check
-  std::uint32_t stood_ = 0;  ///< checks in a row with the same start
   bool overflow_ = false;
 };
 
