@@ -15,7 +15,8 @@ constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
-constexpr int kFrontSearches = 1 << 15, kCellSearches = 1 << 17;
+constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
+constexpr int kMostRounds = 4;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
@@ -124,7 +125,12 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   bool moved = false;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
-    const CertifyReport report = ask_front(part, X, d, clearance, limit_);
+    CertifyReport report = ask_front(part, X, d, clearance, limit_);
+    // Where nothing is in the way but work, as at a first touch, and no deadline bounds it, the front goes on.
+    for (int i = 1; i < kMostRounds && limit_.deadline_ns == kNoDeadline && !report.overflow &&
+                    report.status == CertifyStatus::cut;
+         ++i)
+      report = ask_front(part, X, d, clearance, limit_);
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
     if ((cuts > kMostCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
