@@ -15,7 +15,8 @@ class LocalModel {
   LocalModel();
 
   /// `radius`: coupling_radius(), m. False and `x` untouched when there are no planes, when they were taken at another
-  /// pose than `x.X`, the numbers make no sense, the pen has turned too far since the tick, or the part would have to turn too far for flat planes.
+  /// pose than `x.X`, the numbers make no sense, the pen has turned too far since the tick, or the part would have to
+  /// turn too far for flat planes.
   bool update(const ContactPlanes& planes, double radius, const Vec3& center, const Pose& Y, const Twist& Y_velocity,
               ProxyState& x) noexcept;
 

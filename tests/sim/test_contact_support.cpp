@@ -5,7 +5,6 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "fcl_oracle.hpp"
-#include "feature/simplex_distance.hpp"
 #include "lp/least_distance.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -153,33 +152,6 @@ int entering(const HapticLoop& loop, const Scene& scene, const TickReport& tick,
     for (int k = 0; k < rows.rows(); ++k) REQUIRE(rows.row(k).dot(z) >= bounds[static_cast<std::size_t>(k)] - 1e-9);
     const Pose moved = displaced(X, center, {z.head<3>(), z.tail<3>() / radius});
     bad += oracle.intersecting(moved).empty() ? 0 : 1;
-  }
-  if (getenv("SUP") && !all_sides && scene.parts[0].mesh->triangles.size() == 3200) {
-    const TriangleMesh &A = *scene.parts[1].mesh, &B = *scene.parts[0].mesh;
-    for (std::size_t i = 0; i < A.triangles.size(); ++i)
-      for (std::size_t j = 0; j < B.triangles.size(); ++j) {
-        Simplex sa{3, {}}, sb{3, {}};
-        Eigen::AlignedBox3d ba, bb;
-        for (int k = 0; k < 3; ++k) {
-          sa.p[k] = X * A.vertices[A.triangles[i][k]];
-          sb.p[k] = scene.parts[0].pose * B.vertices[B.triangles[j][k]];
-          ba.extend(sa.p[k]);
-          bb.extend(sb.p[k]);
-        }
-        if (ba.squaredExteriorDistance(bb) > 1e-10) continue;
-        const ClosestPoints c = closest_points(sa, sb);
-        if (c.squared_distance > 1e-10) continue;
-        const Vec3 at = c.a - X * center;
-        double near = 1;
-        for (const Contact& k : loop.limits()) near = std::min(near, (k.r - at).norm());
-        std::printf("  close %zu %zu gap %g masks %d %d at %g %g nearest limit %g\n", i, j, std::sqrt(c.squared_distance), c.mask_a, c.mask_b, at.x(), at.y(), near);
-      }
-  }
-  if (getenv("SUP")) {
-    const Vec6 z = solver.solve(rows, bounds.data(), kLength * pen.normalized()).z;
-    std::printf("radius %g pen (%g %g %g | %g %g %g) to %g um, lag %g, rows %d\n", radius, pen[0],pen[1],pen[2],pen[3],pen[4],pen[5], 1e6*z.norm(), pen.norm(), rows.rows());
-  std::printf("  z %g %g %g | %g %g %g\n",z[0]*1e6,z[1]*1e6,z[2]*1e6,z[3]*1e6,z[4]*1e6,z[5]*1e6);
-    for (const Contact& c : loop.limits()) std::printf("  gap %g n %g %g %g r %g %g %g age %d\n", c.gap, c.n.x(),c.n.y(),c.n.z(),c.r.x(),c.r.y(),c.r.z(),c.age);
   }
   return bad;
 }
