@@ -84,8 +84,8 @@ constexpr double kLeastTrust = 1e-8;
 // always.
 constexpr double kMostTurn = 0.5;
 // While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
-// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. X that
-// still comes, as fast as it may, does not creep: it would be stopped short of its place after a long way.
+// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. While
+// X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
@@ -264,6 +264,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   for (int i = 0; i < kMostResolves; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
+      if (i + 1 < kMostResolves && look_around()) continue;
       held_by_contacts_ = !cutting();
       if (!resolver_->projects()) trust_ *= 0.5;
       if (cutting()) shorter_than(cap);
@@ -293,13 +294,26 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (!shorten(trial, report)) return 0;
   }
   const bool worth = worth_it(wanted, trial, goal);
-  if (!worth) held_by_contacts_ = !cutting();
   if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
-  if (!worth) return 0;
+  if (!worth) {
+    held_by_contacts_ = !cutting();
+    look_around();
+    return 0;
+  }
   X_ = trial.X;
-  tracked_ = false;
+  tracked_ = looked_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
+}
+
+bool ContactLoop::look_around() {
+  // Pieces need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface that
+  // was in no piece's way than to the contacts that hold it.
+  if (looked_ || moved_ > kStanding || cutting()) return false;
+  looked_ = true;
+  blocking_.clear();
+  at_.check->check(X_, {}, kRecoverBelow * keep_, blocking_);
+  return at_.contacts->seed(blocking_, X_, deadline_ns_) > 0;
 }
 
 void ContactLoop::shorter_than(double cap) {

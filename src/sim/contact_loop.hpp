@@ -54,6 +54,9 @@ class ContactLoop final : public ProxyLoop {
   bool wedged() const;
   /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
   bool track();
+  /// Once for each pose at which X stands: contacts from all that is nearer than contacts keep it. Whether there are
+  /// fresh ones.
+  bool look_around();
   /// The next piece is to be shorter than this one, which planes for one motion hold; they are forgotten.
   void shorter_than(double cap);
   /// Whether a cutting plane, which is no contact, limits the motion.
@@ -85,6 +88,7 @@ class ContactLoop final : public ProxyLoop {
   bool tracked_ = false;           ///< the contacts are those of X_
   bool was_cut_ = false;           ///< the last tick
   bool comes_ = false;             ///< X went as fast as it may in the last tick
+  bool looked_ = false;            ///< look_around() did at this pose
   bool held_by_planes_ = false;    ///< planes for one motion made the last piece short
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m
