@@ -17,6 +17,7 @@ enum class LagReason : std::uint8_t {
                  ///< just been taken up
 };
 
+/// How many reasons there are.
 inline constexpr int kLagReasons = 5;
 
 /// One word: "none", "contact", "time", "capacity", "suspended".

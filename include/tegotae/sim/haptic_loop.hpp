@@ -54,7 +54,9 @@ struct TickReport {
 
 /// Lag (m) that needs a reason in contact, of a part with a radius of at least kLagRadius (m) about its center of mass;
 /// a smaller part's is smaller in proportion.
-inline constexpr double kMaxUnexplainedLag = 3e-4, kLagRadius = 0.03;
+inline constexpr double kMaxUnexplainedLag = 3e-4;
+/// Radius (m) of a part from which on kMaxUnexplainedLag holds unscaled.
+inline constexpr double kLagRadius = 0.03;
 /// Ticks in a row for which a lag may be over that.
 inline constexpr int kLagPatience = 20;
 /// The bound (m) for a part of `radius` (m) about its center of mass: 0.3 mm, or 1 % of the radius where that is less.
