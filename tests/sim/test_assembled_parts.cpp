@@ -48,6 +48,7 @@ struct Outcome {
   int intersecting = 0;                                                     ///< of the poses that FCL was asked about
   int touching = 0;                                                         ///< ticks
   Vec3 least = Vec3::Constant(INFINITY), most = Vec3::Constant(-INFINITY);  ///< of the coordinates of X.p
+  Vec3 center_least = least, center_most = most;                            ///< of the way of the center of mass
 };
 
 /// Leads the held part from waypoint to waypoint; FCL looks at every third pose.
@@ -69,6 +70,9 @@ Outcome lead(const Scene& scene, HapticLoop& loop, const std::vector<Waypoint>& 
         if (n++ % 3 == 0 && !oracle.intersecting(X).empty()) ++out.intersecting;
         out.least = out.least.cwiseMin(X.p);
         out.most = out.most.cwiseMax(X.p);
+        const Vec3 center = X * loop.center() - loop.center();
+        out.center_least = out.center_least.cwiseMin(center);
+        out.center_most = out.center_most.cwiseMax(center);
       }
     }
   }
@@ -186,14 +190,14 @@ TEST_CASE("the piston runs in its cylinder", "[real_parts]") {
   CHECK(out.touching > 500);
   CHECK(out.X.p.norm() < 1e-4);
   // All the way, and pushed aside by the clearance of the pair (3.4 to 5 mm as its source has it), not by the
-  // hand's 42.
+  // hand's 42. Of the center: the origin of the file is 1.7 m away, and a tilt of 0.014 rad carries it by 25 mm.
   CHECK(out.most.y() > 0.149);
   CHECK(out.least.y() < -0.149);
   for (const int axis : {0, 2}) {
-    CHECK(out.most[axis] > 2e-3);
-    CHECK(out.most[axis] < 6e-3);
-    CHECK(out.least[axis] < -2e-3);
-    CHECK(out.least[axis] > -6e-3);
+    CHECK(out.center_most[axis] > 2e-3);
+    CHECK(out.center_most[axis] < 6e-3);
+    CHECK(out.center_least[axis] < -2e-3);
+    CHECK(out.center_least[axis] > -6e-3);
   }
 }
 
