@@ -67,7 +67,7 @@ class GltfDoc {
     if (all.contains("buffers"))
       all["buffers"].insert(all["buffers"].begin(), buffer);
     else
-      all["buffers"] = {buffer};
+      all["buffers"] = nlohmann::json::array({buffer});  // clang takes {buffer} for a copy of it
     folder.write(name + ".bin", data_);
     folder.write(name + ".gltf", all.dump());
     return folder / (name + ".gltf");

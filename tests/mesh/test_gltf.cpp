@@ -327,7 +327,8 @@ TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
     const std::string packed = positions + indices;
     doc.view(packed);
     doc.j["bufferViews"] = Json::array();
-    doc.j["buffers"] = {{{"byteLength", 96}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+    doc.j["buffers"] = nlohmann::json::array(
+        {{{"byteLength", 96}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
     const auto view = [&](std::size_t at, std::size_t offset, std::size_t bytes, std::size_t stride, std::size_t count,
                           const char* how, const char* with) {
       doc.j["bufferViews"].push_back({{"buffer", 1},
