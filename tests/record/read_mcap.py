@@ -13,6 +13,9 @@ except ImportError:
     print("SKIPPED: Python's mcap package is not installed")
     sys.exit(77)
 
+# docs/programs.md: the numbers of the CSV column `lag_reason`, by the words of the topic /tick.
+LAG_REASONS = {"none": 0, "contact": 1, "time": 2, "capacity": 3, "suspended": 4}
+
 
 def numbers(messages):
     """One frame's messages, by topic, as the columns of a CSV row."""
@@ -21,7 +24,8 @@ def numbers(messages):
     pose = lambda p: [p["position"][k] for k in "xyz"] + [p["orientation"][k] for k in "wxyz"]
     gap = math.inf if contact["gap"] is None else contact["gap"]
     return ([tick["tick"], tick["substep"], tick["t"]] + pose(pen) + pose(part)
-            + [wrench[w][k] for w in ("force", "torque") for k in "xyz"] + [contact["contacts"], gap, tick["tick_us"]])
+            + [wrench[w][k] for w in ("force", "torque") for k in "xyz"] + [contact["contacts"], gap]
+            + [tick["tick_us"], LAG_REASONS[tick["lag_reason"]]])
 
 
 def frames(reader):
