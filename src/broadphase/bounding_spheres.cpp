@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadphase/bounding_boxes.hpp"
+
 namespace tegotae {
 
 Sphere bounding_sphere(const TriangleMesh& mesh) {
-  if (mesh.vertices.empty()) return {};
-  Vec3 lo = mesh.vertices.front(), hi = lo;
-  for (const Vec3& v : mesh.vertices) {
-    lo = lo.cwiseMin(v);
-    hi = hi.cwiseMax(v);
-  }
-  const Vec3 center = 0.5 * (lo + hi);
+  const Vec3 center = bounding_box(mesh).center;
   return {center, radius_about(mesh, center)};
 }
 

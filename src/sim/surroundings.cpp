@@ -53,6 +53,7 @@ std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixe
 Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
     : look_time_(kLookShare * settings.tick_budget) {
   const SceneParts parts(scene);
+  box_ = bounding_box(*parts.held->mesh);
   // Held here so that whoever needs a hierarchy while the scene is built finds it made.
   std::vector<std::shared_ptr<const PatchTree>> trees;
   if (settings.narrowphase != "fcl")
@@ -62,6 +63,7 @@ Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, 
   for (const Part* p : parts.fixed) {
     fixed.add(p->mesh, p->pose, kNone);
     spheres.add(bounding_sphere(*p->mesh), p->pose);
+    boxes.add(bounding_box(*p->mesh), p->pose);
   }
   const auto copies = start.relieve(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
   for (const StartPairs::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, c.part);
@@ -79,6 +81,7 @@ Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, 
 void Surroundings::query(const Pose& pose, const Vec3& center, double distance,
                          std::vector<std::uint32_t>& near) const {
   spheres.query(pose * center, radius, distance, near);
+  boxes.keep_near(box_, pose, distance, near);
   start.apply(near);
 }
 
@@ -86,7 +89,9 @@ bool Surroundings::is_way_free(const Pose& from, const Pose& to, const Vec3& cen
                                std::int64_t deadline_ns, std::vector<std::uint32_t>& near,
                                std::vector<FacePair>& blocking) const noexcept {
   const Displacement d = displacement(from, to, center);
-  spheres.query(from * center, radius, d.dp.norm() + radius * d.dr.norm() + kGapFloor, near);
+  const double distance = d.dp.norm() + radius * d.dr.norm() + kGapFloor;
+  spheres.query(from * center, radius, distance, near);
+  boxes.keep_near(box_, from, distance, near);
   if (fresh != nullptr)
     near.erase(std::remove_if(near.begin(), near.end(), [fresh](std::uint32_t part) { return !(*fresh)[part]; }),
                near.end());

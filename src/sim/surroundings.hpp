@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "broadphase/bounding_boxes.hpp"
 #include "broadphase/bounding_spheres.hpp"
 #include "contact/contact_set.hpp"
 #include "narrowphase/motion_check.hpp"
@@ -20,6 +21,7 @@ struct Surroundings {
   double radius;  ///< of the held part about its center of mass, m
   double reach;   ///< pairs of features farther apart are not followed, m
   BoundingSpheres spheres;
+  BoundingBoxes boxes;
   std::unique_ptr<MotionCheck> check;
   std::unique_ptr<ContactSet> contacts;
   StartPairs start;
@@ -28,7 +30,7 @@ struct Surroundings {
   /// Throws Error when the held part overlaps a fixed one and the settings do not say to ignore it.
   Surroundings(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
 
-  /// Parts whose sphere comes within `distance` (m) of the held part at `pose`, as the checks number them.
+  /// Parts whose sphere and box come within `distance` (m) of the held part's at `pose`, as the checks number them.
   void query(const Pose& pose, const Vec3& center, double distance, std::vector<std::uint32_t>& near) const;
   /// Looks whether one more pair that was not free at the start is so at `pose` (see StartPairs::look), in a share of
   /// the tick's budget. When it is, contacts are to be tracked anew.
@@ -44,6 +46,7 @@ struct Surroundings {
   void tell(double contact_gap, TickReport& report) const noexcept;
 
  private:
+  Box box_;           ///< of the held part
   double look_time_;  ///< s
 };
 

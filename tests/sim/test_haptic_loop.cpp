@@ -121,3 +121,21 @@ TEST_CASE("scenes that cannot be held are refused with the reason", "[sim]") {
   bad.contact.l_min = -1;
   REQUIRE(message(bad).find("l_min") != std::string::npos);
 }
+
+TEST_CASE("long parts far from the held one are not near, though their spheres reach over it", "[sim]") {
+  Scene scene = cube_on_floor("qp", 0.1);
+  scene.parts.front().pose.p.z() -= 1;
+  // Rods of 400 mm around the cube, 100 mm away: each sphere holds the whole cube.
+  const auto rod = shared(box({0.004, 0.004, 0.4}));
+  for (int i = 0; i < 60; ++i) {
+    const double a = 2 * M_PI * i / 60;
+    scene.parts.push_back({"rod", rod, {rotation({0, 0, a}), {0.1 * std::cos(a), 0.1 * std::sin(a), 0.1}}, false});
+  }
+  HapticLoop loop(scene);
+  CHECK(loop.step({Quat::Identity(), {0.03, 0, 0.12}}, 0.001).candidate_parts == 0);
+  // Close to one of them, that one and its neighbors are.
+  int near = 0;
+  for (int i = 0; i < 100; ++i) near = loop.step({Quat::Identity(), {0.077, 0, 0.12}}, 0.001).candidate_parts;
+  CHECK(near > 0);
+  CHECK(near < 10);
+}
