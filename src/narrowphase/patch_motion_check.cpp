@@ -29,6 +29,9 @@ constexpr std::size_t kCellsPerPart = 16;
 // Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they
 // leave out stops the next trial.
 constexpr std::uint32_t kMostBlocking = 24;
+// After so many of all parts a part tells these few: more would leave no time for making contacts of them.
+constexpr std::size_t kEnoughBlocking = 3 * kMostBlocking;
+constexpr std::uint32_t kFewBlocking = 2;
 // Searches for planes in one look at a part that need not be kept out of: what is left goes on in the next.
 constexpr int kStandSearches = 1024;
 // A motion carries no point farther than this share of the part's radius: limits are straightened at its start.
@@ -125,6 +128,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   bool moved = false;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
+    limit_.blocking = blocking.size() < kEnoughBlocking ? kMostBlocking : kFewBlocking;
     CertifyReport report = ask_front(part, X, d, clearance, limit_);
     // Where nothing is in the way but work, as at a first touch, and no deadline bounds it, the front goes on.
     for (int i = 1; i < kMostRounds && limit_.deadline_ns == kNoDeadline && !report.overflow &&
@@ -154,6 +158,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (!near_cells_.empty()) {
     cells_->set_clearance(clearance);
     limit_.searches = kCellSearches;
+    limit_.blocking = kMostBlocking;
     const CertifyReport report = cells_->certify(X, d, limit_);
     overflow_ |= report.overflow;
     share_ = std::min(share_, report.share);

@@ -124,6 +124,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   X_ = last.proxy.X;
   last_Y_ = Y;
   tracked_ = false;
+  owed_.reset();
   keep_ = std::clamp(kKeepShare * last.contact_gap, least_keep_, most_keep_);
   return true;
 }
@@ -149,6 +150,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     report.pieces.push_back(X_);
     at_.contacts->clear();
     tracked_ = false;
+    owed_.reset();
   } else {
     at_.check->begin(near_, deadline_ns_);
     if (track()) adapt_keep(Y);
@@ -253,6 +255,10 @@ bool ContactLoop::wedged() const {
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   held_by_planes_ = false;
   if (!track()) return 0;
+  if (owed_) {
+    take_in(*owed_);
+    owed_.reset();
+  }
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
   const double turn = error.dr.norm();
@@ -272,6 +278,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     }
     free = is_free(trial, report);
     if (free) break;
+    if (late() && !blocking_.empty()) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
       // Out of time or work: what is proved of the motion is made, and the next piece is not much longer.
       scale(trial, at_.check->free_share());
@@ -285,9 +292,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
       trust_ = 0.5 * std::min(trust_, size(trial.d));
       return 0;
     }
-    if (at_.contacts->seed(blocking_, at_.check->near_contact(X_, trial.d, blocking_), deadline_ns_) == 0 &&
-        at_.contacts->cut(blocking_, trial.d, kGapFloor, deadline_ns_) == 0)
-      break;
+    if (!take_in(trial.d)) break;
   }
   if (!free) {
     trust_ = 0.5 * std::min(trust_, size(trial.d));
@@ -304,6 +309,11 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   tracked_ = looked_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
+}
+
+bool ContactLoop::take_in(const Displacement& d) {
+  return at_.contacts->seed(blocking_, at_.check->near_contact(X_, d, blocking_), deadline_ns_) > 0 ||
+         at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0;
 }
 
 bool ContactLoop::look_around() {

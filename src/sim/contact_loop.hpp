@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "resolve/metric.hpp"
@@ -40,6 +41,8 @@ class ContactLoop final : public ProxyLoop {
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
   /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
   bool is_free(const Trial& trial, TickReport& report);
+  /// Makes contacts, or planes for one motion, of what is in the way of `d`; whether there are fresh ones.
+  bool take_in(const Displacement& d);
   bool shorten(Trial& trial, TickReport& report);
   /// Shortens the trial to `share` of it.
   void scale(Trial& trial, double share) const;
@@ -85,11 +88,13 @@ class ContactLoop final : public ProxyLoop {
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
   int ticks_ = 0;
-  bool tracked_ = false;           ///< the contacts are those of X_
-  bool was_cut_ = false;           ///< the last tick
-  bool comes_ = false;             ///< X went as fast as it may in the last tick
-  bool looked_ = false;            ///< look_around() did at this pose
-  bool held_by_planes_ = false;    ///< planes for one motion made the last piece short
+  std::optional<Displacement>
+      owed_;                     ///< motion of the last tick that blocking_ stopped when no time was left for contacts
+  bool tracked_ = false;         ///< the contacts are those of X_
+  bool was_cut_ = false;         ///< the last tick
+  bool comes_ = false;           ///< X went as fast as it may in the last tick
+  bool looked_ = false;          ///< look_around() did at this pose
+  bool held_by_planes_ = false;  ///< planes for one motion made the last piece short
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m
   std::int64_t deadline_ns_ = 0;
