@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "tegotae/core/pose.hpp"
+#include "tegotae/core/contact_force.hpp"
 
 namespace tegotae::view {
 
@@ -18,6 +18,12 @@ struct FramePair {
 
 /// Pairs that a frame can hold. Contacts go first, and a free body rests on few of them.
 inline constexpr std::size_t kMostPairs = 128;
+
+/// The force of a contact on the held part.
+struct FrameForce {
+  double point[3];  ///< m, world
+  double force[3];  ///< N, world
+};
 
 /// What the page shows of one tick of the contact loop. Plain words, so that a ring can carry it.
 struct Frame {
@@ -38,11 +44,14 @@ struct Frame {
   std::uint32_t flags = 0;
   std::uint32_t reason = 0;      ///< ForceOff: why the force went off, never `engage`
   std::uint64_t generation = 0;  ///< of the parts that it is of
+  std::uint64_t force_count = 0;
+  std::array<FrameForce, ContactForces::kMost> forces;  ///< the first `force_count` hold
   std::uint64_t pair_count = 0;
   std::array<FramePair, kMostPairs> pairs;  ///< what lies behind `pair_count` is not transported
 };
 
 void store(const Pose& pose, double (&out)[7]);
 void store(const Wrench& wrench, double (&out)[6]);
+void store(const ContactForces& forces, Frame& frame);
 
 }  // namespace tegotae::view

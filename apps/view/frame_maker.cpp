@@ -22,6 +22,7 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   frame.flags = (report.proxy.touching ? Frame::touching : 0u) | (report.cut ? Frame::cut : 0u) |
                 (report.overflow ? Frame::overflow : 0u) |
                 static_cast<std::uint32_t>(report.lag_reason) << Frame::kLagShift;
+  store(report.forces, frame);
   frame.pair_count = 0;
   const Vec3 center = report.proxy.X * loop.center();
   for (const bool touching : {true, false})

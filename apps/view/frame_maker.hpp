@@ -14,7 +14,8 @@ class FrameMaker {
   /// `numbers`: how frames number the parts, instead of by their places in the list.
   FrameMaker(const std::vector<Part>& parts, const std::vector<std::uint32_t>& numbers);
 
-  /// Fills in what the loop knows: X, contacts, gap, pairs. Of more pairs than fit, those in contact come first.
+  /// Fills in what the loop knows: X, contacts, gap, contact forces, pairs. Of more pairs than fit, those in contact
+  /// come first.
   void add_loop(const HapticLoop& loop, Frame& frame) const;
   /// All of a running session's tick.
   void fill(const TickView& tick, Frame& frame);

@@ -34,6 +34,7 @@ constexpr auto kPoll = std::chrono::milliseconds(50);
 void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& maker, Frame& frame) {
   maker.add_loop(follower.loop(), frame);
   if (follower.astray()) frame.pair_count = 0;
+  store(row.forces, frame);
   frame.tick = row.tick;
   frame.t = row.t;
   store(row.x, frame.x);
@@ -107,8 +108,8 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   Follower follower(file.scene, path, rows.front().x);
   const FrameMaker maker(file.scene);
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
-  std::vector<float> frames, pairs;
-  std::vector<std::uint32_t> pair_begin;
+  std::vector<float> frames, pairs, forces;
+  std::vector<std::uint32_t> pair_begin, force_begin;
   Frame frame;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     follower.step(rows[i]);
@@ -117,6 +118,8 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
     append_frame(frame, frames);
     pair_begin.push_back(static_cast<std::uint32_t>(pairs.size() / kPairFloats));
     append_pairs(frame, pairs);
+    force_begin.push_back(static_cast<std::uint32_t>(forces.size() / kForceFloats));
+    append_forces(frame, forces);
   }
   if (2 * follower.strayed() > rows.size())
     throw Error(path + ": does not fit this scene: the part would stand in another one for " +
@@ -131,7 +134,11 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   bundle.about["frames"] = bundle.add(frames);
   bundle.about["pairs"] = bundle.add(pairs);
   bundle.about["pair_begin"] = bundle.add(pair_begin);
+  bundle.about["forces"] = bundle.add(forces);
+  bundle.about["force_begin"] = bundle.add(force_begin);
   nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
+  const bool felt = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.contacts > 0; });
+  if (felt && forces.empty()) notes.push_back("Contact forces are not in this recording (MCAP has those of qp)");
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
   if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
   for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);

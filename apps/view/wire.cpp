@@ -44,7 +44,8 @@ void append_frame(const Frame& f, std::vector<float>& out) {
   append(out, f.reason);
   append(out, static_cast<double>(f.pair_count));
   append(out, static_cast<double>(f.generation));
-  static_assert(kFrameFloats == 4 + 7 + 7 + 6 + 9);
+  append(out, static_cast<double>(f.force_count));
+  static_assert(kFrameFloats == 4 + 7 + 7 + 6 + 10);
   out.resize(begin + kFrameFloats);
 }
 
@@ -58,11 +59,19 @@ void append_pairs(const Frame& frame, std::vector<float>& out) {
   }
 }
 
+void append_forces(const Frame& frame, std::vector<float>& out) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(frame.force_count, frame.forces.size()); ++i) {
+    for (const double v : frame.forces[i].point) append(out, v);
+    for (const double v : frame.forces[i].force) append(out, v);
+  }
+}
+
 std::string frame_message(const Frame& frame) {
   std::vector<float> values;
-  values.reserve(kFrameFloats + kPairFloats * kMostPairs);
+  values.reserve(kFrameFloats + kPairFloats * kMostPairs + kForceFloats * ContactForces::kMost);
   append_frame(frame, values);
   append_pairs(frame, values);
+  append_forces(frame, values);
   return message(Message::frame, values.data(), values.size() * sizeof(float));
 }
 

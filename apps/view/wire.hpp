@@ -9,15 +9,18 @@
 
 namespace tegotae::view {
 
-// A frame on its way to a page is a row of 32-bit floats: kFrameFloats of them, then kPairFloats for each pair. The
-// page reads them in apps/web/src/view/frame.js.
-inline constexpr std::size_t kFrameFloats = 33;
+// A frame on its way to a page is a row of 32-bit floats: kFrameFloats of them, then kPairFloats for each pair and
+// kForceFloats for each contact force. The page reads them in apps/web/src/view/frame.js.
+inline constexpr std::size_t kFrameFloats = 34;
 inline constexpr std::size_t kPairFloats = 8;
+inline constexpr std::size_t kForceFloats = 6;
 
-/// Appends the frame without its pairs.
+/// Appends the frame without its pairs and forces.
 void append_frame(const Frame& frame, std::vector<float>& out);
 /// Appends the frame's pairs.
 void append_pairs(const Frame& frame, std::vector<float>& out);
+/// Appends the frame's contact forces.
+void append_forces(const Frame& frame, std::vector<float>& out);
 
 // What goes through the stream: 32 bits of kind, 32 bits of length in bytes, and that many bytes.
 enum class Message : std::uint32_t { frame = 1, status = 2 };

@@ -72,7 +72,9 @@ Quat desktop_axes() {
 
 struct OpenHapticsDevice::Impl {
   explicit Impl(const OpenHapticsSettings& settings_in)
-      : settings(settings_in), to_world(settings.axes.normalized()), velocity(kVelocityCutoffHz) {}
+      : settings(settings_in),
+        to_world(settings.axes.normalized()),
+        velocity(kVelocityCutoffHz, info.position_resolution, 0) {}
 
   OpenHapticsSettings settings;
   Quat to_world;

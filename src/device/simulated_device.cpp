@@ -81,7 +81,7 @@ struct SimulatedDevice::Impl {
         owned(std::move(owned_in)),
         hand(hand_in),
         body_constants(body_settings(settings)),
-        velocity(settings.velocity_cutoff_hz) {}
+        velocity(settings.velocity_cutoff_hz, settings.position_resolution, settings.rotation_resolution) {}
 
   static std::unique_ptr<Impl> with(const SimulatedDeviceSettings& settings, std::unique_ptr<HandIntent> hand) {
     HandIntent& it = *hand;

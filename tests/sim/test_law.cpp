@@ -3,9 +3,9 @@
 #include <cmath>
 #include <iostream>
 
-#include "bodies.hpp"
 #include "catch.hpp"
 #include "coupling/local_model.hpp"
+#include "sim/pocket.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
 
@@ -20,25 +20,9 @@ double radius(const TriangleMesh& mesh, const Vec3& center) {
   return r;
 }
 
-/// A body of `size` (m) between two to four others, all from random points.
+/// A body of `size` (m) over two to four others.
 Scene wedge(unsigned seed, double size) {
-  std::mt19937 rng(seed);
-  Scene scene;
-  scene.contact.tick_budget = INFINITY;
-  const auto body = [&](double s) {
-    return shared(seed % 2 == 0 ? random_convex_body(rng, 12, s) : random_star_body(rng, 12, s));
-  };
-  const int parts = 2 + static_cast<int>(seed % 3);
-  for (int k = 0; k < parts; ++k) {
-    const double angle = 2 * M_PI * k / parts;
-    scene.parts.push_back(
-        {"fixed" + std::to_string(k),
-         body(1.5 * size),
-         {rotation(3 * random_direction(rng)), {1.5 * size * std::cos(angle), 1.5 * size * std::sin(angle), 0}},
-         false});
-  }
-  scene.parts.push_back({"held", body(size), {rotation(random_direction(rng)), {0, 0, 4.5 * size}}, true});
-  return scene;
+  return pocket(seed, size, 2 + static_cast<int>(seed % 3));
 }
 
 struct Sums {

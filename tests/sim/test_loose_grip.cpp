@@ -6,17 +6,12 @@
 
 #include "bodies.hpp"
 #include "catch.hpp"
-#include "tegotae/device/simulated_device.hpp"
-#include "tegotae/servo/contact_link.hpp"
-#include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "sim/pen_run.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
-
-constexpr std::int64_t kPeriodNs = 1'000'000;
 
 SimulatedDeviceSettings loose_grip() {
   SimulatedDeviceSettings settings;
@@ -37,27 +32,17 @@ Press press(double stiffness, double depth, bool control) {
   Scene scene;
   scene.contact.tick_budget = INFINITY;
   scene.coupling.stiffness = stiffness;
-  scene.torsional_stiffness_most = 3.76;  // as a scene file that leaves it open with the simulated pen
+  scene.torsional_stiffness_most = kTorsionalMost;
   const Vec3 above(0, 0, 0.022), below(0, 0, 0.02 - depth);
   scene.parts.push_back({"floor", shared(box({0.3, 0.3, 0.02})), {Quat::Identity(), {0, 0, -0.01}}, false});
   scene.parts.push_back({"cube", shared(box({0.04, 0.04, 0.04})), {Quat::Identity(), above}, true});
-  HapticLoop loop(scene);
   const StylusScript script({{0, {Quat::Identity(), above}}, {0.4, {Quat::Identity(), below}}});
-  SimulatedDevice device(loose_grip(), script, loop.center());
-  Channel channel = Channel::create();
-  ServoSettings settings;
-  settings.safety.passivity_control = control;
-  Servo servo(device, channel, settings);
-  ContactLink link(channel, loop.coupling(), loop.center());
-  device.start();
+  ServoSettings servo;
+  servo.safety.passivity_control = control;
+  PenRun hand(scene, script, loose_grip(), servo);
   Press result;
-  for (std::int64_t i = 0; i < 2000; ++i) {
-    servo.tick(i * kPeriodNs);
-    PenSample pen;
-    REQUIRE(link.read(pen));
-    const TickReport& r = loop.step(pen.state.pose, 1e-3);
-    link.publish(r.proxy, static_cast<std::uint64_t>(i), pen.state.sequence, i * kPeriodNs, r.planes);
-    device.advance(1e-3);
+  for (int i = 0; i < 2000; ++i) {
+    const PenSample pen = hand.tick();
     result.off |= pen.reason == ForceOff::energy;
     if (i < 1000) continue;
     result.low = std::min(result.low, pen.wrench.force.z());

@@ -1,14 +1,12 @@
 // The passivity controller is there for what is unstable. A hand that comes to rest on a part, or slides it slowly,
 // must never meet it: counted over random scenes with default settings.
+#include <array>
 #include <cmath>
 #include <iostream>
 
-#include "bodies.hpp"
 #include "catch.hpp"
-#include "tegotae/device/simulated_device.hpp"
-#include "tegotae/servo/contact_link.hpp"
-#include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "sim/pen_run.hpp"
+#include "sim/pocket.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -16,7 +14,6 @@ using namespace tegotae::test;
 namespace {
 
 constexpr int kScenes = 200;
-constexpr std::int64_t kPeriodNs = 1'000'000;
 constexpr double kRest = 0.5;  // s, after each motion
 
 /// The simulated pen, of which nobody knows how much it damps: so are most real ones.
@@ -43,25 +40,13 @@ class UnknownDamping final : public Device {
   SimulatedDevice& device_;
 };
 
+std::unique_ptr<Device> of_unknown_damping(SimulatedDevice& device) {
+  return std::make_unique<UnknownDamping>(device);
+}
+
 Scene random_scene(unsigned seed) {
-  std::mt19937 rng(seed);
-  const double size = std::array{0.005, 0.02, 0.06}[seed % 3];
-  Scene scene;
-  scene.contact.tick_budget = INFINITY;
-  scene.torsional_stiffness_most = 3.76;  // as a scene file that leaves it open with the simulated pen
-  const auto body = [&](double s) {
-    return shared(seed % 2 == 0 ? random_convex_body(rng, 12, s) : random_star_body(rng, 12, s));
-  };
-  const int parts = 2 + static_cast<int>(seed % 4);
-  for (int k = 0; k < parts; ++k) {
-    const double angle = 2 * M_PI * k / parts;
-    scene.parts.push_back(
-        {"fixed" + std::to_string(k),
-         body(1.5 * size),
-         {rotation(3 * random_direction(rng)), {1.5 * size * std::cos(angle), 1.5 * size * std::sin(angle), 0}},
-         false});
-  }
-  scene.parts.push_back({"held", body(size), {rotation(random_direction(rng)), {0, 0, 4.5 * size}}, true});
+  Scene scene = pocket(seed, std::array{0.005, 0.02, 0.06}[seed % 3], 2 + static_cast<int>(seed % 4));
+  scene.torsional_stiffness_most = kTorsionalMost;
   return scene;
 }
 
@@ -99,22 +84,11 @@ StylusScript pen_script(const Pose& from, double way, std::mt19937& rng) {
 void run(const Scene& scene, const StylusScript& script, bool damping_known, Count& count) {
   Scene placed = scene;
   placed.parts.back().pose = script.pose(0);
-  HapticLoop loop(placed);
-  SimulatedDevice device({}, script, loop.center());
-  UnknownDamping unknown(device);
-  Channel channel = Channel::create();
-  Servo servo(damping_known ? static_cast<Device&>(device) : unknown, channel);
-  ContactLink link(channel, loop.coupling(), loop.center());
-  device.start();
-  for (std::int64_t i = 0; 1e-3 * static_cast<double>(i) < script.end() + 0.2; ++i) {
-    servo.tick(i * kPeriodNs);
-    PenSample pen;
-    REQUIRE(link.read(pen));
-    const TickReport& r = loop.step(pen.state.pose, 1e-3);
-    link.publish(r.proxy, static_cast<std::uint64_t>(i), pen.state.sequence, i * kPeriodNs, r.planes);
-    device.advance(1e-3);
+  PenRun hand(placed, script, {}, {}, damping_known ? nullptr : of_unknown_damping);
+  for (int i = 0; 1e-3 * i < script.end() + 0.2; ++i) {
+    const PenSample pen = hand.tick();
     ++count.ticks;
-    count.touching += r.proxy.touching ? 1 : 0;
+    count.touching += hand.loop.report().proxy.touching ? 1 : 0;
     count.damped += (pen.flags & TEGOTAE_SHM_FLAG_DAMPED) != 0 ? 1 : 0;
     count.off += pen.reason == ForceOff::energy ? 1 : 0;
     count.energy = std::min(count.energy, pen.energy);

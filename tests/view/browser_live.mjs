@@ -97,6 +97,11 @@ test("the mouse is the pen: dragged onto the floor, the part pushes back", async
   assert.ok(pressed.frame.x[2] >= 0.005, "the part stays over the floor");
   assert.ok(pressed.frame.y[2] < pressed.frame.x[2] - 3e-4, "the pen is below it");
   for (const pair of pressed.frame.pairs.filter((p) => p.touching)) assert.ok(pair.normal[2] > 0.99, "normals point up");
+  assert.ok(pressed.frame.forces.length > 0 && pressed.shown.forces > 0, "contacts that carry have arrows");
+  for (const { point, force } of pressed.frame.forces) {
+    assert.ok(force[2] > 0 && Math.abs(force[0]) < 1e-3 * force[2], "the floor pushes up");
+    assert.ok(point[2] >= 0 && point[2] < 1e-4, "where it is");
+  }
   assert.equal(await page.textContent("#force"), "");
   await page.mouse.up();
   await restsOnFloor(page);

@@ -49,6 +49,14 @@ nlohmann::json about_of(const std::string& bundle) {
   return nlohmann::json::parse(bundle.substr(4, length));
 }
 
+std::vector<float> floats_of(const std::string& bundle, const nlohmann::json& array) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, bundle.data(), 4);
+  std::vector<float> values(array.at("count").get<std::size_t>());
+  std::memcpy(values.data(), bundle.data() + 4 + length + 4 * array.at("at").get<std::size_t>(), 4 * values.size());
+  return values;
+}
+
 }  // namespace
 
 TEST_CASE("a replay finds the contacts of the recorded poses") {
@@ -60,14 +68,7 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
   folder.write("r.csv", text);
   const std::string bytes = replay_bundle(folder / "r.csv", folder / "scene.toml");
   const auto about = about_of(bytes);
-  std::uint32_t length = 0;
-  std::memcpy(&length, bytes.data(), 4);
-  const auto floats = [&](const nlohmann::json& array) {
-    std::vector<float> values(array.at("count").get<std::size_t>());
-    std::memcpy(values.data(), bytes.data() + 4 + length + 4 * array.at("at").get<std::size_t>(), 4 * values.size());
-    return values;
-  };
-  const std::vector<float> frames = floats(about.at("frames")), pairs = floats(about.at("pairs"));
+  const std::vector<float> frames = floats_of(bytes, about.at("frames")), pairs = floats_of(bytes, about.at("pairs"));
   REQUIRE(frames.size() == 81 * kFrameFloats);
   const float* last = frames.data() + 80 * kFrameFloats;
   CHECK(last[1] == 80);                           // tick
@@ -81,6 +82,32 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
     CHECK(at[6] < 6e-5);                    // gap: the loop is led up to 50 µm farther
     CHECK(at[6] > 0);
     CHECK(std::floor(at[7] / 2) == 0);  // the floor is part 0
+  }
+}
+
+TEST_CASE("a replay has the contact forces of the recording, which MCAP keeps and CSV does not") {
+  const TempFolder folder;
+  write_cubes(folder);
+  // Down to 3 mm into the floor, and there.
+  folder.write("path.csv",
+               "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.018,1,0,0,0\n0.3,0,0,0.007,1,0,0,0\n0.9,0,0,0.007,1,0,0,0\n");
+  for (const std::string name : {"r.mcap", "r.csv"}) {
+    CAPTURE(name);
+    const Output run = run_program("tegotae", "run " + (folder / "scene.toml") + " --fast --record " + (folder / name));
+    INFO(run.err);
+    REQUIRE(run.code != 2);
+    const std::string bytes = replay_bundle(folder / name);
+    const auto about = about_of(bytes);
+    const std::vector<float> frames = floats_of(bytes, about.at("frames")),
+                             forces = floats_of(bytes, about.at("forces"));
+    const float* last = frames.data() + frames.size() - kFrameFloats;
+    CHECK(last[20] > 0.5);  // N, up
+    const auto count = static_cast<std::size_t>(last[33]);
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += forces[forces.size() - kForceFloats * i - 1];
+    if (name == "r.mcap") CHECK(sum == Approx(last[20]).epsilon(0.01));
+    if (name == "r.csv") CHECK(forces.empty());
+    CHECK((about.at("notes").dump().find("MCAP has those") != std::string::npos) == (name == "r.csv"));
   }
 }
 

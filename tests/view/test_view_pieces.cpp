@@ -11,8 +11,10 @@
 #include "view/address.hpp"
 #include "view/bundle.hpp"
 #include "view/display_mesh.hpp"
+#include "view/frame_maker.hpp"
 #include "view/page_parts.hpp"
 #include "view/request_guard.hpp"
+#include "view/wire.hpp"
 
 using namespace tegotae;
 using namespace tegotae::view;
@@ -106,6 +108,42 @@ TEST_CASE("a bundle is a description and what it points to") {
   float value = 0;
   std::memcpy(&value, bytes.data() + 4 + length + 4 * 2, 4);
   CHECK(value == 3);
+}
+
+TEST_CASE("a page gets the force of each contact, in the coupling's newtons at its place") {
+  Scene scene;
+  scene.contact.tick_budget = INFINITY;
+  scene.parts.push_back({"floor", test::shared(test::box({0.1, 0.1, 0.01})), {Quat::Identity(), {0, 0, -0.005}}});
+  const Vec3 size(0.02, 0.03, 0.01);
+  scene.parts.push_back({"block", test::shared(test::box(size)), {Quat::Identity(), {0, 0, 0.0051}}, true});
+  HapticLoop loop(scene);
+  const FrameMaker maker(scene);
+  Frame frame;
+  for (const auto& [depth, newtons] : {std::pair(-1e-3, 0.0), {1e-3, 0.8}, {2.5e-3, 2.0}}) {
+    CAPTURE(depth);
+    const Pose Y{Quat::Identity(), {0.5 * depth, 0, 0.005 - depth}};
+    for (int tick = 0; tick < 100; ++tick) loop.step(Y, 1e-3);
+    maker.add_loop(loop, frame);
+    const std::string bytes = frame_message(frame);
+    std::vector<float> row((bytes.size() - 8) / sizeof(float));
+    std::memcpy(row.data(), bytes.data() + 8, row.size() * sizeof(float));
+    const auto pairs = static_cast<std::size_t>(row[31]), forces = static_cast<std::size_t>(row[33]);
+    REQUIRE(row.size() == kFrameFloats + kPairFloats * pairs + kForceFloats * forces);
+    CHECK((forces > 0) == (newtons > 0));
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (std::size_t i = 0; i < forces; ++i) {
+      const float* at = row.data() + kFrameFloats + kPairFloats * pairs + kForceFloats * i;
+      const Vec3 point(at[0], at[1], at[2]), f(at[3], at[4], at[5]);
+      CHECK(std::abs(std::abs(point.x() - 0.5 * depth) - 0.5 * size.x()) < 1e-5);
+      CHECK(std::abs(std::abs(point.y()) - 0.5 * size.y()) < 1e-5);
+      CHECK(point.z() >= 0);
+      CHECK(point.z() < 2e-5);
+      force += f;
+      torque += (point - Vec3(0.5 * depth, 0, 0)).cross(f);
+    }
+    CHECK((force - Vec3(0, 0, newtons)).norm() < 800 * 2e-5);  // of the gap that contacts keep
+    CHECK(torque.norm() < 1e-4);
+  }
 }
 
 TEST_CASE("a led hand goes to its goal like a hand") {

@@ -43,7 +43,7 @@ class Watcher {
   const std::string& status() const { return status_; }
 
  private:
-  static constexpr std::size_t kFloats = 33;
+  static constexpr std::size_t kFloats = 34;
 
   bool next_row() {
     for (;;) {

@@ -34,7 +34,7 @@ struct SimulatedDeviceSettings {
   double continuous_force = 1.4;                ///< what the motors stand for long, N; 0: not limited
   double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
-  double velocity_cutoff_hz = 50.0;             ///< of the low-pass on differences of the reported pose
+  double velocity_cutoff_hz = 50.0;             ///< of the low-pass on what the steps of the pose tell
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
   bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
 };

@@ -23,7 +23,7 @@ function checkbox(label, checked, change) {
 }
 
 export function showLayers(overlay) {
-  const names = { contacts: "Contacts and normals", pairs: "Nearest features", arrows: "Force and torque" };
+  const names = { contacts: "Contacts and normals", pairs: "Nearest features", forces: "Contact forces", arrows: "Force and torque" };
   $("layers").replaceChildren(...Object.entries(names).map(([layer, name]) => checkbox(name, overlay.enabled[layer], (on) => overlay.enable(layer, on))));
 }
 

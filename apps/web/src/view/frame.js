@@ -1,6 +1,7 @@
-// A frame as apps/view/wire.cpp writes it: a row of floats, then its pairs.
-export const frameFloats = 33;
+// A frame as apps/view/wire.cpp writes it: a row of floats, then its pairs and contact forces.
+export const frameFloats = 34;
 export const pairFloats = 8;
+export const forceFloats = 6;
 
 // As LagReason (tegotae/core/lag_reason.hpp) numbers them, in the flags from this bit on.
 export const lagReasons = ["", "held by contacts", "out of time", "no motion proved free", "not following the pen"];
@@ -8,7 +9,8 @@ const lagShift = 8;
 
 const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8, waiting: 16 };
 
-export function readFrame(row, pairs) {
+// `forces` begin after the pairs where they are not given.
+export function readFrame(row, pairs, forces = pairs.subarray(row[31] * pairFloats)) {
   const numbers = (at, count) => Array.from(row.subarray(at, at + count));
   const flags = row[29];
   const frame = {
@@ -27,6 +29,7 @@ export function readFrame(row, pairs) {
     generation: row[32],
     lagReason: flags >> lagShift,
     pairs: [],
+    forces: [],
   };
   for (const [name, bit] of Object.entries(flagNames)) frame[name] = (flags & bit) !== 0;
   for (let i = 0; i < row[31]; ++i) {
@@ -38,6 +41,10 @@ export function readFrame(row, pairs) {
       part: Math.floor(pairs[at + 7] / 2),
       touching: pairs[at + 7] % 2 === 1,
     });
+  }
+  for (let i = 0; i < row[33]; ++i) {
+    const at = i * forceFloats;
+    frame.forces.push({ point: Array.from(forces.subarray(at, at + 3)), force: Array.from(forces.subarray(at + 3, at + 6)) });
   }
   return frame;
 }

@@ -81,7 +81,7 @@ function showScene(bundle) {
 function showHeld() {
   overlay.setScene(about);
   hand.setScene(about);
-  $("scale").textContent = `Arrows: ${1e3 * overlay.metersPerNewton} mm for 1 N,\n${overlay.metersPerNewtonMeter.toPrecision(1)} mm for 1 N·mm`;
+  $("scale").textContent = `Arrows: ${1e3 * overlay.metersPerNewton} mm for 1 N on the pen or of a contact,\n${overlay.metersPerNewtonMeter.toPrecision(1)} mm for 1 N·mm`;
 }
 
 function showStatus(next) {

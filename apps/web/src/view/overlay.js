@@ -1,11 +1,12 @@
-// What acts on the held part: contact points with normals, nearest-feature pairs, force and torque. Drawn over the
-// parts, for most of it happens between them.
+// What acts on the held part: contact points with normals, nearest-feature pairs, the force of each contact, force and
+// torque on the pen. Drawn over the parts, for most of it happens between them.
 import * as THREE from "three";
 import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { norm } from "./frame.js";
 
 const mostPairs = 128;
+const mostForces = 6;
 // An arrow shorter than this share of the held part's radius is left out.
 const leastArrow = 0.05;
 
@@ -74,13 +75,14 @@ export class Overlay {
     this.stage = stage;
     this.force = new Arrow(false);
     this.torque = new Arrow(true);
+    this.exerted = Array.from({ length: mostForces }, () => new Arrow(false));
     this.contacts = dots(9);
     this.normals = segments();
     this.near = dots(5);
     this.links = segments();
     this.group = new THREE.Group();
-    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], arrows: [this.force.group, this.torque.group] };
-    this.enabled = { contacts: true, pairs: true, arrows: true };
+    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], forces: this.exerted.map((shape) => shape.group), arrows: [this.force.group, this.torque.group] };
+    this.enabled = { contacts: true, pairs: true, forces: true, arrows: true };
     for (const object of [this.links, this.near, this.normals, this.contacts]) object.renderOrder = 10;
     this.group.add(...Object.values(this.layers).flat());
     stage.scene.add(this.group);
@@ -98,6 +100,7 @@ export class Overlay {
   applyTheme() {
     this.force.material.color.set(cssColor("--force"));
     this.torque.material.color.set(cssColor("--torque"));
+    for (const shape of this.exerted) shape.material.color.set(cssColor("--contact"));
     this.contacts.material.color.set(cssColor("--contact"));
     this.normals.material.color.set(cssColor("--contact"));
     this.near.material.color.set(cssColor("--pair"));
@@ -114,19 +117,23 @@ export class Overlay {
     const held = this.stage.held.group;
     held.updateMatrixWorld();
     const center = this.center.clone().applyMatrix4(held.matrixWorld);
-    const arrow = (shape, vector, scale) => {
+    const arrow = (shape, layer, from, vector, scale) => {
       const scaled = vector.map((v) => v * scale);
-      shape.show(center, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
-      shape.group.visible &&= this.enabled.arrows;
+      shape.show(from, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
+      shape.group.visible &&= this.enabled[layer];
     };
-    arrow(this.force, frame.force, this.metersPerNewton);
-    arrow(this.torque, frame.torque, this.metersPerNewtonMeter);
+    arrow(this.force, "arrows", center, frame.force, this.metersPerNewton);
+    arrow(this.torque, "arrows", center, frame.torque, this.metersPerNewtonMeter);
+    this.exerted.forEach((shape, i) => {
+      const { point, force } = frame.forces[i] ?? { point: [0, 0, 0], force: [0, 0, 0] };
+      arrow(shape, "forces", new THREE.Vector3(...point), force, this.metersPerNewton);
+    });
     const touching = frame.pairs.filter((pair) => pair.touching);
     const near = frame.pairs.filter((pair) => !pair.touching);
     fill(this.contacts, touching.flatMap((p) => p.point));
     fill(this.normals, touching.flatMap((p) => [...p.point, ...along(p.point, p.normal, 0.35 * this.unit)]));
     fill(this.near, near.flatMap((p) => p.point));
     fill(this.links, near.flatMap((p) => [...p.point, ...along(p.point, p.normal, -p.gap)]));
-    this.shown = { contacts: touching.length, pairs: near.length };
+    this.shown = { contacts: touching.length, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length };
   }
 }

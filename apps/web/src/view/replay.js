@@ -1,12 +1,14 @@
 // A recording: all frames are there, and time goes as one likes.
-import { frameFloats, pairFloats, readFrame } from "./frame.js";
+import { forceFloats, frameFloats, pairFloats, readFrame } from "./frame.js";
 
 export class Replay {
   constructor(bundle, { onFrame, onStatus }) {
-    const { frames, pairs, pair_begin: begin } = bundle.about;
+    const { frames, pairs, pair_begin: begin, forces, force_begin: forceBegin } = bundle.about;
     this.rows = bundle.floats(frames);
     this.pairs = bundle.floats(pairs);
     this.pairBegin = bundle.integers(begin);
+    this.forces = bundle.floats(forces);
+    this.forceBegin = bundle.integers(forceBegin);
     this.count = this.rows.length / frameFloats;
     Object.assign(this, { onFrame, onStatus, at: 0, speed: 1, playing: false });
   }
@@ -18,7 +20,7 @@ export class Replay {
     return this.rows[i * frameFloats + 2] + this.rows[i * frameFloats + 3];
   }
   frame(i) {
-    return readFrame(this.row(i), this.pairs.subarray(this.pairBegin[i] * pairFloats));
+    return readFrame(this.row(i), this.pairs.subarray(this.pairBegin[i] * pairFloats), this.forces.subarray(this.forceBegin[i] * forceFloats));
   }
   get duration() {
     return this.time(this.count - 1);
