@@ -9,6 +9,7 @@
 
 #include "core/proper_pose.hpp"
 #include "device/mailbox.hpp"
+#include "sim/contact_list.hpp"
 #include "sim/handover.hpp"
 #include "sim/lag.hpp"
 #include "sim/running_scene.hpp"
@@ -37,6 +38,7 @@ struct HapticLoop::State {
   Handover<RunningScene> next;
   Pose Y;
   TickReport report;
+  ContactList contacts;
   LagCounter lag;
   Mailbox<std::array<double, 7>> latest;  // p, q
   std::atomic<std::uint64_t> change_in_force{0};
@@ -101,6 +103,7 @@ struct HapticLoop::State {
       Y = now->loop->pose();  // the old part's means nothing for the new one
       begin();
     }
+    contacts.clear();
     change_in_force.store(changed->number, std::memory_order_release);
     return !same;
   }
@@ -119,6 +122,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (placed) s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.Y, timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
+  s.contacts.update(s.now->loop->limits(), s.report, s.report.proxy.X * s.now->mass.center);
   s.tell();
   return s.finish();
 }
@@ -171,6 +175,12 @@ const TickReport& HapticLoop::report() const {
 }
 const StartReport& HapticLoop::start() const {
   return state_->now->loop->start();
+}
+const std::vector<ContactPoint>& HapticLoop::contacts() const {
+  return state_->contacts.contacts();
+}
+const std::vector<ContactEvent>& HapticLoop::contact_events() const {
+  return state_->contacts.events();
 }
 const std::vector<Contact>& HapticLoop::limits() const {
   return state_->now->loop->limits();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tegotae/contact/contact.hpp"
+#include "tegotae/contact/contact_point.hpp"
 #include "tegotae/core/contact_force.hpp"
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/lag_reason.hpp"
@@ -112,6 +113,11 @@ class HapticLoop {
   const TickReport& report() const;
   /// What the held part touched or overlapped at the start, and what has become of it by the last tick.
   const StartReport& start() const;
+  /// The contacts of the held part at X, sorted by part and features: what is in contact (TickReport::contacts) or
+  /// carries force; of more than 1024 the nearest. Valid until the next call of step().
+  const std::vector<ContactPoint>& contacts() const;
+  /// Which of them began and which ended in the last tick, in the same order. Valid until the next call of step().
+  const std::vector<ContactEvent>& contact_events() const;
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;
