@@ -30,11 +30,11 @@ Scene corner_scene(const std::string& resolver) {
   return scene;
 }
 
-/// Down onto the floor, along it to the wall, and up again.
+/// Down onto the floor, along it to the wall and back, and up again.
 Pose pen(int tick) {
   const double t = 1e-3 * tick;
   const double down = std::clamp(t / 0.2, 0.0, 1.0) - std::clamp((t - 0.8) / 0.1, 0.0, 1.0);
-  const double along = std::clamp((t - 0.3) / 0.4, 0.0, 1.0);
+  const double along = std::clamp((t - 0.3) / 0.4, 0.0, 1.0) - std::clamp((t - 0.75) / 0.1, 0.0, 1.0);
   return {Quat::Identity(), Vec3(0.022 * along, 0, 0.012 - 0.003 * down)};
 }
 constexpr int kTicks = 1000;

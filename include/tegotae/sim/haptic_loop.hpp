@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "tegotae/contact/contact.hpp"
@@ -14,6 +15,7 @@
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/scene_change.hpp"
 #include "tegotae/sim/start.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
@@ -97,14 +99,14 @@ class HapticLoop {
   /// the first tick with it does not follow the pen, so that the pen can be brought there first (ContactLink::home).
   ///
   /// `ready` is told the change's number and how the held part starts in it, in this thread and before step() may go
-  /// over to it. Returns the number, from 1 on. Throws Error as the constructor does, and what `ready` throws; nothing
-  /// changes then.
-  std::uint64_t change(const Scene& next,
-                       const std::function<void(std::uint64_t number, const StartReport& start)>& ready = {});
-  /// Takes the last change back, from any thread; false when it is in force.
-  bool withdraw();
+  /// over to it. Throws Error as the constructor does, and what `ready` throws; nothing changes then.
+  SceneChange change(const Scene& next,
+                     const std::function<void(std::uint64_t number, const StartReport& start)>& ready = {});
   /// Number of the change that the last tick ran in, 0 before the first; from any thread.
   std::uint64_t change_in_force() const noexcept;
+
+  /// Name of the part that is held in the scene in force; from any thread.
+  std::string held() const;
 
   /// Where the held part was after the last tick; from any thread, to draw it and for change().
   Pose latest() const noexcept;
