@@ -4,6 +4,7 @@
 
 #include "peg_scene.hpp"
 #include "run_options.hpp"
+#include "tegotae/narrowphase/hierarchy_cache.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
 
   return guarded_main(app, argc, argv, [&] {
+    set_hierarchy_cache(default_cache_folder());
     // A recording wants its scene with it; one that cannot be written is told by the run.
     if (folder.empty() && !options.record.empty() &&
         std::filesystem::is_directory(std::filesystem::absolute(options.record).parent_path()))

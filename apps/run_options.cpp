@@ -2,64 +2,17 @@
 
 #include <unistd.h>
 
-#include <csignal>
-#include <exception>
+#include <atomic>
 #include <iostream>
 
 #include "format.hpp"
-#include "process.hpp"
 #include "progress_line.hpp"
 #include "start_text.hpp"
 #include "summary.hpp"
-#include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
-#include "tegotae/narrowphase/hierarchy_cache.hpp"
 #include "view/view_run.hpp"
 
 namespace tegotae::apps {
-
-namespace {
-
-// The one thing that a signal handler may touch.
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-void on_signal(int) {
-  interrupted.store(true);
-}
-
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
-int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
-  try {
-    app.parse(argc, argv);
-    set_hierarchy_cache(default_cache_folder());
-    return body();
-  } catch (const CLI::Success& e) {  // --help, --version
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    std::cerr << app.get_name() << ": " << first_line(e.what()) << " (see --help)\n";
-    return kBadInput;
-  } catch (const Error& e) {
-    std::cerr << app.get_name() << ": " << e.what() << "\n";
-    return kBadInput;
-  } catch (const std::exception& e) {
-    std::cerr << app.get_name() << ": the run failed: " << first_line(e.what()) << "\n";
-    return kRunFailed;
-  }
-}
-
-}  // namespace
-
-std::atomic<bool>& catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
-  return interrupted;
-}
 
 CLI::Option* add_view_address(CLI::App& app, std::string& address) {
   return app.add_option("--view-address", address, "Where to serve the page (127.0.0.1, any free port)")
@@ -94,11 +47,6 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   add_view_address(app, options.view_address)->needs(view);
 }
 
-int guarded_main(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  prepare_process();
-  return finish_output(app.get_name(), guarded_body(app, argc, argv, body));
-}
-
 int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
   if (!options.resolver.empty()) file.scene.contact.resolver = options.resolver;
   RunProgress progress;
@@ -109,7 +57,8 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.record = options.record;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
-  settings.stop = settings.stop_check = &catch_interrupts();
+  std::atomic<bool>& interrupted = catch_interrupts();
+  settings.stop = settings.stop_check = &interrupted;
   settings.check_all = options.check_all;
   settings.on_start = [&](const RunStart& start) {
     const std::string text = start_text(start.parts, file.scene);

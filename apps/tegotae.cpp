@@ -13,6 +13,7 @@
 #include "run_options.hpp"
 #include "status_line.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
+#include "tegotae/narrowphase/hierarchy_cache.hpp"
 #include "tries/try_command.hpp"
 #include "view/replay.hpp"
 
@@ -117,6 +118,7 @@ int main(int argc, char** argv) {
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
   return guarded_main(app, argc, argv, [&] {
+    set_hierarchy_cache(default_cache_folder());
     const MeshLoader load = [trusted](const std::string& mesh, double unit) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };

@@ -6,7 +6,7 @@
 
 #include "device/make_device.hpp"
 #include "device/status.hpp"
-#include "run_options.hpp"
+#include "guarded_main.hpp"
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/servo/servo.hpp"

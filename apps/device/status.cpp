@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "format.hpp"
+#include "guarded_main.hpp"
 #include "latency_json.hpp"
-#include "run_options.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"

@@ -5,10 +5,9 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <string>
+#include <tegotae/tegotae.hpp>
 #include <vector>
-
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
 
 using namespace tegotae;
 
@@ -51,12 +50,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::string folder = argv[1];
-  const auto load = [&](const char* file) {
-    return std::make_shared<TriangleMesh>(load_mesh(folder + "/" + file, unit_length("mm")));
-  };
   Scene scene;
-  scene.parts.push_back({"hole", load("hole_20.obj"), Pose{}, false});
-  scene.parts.push_back({"peg", load("peg_0.94.obj"), Pose{Quat::Identity(), Vec3(0, 0, 0.03)}, true});
+  scene.add_fixed("hole", load_mesh(folder + "/hole_20.obj", unit_length("mm")));
+  scene.add_held("peg", load_mesh(folder + "/peg_0.94.obj", unit_length("mm")), {Quat::Identity(), Vec3(0, 0, 0.03)});
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   HapticLoop standard(scene);
   scene.contact.custom_resolver = [](int capacity) { return std::make_unique<Hildreth>(capacity); };

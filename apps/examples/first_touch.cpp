@@ -1,22 +1,21 @@
 #include <cstdio>
-#include <memory>
-
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include <tegotae/tegotae.hpp>
 
 using namespace tegotae;
 
 int main() {
-  const auto load = [](const char* file) { return std::make_shared<TriangleMesh>(load_mesh(file, unit_length("mm"))); };
   Scene scene;
-  scene.parts.push_back({"hole", load("models/hole_20.obj"), Pose{}, false});
-  scene.parts.push_back({"peg", load("models/peg_0.94.obj"), Pose{Quat::Identity(), Vec3(0, 0, 0.03)}, true});  // held
-  HapticLoop loop(scene);  // throws Error when the parts overlap
+  scene.add_fixed("hole", load_mesh("models/hole_20.obj", unit_length("mm")));
+  scene.add_held("peg", load_mesh("models/peg_0.94.obj", unit_length("mm")), {Quat::Identity(), Vec3(0, 0, 0.03)});
 
-  for (int ms = 0; ms <= 500; ++ms) {
-    const Pose pen{Quat::Identity(), Vec3(0.004, 0, 0.03 - 2e-5 * ms)};  // m: down, four millimeters off the axis
-    const TickReport& tick = loop.step(pen, 1e-3);                       // as near to the pen as the parts allow
-    const Wrench feel = coupling_wrench(scene.coupling, tick.proxy, pen, {Vec3(0, 0, -0.02)}, loop.center());
-    if (ms % 100 == 0) std::printf("%3d ms: %2d contacts, %5.2f N up\n", ms, tick.contacts, feel.force.z());
-  }
+  const Pose above{Quat::Identity(), Vec3(0.004, 0, 0.03)}, below{Quat::Identity(), Vec3(0.004, 0, 0.02)};  // m
+  SimulatedDevice pen({}, StylusScript({{0.0, above}, {0.5, below}}));  // a hand that goes down, off the axis
+  Rig rig(scene, pen, {RigClock::simulated});                           // throws Error when the parts overlap
+
+  rig.start();
+  rig.run(0.6, [](const Rig& r) {  // s
+    if (r.steps() % 100 != 1) return;
+    std::printf("%3.0f ms: %2zu contacts, %5.2f N up\n", 1e3 * r.time(), r.contacts().size(), r.pen().wrench.force.z());
+  });
+  rig.stop();
 }

@@ -2,11 +2,7 @@
 // triangles; what a mesh is like can be asked before it is used.
 #include <cstdio>
 #include <limits>
-#include <memory>
-
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include <tegotae/tegotae.hpp>
 
 using namespace tegotae;
 
@@ -26,15 +22,15 @@ TriangleMesh table(double side) {
 
 int main() {
   // weld() joins vertices that are equal, as drawing buffers often have one for each face; load_mesh does it by itself.
-  const auto peg = std::make_shared<const TriangleMesh>(weld(cube(0.02)));
-  const MeshReport r = report(*peg);
+  const TriangleMesh peg = weld(cube(0.02));
+  const MeshReport r = report(peg);
   std::printf("cube: %d triangles, %s\n", static_cast<int>(r.triangles), r.closed ? "closed" : "open");
 
   Scene scene;
-  scene.parts.push_back({"table", std::make_shared<const TriangleMesh>(weld(table(0.2))), Pose{}, false});
-  scene.parts.push_back({"cube", peg, Pose{Quat::Identity(), Vec3(0, 0, 0.02)}, true});
+  scene.add_fixed("table", weld(table(0.2)));
+  scene.add_held("cube", peg, {Quat::Identity(), Vec3(0, 0, 0.02)});
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();  // not bounded by the clock: repeatable
-  HapticLoop loop(scene);
+  HapticLoop loop(scene);  // the contact loop alone, for pens that the application reads itself
   for (int ms = 0; ms <= 400; ++ms) {
     const Pose pen{Quat::Identity(), Vec3(0, 0, 0.02 - 4e-5 * ms)};  // m: into the table
     const TickReport& tick = loop.step(pen, 1e-3);

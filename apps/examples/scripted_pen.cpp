@@ -1,14 +1,8 @@
-// A pen without hardware whose hand follows a script; servo and contact loop take turns in virtual time. The same
-// program always prints the same numbers. Real time is one call: servo.start() (see own_loop.cpp).
+// A pen without hardware whose hand follows a script; servo and contact loop take turns in simulated time. The same
+// program always prints the same numbers. In real time it is the same without RigClock::simulated (see own_loop.cpp).
 #include <cstdio>
-#include <limits>
-#include <memory>
-
-#include "tegotae/device/simulated_device.hpp"
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/servo/contact_link.hpp"
-#include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include <string>
+#include <tegotae/tegotae.hpp>
 
 using namespace tegotae;
 
@@ -18,36 +12,20 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::string folder = argv[1];
-  const auto load = [&](const char* file) {
-    return std::make_shared<TriangleMesh>(load_mesh(folder + "/" + file, unit_length("mm")));
-  };
+  const Pose start{Quat::Identity(), Vec3(0, 0, 0.03)};
   Scene scene;
-  scene.parts.push_back({"hole", load("hole_20.obj"), Pose{}, false});
-  scene.parts.push_back({"peg", load("peg_0.94.obj"), Pose{Quat::Identity(), Vec3(0, 0, 0.03)}, true});
-  scene.contact.tick_budget = std::numeric_limits<double>::infinity();  // work alone decides: repeatable
-  HapticLoop loop(scene);
+  scene.add_fixed("hole", load_mesh(folder + "/hole_20.obj", unit_length("mm")));
+  scene.add_held("peg", load_mesh(folder + "/peg_0.94.obj", unit_length("mm")), start);
 
   // Down onto the rim, four millimeters off the axis, in half a second.
-  const StylusScript script(
-      {{0.0, Pose{Quat::Identity(), Vec3(0.004, 0, 0.03)}}, {0.5, Pose{Quat::Identity(), Vec3(0.004, 0, 0.02)}}});
-  SimulatedDevice pen({}, script, loop.center());
-  Channel channel = Channel::create();
-  Servo servo(pen, channel);
-  ContactLink link(channel, loop.coupling(), loop.center());
-
-  pen.start();
-  for (std::uint64_t ms = 0; ms <= 600; ++ms) {
-    const auto now_ns = static_cast<std::int64_t>(ms) * 1'000'000;
-    servo.tick(now_ns);
-    PenSample sample;
-    if (link.read(sample)) {
-      const TickReport& tick = loop.step(sample.state.pose, 1e-3);
-      link.publish(tick.proxy, ms, sample.state.sequence, now_ns);
-      if (ms % 100 == 0)
-        std::printf("%3d ms: pen %6.2f mm, peg %6.2f mm, %2d contacts, %5.2f N up\n", static_cast<int>(ms),
-                    1e3 * sample.state.pose.p.z(), 1e3 * tick.proxy.X.p.z(), tick.contacts, sample.wrench.force.z());
-    }
-    pen.advance(1e-3);
-  }
-  pen.stop();
+  SimulatedDevice pen({}, StylusScript({{0.0, Pose{Quat::Identity(), Vec3(0.004, 0, 0.03)}},
+                                        {0.5, Pose{Quat::Identity(), Vec3(0.004, 0, 0.02)}}}));
+  Rig rig(scene, pen, {RigClock::simulated});
+  rig.start();
+  rig.run(0.601, [](const Rig& r) {
+    if (r.steps() % 100 == 1)
+      std::printf("%3.0f ms: pen %6.2f mm, peg %6.2f mm, %2zu contacts, %5.2f N up\n", 1e3 * r.time(),
+                  1e3 * r.pen().state.pose.p.z(), 1e3 * r.part().p.z(), r.contacts().size(), r.pen().wrench.force.z());
+  });
+  rig.stop();
 }

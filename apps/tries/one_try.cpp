@@ -61,8 +61,7 @@ class Watcher final : public RunObserver {
  public:
   Watcher(const Scene& scene, RouteHand& hand, const RunGoal& goal, const std::atomic<bool>& stop, Result& result)
       : hand_(hand), goal_(goal), stop_(stop), result_(result) {
-    for (const Part& part : scene.parts)
-      if (!part.held) fixed_.push_back(part.name);
+    for (const Part& part : scene.parts) names_.push_back(part.name);
   }
 
   void before_tick(double) override {}
@@ -81,13 +80,13 @@ class Watcher final : public RunObserver {
 
   /// Who is in the way now.
   void find_blocker() const {
-    std::map<std::uint32_t, std::size_t> count;
+    std::map<PartId, std::size_t> count;
     for (const Touch& touch : touches_) ++count[touch.part];
     std::size_t most = 0;
     for (const auto& [part, n] : count) {
       if (n <= most) continue;
       most = n;
-      result_.blocked_by = fixed_[part];
+      result_.blocked_by = names_[part.index];
       const auto last =
           std::find_if(touches_.rbegin(), touches_.rend(), [p = part](const Touch& t) { return t.part == p; });
       result_.place_W = last->place_W;
@@ -99,7 +98,7 @@ class Watcher final : public RunObserver {
  private:
   struct Touch {
     double t;
-    std::uint32_t part;
+    PartId part;
     Vec3 place_W;
   };
 
@@ -107,7 +106,7 @@ class Watcher final : public RunObserver {
     while (!touches_.empty() && touches_.front().t < tick.t - kLooksBack) touches_.pop_front();
     const TickReport& report = tick.loop.report();
     const Vec3 center = report.proxy.X * tick.loop.center();
-    std::map<std::uint32_t, std::pair<Vec3, int>> sums;
+    std::map<PartId, std::pair<Vec3, int>> sums;
     for (const Contact& c : tick.loop.limits()) {
       if (c.age == kCutAge || c.gap > report.contact_gap) continue;
       auto& [sum, n] = sums.try_emplace(c.part, Vec3::Zero(), 0).first->second;
@@ -121,7 +120,7 @@ class Watcher final : public RunObserver {
   const RunGoal& goal_;
   const std::atomic<bool>& stop_;
   Result& result_;
-  std::vector<std::string> fixed_;
+  std::vector<std::string> names_;  // of the parts
   std::deque<Touch> touches_;
   double since_ = -1;  // when the part came to its goal, s
 };

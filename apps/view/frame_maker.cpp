@@ -2,16 +2,6 @@
 
 namespace tegotae::view {
 
-FrameMaker::FrameMaker(const Scene& scene) {
-  for (std::uint32_t i = 0; i < scene.parts.size(); ++i)
-    if (!scene.parts[i].held) fixed_.push_back(i);
-}
-
-FrameMaker::FrameMaker(const std::vector<Part>& parts, const std::vector<std::uint32_t>& numbers) {
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!parts[i].held) fixed_.push_back(numbers[i]);
-}
-
 void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   const TickReport& report = loop.report();
   const auto& limits = loop.limits();
@@ -35,7 +25,7 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
         p.normal[i] = c.n[i];
       }
       p.gap = c.gap;
-      p.part = fixed_[c.part];
+      p.part = numbers_.empty() ? c.part.index : numbers_[c.part.index];
       p.touching = touching ? 1 : 0;
     }
 }

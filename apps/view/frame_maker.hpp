@@ -10,9 +10,9 @@ namespace tegotae::view {
 /// Makes frames of a run's ticks, without allocation.
 class FrameMaker {
  public:
-  explicit FrameMaker(const Scene& scene);
-  /// `numbers`: how frames number the parts, instead of by their places in the list.
-  FrameMaker(const std::vector<Part>& parts, const std::vector<std::uint32_t>& numbers);
+  FrameMaker() = default;
+  /// `numbers`: how frames number the scene's parts, instead of by PartId.
+  explicit FrameMaker(std::vector<std::uint32_t> numbers) : numbers_(std::move(numbers)) {}
 
   /// Fills in what the loop knows: X, contacts, gap, contact forces, pairs. Of more pairs than fit, those in contact
   /// come first.
@@ -23,7 +23,7 @@ class FrameMaker {
  private:
   void look_for_reason(const TickView& tick);
 
-  std::vector<std::uint32_t> fixed_;                  // numbers of the fixed parts
+  std::vector<std::uint32_t> numbers_;                // of the parts
   ForceOff reason_ = ForceOff::none;                  // why the force went off, also while it waits to come on again
   decltype(ServoStatistics::force_off) force_off_{};  // as long as it was on
 };

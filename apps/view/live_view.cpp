@@ -51,7 +51,7 @@ struct LiveView::Stretch {
   Stretch(const PageParts& parts, std::uint64_t generation_in)
       : generation(generation_in),
         numbers(parts.numbers()),
-        maker(parts.in_scene(), numbers),
+        maker(numbers),
         suspended(std::make_unique<std::atomic<bool>[]>(parts.all().size())) {}
 
   const std::uint64_t generation;

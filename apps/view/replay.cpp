@@ -106,7 +106,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   inputs.insert(inputs.end(), {path, recording_info_path(path)});
   refuse_to_replace(html, inputs);
   Follower follower(file.scene, path, rows.front().x);
-  const FrameMaker maker(file.scene);
+  const FrameMaker maker;
   const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
   std::vector<float> frames, pairs, forces;
   std::vector<std::uint32_t> pair_begin, force_begin;

@@ -23,7 +23,8 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
     }
     const AxisLimit axis = least_limiting_axis(a, b, motion, clearance);
     if (!axis.found) continue;
-    if (!add({axis.n, a[axis.corner] - c, axis.gap, t.part, kCutAge}, limits_)) continue;
+    const Feature face_a{FeatureKind::face, t.a}, face_b{FeatureKind::face, t.b};
+    if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kCutAge, face_a, face_b}, limits_)) continue;
     owners_.push_back(kNone);
     ++added;
   }
@@ -56,8 +57,9 @@ Vec3 ContactSet::normal_B(std::uint32_t part, const FeaturePair& at) const {
 }
 
 Contact ContactSet::limit_of(std::uint32_t part, const FeaturePair& at, int age) const {
-  const Pose& X_WB = fixed_[part].X_WB;
-  return {X_WB.q * normal_B(part, at), X_WB * at.p_a - X_ * center_, at.distance, part, age};
+  const FixedSurface& B = fixed_[part];
+  const Vec3 n = B.X_WB.q * normal_B(part, at);
+  return {n, B.X_WB * at.p_a - X_ * center_, at.distance, B.part, age, at.a, at.b};
 }
 
 void ContactSet::add_limits(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& limits,
@@ -100,7 +102,15 @@ void ContactSet::add_reflex_limits(std::uint32_t pair, const FeaturePair& at, st
     if (c.squared_distance > reach_ * reach_ || (c.mask_b != 7 && c.mask_b != shared_edge)) continue;
     const Vec3 n_W = corner_of_a ? Vec3(B.X_WB.q * n) : Vec3(-(X_.q * n));
     const Vec3 on_a_W = corner_of_a ? Vec3(B.X_WB * corner) : Vec3(X_ * foot);
-    if (add({n_W, on_a_W - X_ * center_, height, part, next_[pair].age}, limits)) owners.push_back(pair);
+    const Feature across{FeatureKind::face, other};
+    const Contact limit{n_W,
+                        on_a_W - X_ * center_,
+                        height,
+                        B.part,
+                        next_[pair].age,
+                        corner_of_a ? at.a : across,
+                        corner_of_a ? across : at.b};
+    if (add(limit, limits)) owners.push_back(pair);
   }
 }
 
@@ -110,8 +120,6 @@ bool ContactSet::add(const Contact& contact, std::vector<Contact>& limits) {
     return false;
   }
   limits.push_back(contact);
-  const std::uint32_t named = fixed_[contact.part].stands_for;
-  if (named != kNone) limits.back().part = named;
   return true;
 }
 

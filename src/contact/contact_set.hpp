@@ -16,7 +16,7 @@ namespace tegotae {
 struct FixedSurface {
   std::shared_ptr<const Surface> surface;
   Pose X_WB;
-  std::uint32_t stands_for = kNone;  ///< number of the part that contacts name; kNone: its own
+  PartId part = {};  ///< that contacts name
 };
 
 /// The nearest-feature pairs of the held part with the fixed parts, followed from tick to tick, and the limits they put

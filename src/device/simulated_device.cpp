@@ -249,6 +249,10 @@ void SimulatedDevice::set_lead(const Displacement&) noexcept {
   impl_->waiting = false;
 }
 
+void SimulatedDevice::use_wall_clock(bool on) noexcept {
+  impl_->settings.wall_clock = on;
+}
+
 void SimulatedDevice::advance(double dt) noexcept {
   if (dt > 0 && std::isfinite(dt)) impl_->advance(std::llround(dt * 1e9), center());
 }

@@ -1,21 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "mesh/surface.hpp"
+#include "tegotae/core/ids.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae {
-
-enum class FeatureKind : std::uint8_t { vertex, edge, face };
-
-/// A vertex, edge or face of a mesh; `index` counts vertices, Topology::edges or triangles.
-struct Feature {
-  FeatureKind kind = FeatureKind::vertex;
-  std::uint32_t index = 0;
-  bool operator==(const Feature& o) const { return kind == o.kind && index == o.index; }
-};
 
 /// Corner points of a feature: 1, 2 or 3 of them.
 struct Simplex {
@@ -23,7 +14,8 @@ struct Simplex {
   std::array<Vec3, 3> p;
 };
 
-/// The corners of `f` in the mesh's file frame; an edge's in the order of Topology::Edge::v.
+/// The corners of `f` (an edge is one of Topology::edges) in the mesh's file frame; an edge's in the order of
+/// Topology::Edge::v.
 inline Simplex corners(const Surface& s, Feature f) {
   const auto& v = s.mesh->vertices;
   switch (f.kind) {

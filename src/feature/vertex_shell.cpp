@@ -7,8 +7,8 @@ VertexShell::VertexShell(std::shared_ptr<const SignedDistance> A, std::shared_pt
 
 std::vector<VertexShell::Vertex> VertexShell::vertices(const Surface& s) {
   std::vector<Vertex> out;
-  for (std::size_t v = 0; v < s.mesh->vertices.size(); ++v)
-    if (s.topology.vertex_face_begin[v] < s.topology.vertex_face_begin[v + 1]) out.push_back({s.mesh->vertices[v]});
+  for (std::uint32_t v = 0; v < s.mesh->vertices.size(); ++v)
+    if (s.topology.vertex_face_begin[v] < s.topology.vertex_face_begin[v + 1]) out.push_back({s.mesh->vertices[v], v});
   return out;
 }
 
@@ -24,8 +24,9 @@ bool VertexShell::collect(const Pose& X_BA, double reach, std::vector<ShellPoint
       v.clear = at.distance + traveled_;
       if (at.distance >= reach) continue;
       if (out.size() == out.capacity()) return false;
-      out.push_back(a ? ShellPoint{at.distance, v.p, X_AB.q * at.normal}
-                      : ShellPoint{at.distance, at.point, -at.normal});
+      const Feature vertex{FeatureKind::vertex, v.index}, face{FeatureKind::face, at.face};
+      out.push_back(a ? ShellPoint{at.distance, v.p, X_AB.q * at.normal, vertex, face}
+                      : ShellPoint{at.distance, at.point, -at.normal, face, vertex});
     }
   }
   return true;

@@ -11,7 +11,8 @@ struct ShellPoint {
   double gap;  ///< of the vertex to the other surface, negative inside, m
   Vec3
       p_A;  ///< the point of the moving surface A that meets: the vertex, or the nearest point to it, A's file frame, m
-  Vec3 n_A;  ///< unit, the way A leaves, A's axes
+  Vec3 n_A;            ///< unit, the way A leaves, A's axes
+  Feature on_a, on_b;  ///< a vertex of one surface and a face of the other
 };
 
 /// Which vertices of two surfaces are near or inside the other: those of A against B and those of B against A. A vertex
@@ -28,7 +29,8 @@ class VertexShell {
 
  private:
   struct Vertex {
-    Vec3 p;  ///< its own file frame
+    Vec3 p;               ///< its own file frame
+    std::uint32_t index;  ///< in its mesh
     std::uint32_t face = 0;
     double clear = 0;  ///< gap when it was looked at, plus what A had traveled by then
   };

@@ -97,7 +97,7 @@ json forces_message(const ContactForces& forces) {
   for (int i = 0; i < forces.count; ++i) {
     const ContactForce& c = forces.items[static_cast<std::size_t>(i)];
     list.push_back(
-        {{"part", c.part}, {"point", xyz(c.point)}, {"normal", xyz(c.n)}, {"gap", c.gap}, {"force", c.force}});
+        {{"part", c.part.index}, {"point", xyz(c.point)}, {"normal", xyz(c.n)}, {"gap", c.gap}, {"force", c.force}});
   }
   return {{"forces", std::move(list)}, {"lag", wrench_message(forces.lag)}};
 }
@@ -106,7 +106,7 @@ ContactForces forces(const json& message) {
   ContactForces out;
   for (const json& c : message.at("forces")) {
     if (out.count == ContactForces::kMost) break;
-    out.items[static_cast<std::size_t>(out.count++)] = {whole_number<std::uint32_t>(c.at("part")),
+    out.items[static_cast<std::size_t>(out.count++)] = {PartId{whole_number<std::uint32_t>(c.at("part"))},
                                                         vector(c.at("point")), vector(c.at("normal")),
                                                         number(c.at("gap")), number(c.at("force"))};
   }

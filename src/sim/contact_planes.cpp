@@ -12,6 +12,7 @@ void PlanePicker::add(const Contact& contact, const Vec3& center_W, double room,
 void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric, const Pose& X, const Pose& Y,
                        const Vec3& center, double keep, ContactPlanes& planes, ContactForces& forces) noexcept {
   planes.count = forces.count = 0;
+  forces.available = false;
   planes.X = X;
   planes.pen = Y;
   const Displacement error = displacement(X, Y, center);
@@ -27,6 +28,7 @@ void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric,
   if (qp.status != LpStatus::optimal) return;
   // What the solution still goes is not held by contacts: the springs pull the part there.
   forces.lag = pull(metric.unwhiten(qp.z));
+  forces.available = true;
   const Vec3 center_W = X * center;
   const auto take = [&](std::size_t i) {
     add(limits[i], center_W, -bounds_[i], planes);
@@ -36,7 +38,8 @@ void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric,
     const auto i = static_cast<std::size_t>(qp.multipliers.index[static_cast<std::size_t>(k)]);
     const Contact& c = limits[i];
     forces.items[static_cast<std::size_t>(forces.count++)] = {
-        c.part, center_W + c.r, c.n, c.gap, stiffness_ * qp.multipliers.value[static_cast<std::size_t>(k)]};
+        c.part,      center_W + c.r, c.n, c.gap, stiffness_ * qp.multipliers.value[static_cast<std::size_t>(k)],
+        c.feature_a, c.feature_b};
     take(i);
   }
   while (planes.count < ContactPlanes::kMost && static_cast<std::size_t>(planes.count) < n)

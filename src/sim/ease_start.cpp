@@ -44,6 +44,7 @@ class Easer {
 
  private:
   struct Wanted {
+    PartId id;
     std::uint32_t part, stand_in;
     double relief, gap;  ///< gap (m) that contacts with the copy must leave
     bool blocked;        ///< the part is still nearer than kGapFloor
@@ -56,8 +57,9 @@ class Easer {
     for (std::size_t i = 0; i < at_.start.waiting(); ++i) {
       const StartPairs::Waiting& w = at_.start.waiting(i);
       if (!relieved(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
-      const double relief = at_.start.report().pairs[w.pair].relief;
-      list.push_back({w.part, w.stand_in, relief, relief + kMargin * kGapFloor, false});
+      const StartPair& pair = at_.start.report().pairs[w.pair];
+      const PartId id{static_cast<std::uint32_t>(pair.part)};
+      list.push_back({id, w.part, w.stand_in, pair.relief, pair.relief + kMargin * kGapFloor, false});
     }
     return list;
   }
@@ -89,7 +91,7 @@ class Easer {
   bool solve(const std::vector<Wanted>& list, Displacement& d) {
     rows_.clear();
     for (const Contact& c : at_.contacts->limits()) {
-      const auto w = std::find_if(list.begin(), list.end(), [&](const Wanted& x) { return x.part == c.part; });
+      const auto w = std::find_if(list.begin(), list.end(), [&](const Wanted& x) { return x.id == c.part; });
       const bool opens = w != list.end();
       const double gap = opens ? w->gap : std::min(c.gap, kMargin * kGapFloor);
       bounds_[static_cast<std::size_t>(rows_.rows())] = gap - c.gap;

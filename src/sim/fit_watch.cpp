@@ -17,10 +17,7 @@ constexpr double kGone = 1e-3, kFarther = 10, kStanding = 0.5;
 FitWatch::FitWatch(const HapticLoop& loop, const Scene& scene)
     : center_(loop.center()),
       radius_(radius_about(*held_part(scene).mesh, loop.center())),
-      start_(loop.report().proxy.X) {
-  for (std::size_t i = 0; i < scene.parts.size(); ++i)
-    if (!scene.parts[i].held) fixed_.push_back(i);
-}
+      start_(loop.report().proxy.X) {}
 
 void FitWatch::begin(const Pose& X) noexcept {
   start_ = X;
@@ -42,7 +39,7 @@ void FitWatch::look(const HapticLoop& loop, const Pose& Y, double dt, HeldFast& 
   for (const StartPair& pair : loop.start().pairs) {
     if (pair.state != PairState::relieved) continue;
     const bool touches = std::any_of(loop.limits().begin(), loop.limits().end(), [&](const Contact& c) {
-      return c.part < fixed_.size() && fixed_[c.part] == pair.part && c.gap <= loop.report().contact_gap;
+      return c.part.index == pair.part && c.gap <= loop.report().contact_gap;
     });
     if (touches) found.parts.push_back(pair.part);
   }

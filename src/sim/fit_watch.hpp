@@ -24,7 +24,6 @@ class FitWatch {
 
   Vec3 center_;
   double radius_;
-  std::vector<std::size_t> fixed_;  // of each fixed part, its number in the scene
   Pose start_;
   double standing_ = 0;  // s
   bool held_ = false, first_ = true;

@@ -24,8 +24,8 @@ class Handover {
     std::unique_ptr<T>(offered_.exchange(object.release(), std::memory_order_acq_rel));
   }
 
-  /// Any thread. Whether there was an offer to take back; one that the taker looks at is not there.
-  bool withdraw() { return std::unique_ptr<T>(offered_.exchange(nullptr, std::memory_order_acq_rel)) != nullptr; }
+  /// Any thread. The offer that is taken back; null when there is none, or the taker looks at it.
+  std::unique_ptr<T> withdraw() { return std::unique_ptr<T>(offered_.exchange(nullptr, std::memory_order_acq_rel)); }
 
   // The taker's thread.
   /// Null when there is no offer.
@@ -34,10 +34,10 @@ class Handover {
     if (offered_.load(std::memory_order_relaxed) == nullptr) return nullptr;
     return offered_.exchange(nullptr, std::memory_order_acq_rel);
   }
-  /// Not yet: offers it again, unless there is a newer offer.
-  void put_back(T* object) noexcept {
+  /// Not yet: offers it again. False when there is a newer offer; the taker is then to be done with the old one.
+  bool put_back(T* object) noexcept {
     T* none = nullptr;
-    if (!offered_.compare_exchange_strong(none, object, std::memory_order_acq_rel)) done_with(object);
+    return offered_.compare_exchange_strong(none, object, std::memory_order_acq_rel);
   }
   void done_with(T* object) noexcept {
     object->done_before = done_.load(std::memory_order_relaxed);

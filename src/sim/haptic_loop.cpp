@@ -1,17 +1,14 @@
 #include "tegotae/sim/haptic_loop.hpp"
 
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <map>
-#include <mutex>
-#include <thread>
+#include <memory>
 
 #include "core/proper_pose.hpp"
 #include "device/mailbox.hpp"
-#include "sim/handover.hpp"
+#include "sim/contact_list.hpp"
 #include "sim/lag.hpp"
-#include "sim/running_scene.hpp"
+#include "sim/scene_changes.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -34,18 +31,17 @@ std::int64_t deadline(std::int64_t now_ns, double budget) {
 
 struct HapticLoop::State {
   std::unique_ptr<RunningScene> now;
-  Handover<RunningScene> next;
+  std::shared_ptr<SceneChanges> changes;
   Pose Y;
   TickReport report;
+  ContactList contacts;
   LagCounter lag;
   Mailbox<std::array<double, 7>> latest;  // p, q
-  std::atomic<std::uint64_t> change_in_force{0};
-  std::mutex changing;  // of those who change; the loop's thread never waits for it, and does not touch the next two
-  std::uint64_t last_change = 0;
-  std::map<std::uint64_t, std::shared_ptr<const std::vector<RunningScene::Obstacle>>> obstacles;  // by change
 
-  explicit State(const Scene& scene) : now(std::make_unique<RunningScene>(scene)), Y(now->loop->pose()) {
-    obstacles[0] = now->obstacles;
+  explicit State(const Scene& scene)
+      : now(std::make_unique<RunningScene>(scene)),
+        changes(std::make_shared<SceneChanges>(*now)),
+        Y(now->loop->pose()) {
     report.pieces.reserve(kMostPieces);
     begin();
   }
@@ -84,7 +80,7 @@ struct HapticLoop::State {
 
   /// Goes over to a changed scene if there is one and it can be; true when another part is held in it.
   bool adopt(std::int64_t now_ns) noexcept {
-    RunningScene* changed = next.take();
+    RunningScene* changed = changes->take();
     if (changed == nullptr) return false;
     const bool same = changed->held == now->held;
     // What was there before the held part is free of, where the old loop keeps it out and every pair is active.
@@ -92,16 +88,17 @@ struct HapticLoop::State {
                        report.suspended + report.relieved == 0;
     const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
     if (same && !changed->loop->take_over(report, Y, known ? &changed->fresh : nullptr, until)) {
-      next.put_back(changed);
+      changes->put_back(changed);
       return false;
     }
-    next.done_with(now.release());
+    RunningScene* before = now.release();
     now.reset(changed);
     if (!same) {
       Y = now->loop->pose();  // the old part's means nothing for the new one
       begin();
     }
-    change_in_force.store(changed->number, std::memory_order_release);
+    contacts.clear();
+    changes->come_into_force(*changed, before);
     return !same;
   }
 };
@@ -119,43 +116,22 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (placed) s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.Y, timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
+  s.contacts.update(s.now->loop->limits(), s.report, s.report.proxy.X * s.now->mass.center);
   s.tell();
   return s.finish();
 }
 
-std::uint64_t HapticLoop::change(const Scene& next,
-                                 const std::function<void(std::uint64_t number, const StartReport& start)>& ready) {
-  State& s = *state_;
-  const std::lock_guard<std::mutex> lock(s.changing);
-  auto changed = std::make_unique<RunningScene>(next);
-  changed->warm_up();
-  const std::uint64_t in_force = change_in_force();
-  s.obstacles.erase(s.obstacles.begin(), s.obstacles.find(in_force));
-  changed->compare(*s.obstacles.at(in_force), in_force);
-  const std::uint64_t number = changed->number = s.last_change + 1;
-  if (ready) ready(number, changed->loop->start());
-  s.last_change = number;
-  s.obstacles[number] = changed->obstacles;
-  s.next.offer(std::move(changed));
-  return number;
-}
-
-bool HapticLoop::withdraw() {
-  State& s = *state_;
-  const std::lock_guard<std::mutex> lock(s.changing);
-  for (;;) {
-    const std::uint64_t in_force = change_in_force();
-    if (in_force == s.last_change) return false;
-    if (s.next.withdraw()) {
-      s.last_change = in_force;
-      return true;
-    }
-    std::this_thread::yield();  // a tick looks at it: it comes into force, or back, within that tick
-  }
+SceneChange HapticLoop::change(const Scene& next,
+                               const std::function<void(std::uint64_t number, const StartReport& start)>& ready) {
+  return state_->changes->offer(next, ready);
 }
 
 std::uint64_t HapticLoop::change_in_force() const noexcept {
-  return state_->change_in_force.load(std::memory_order_acquire);
+  return state_->changes->in_force();
+}
+
+std::string HapticLoop::held() const {
+  return state_->changes->held();
 }
 
 Pose HapticLoop::latest() const noexcept {
@@ -171,6 +147,12 @@ const TickReport& HapticLoop::report() const {
 }
 const StartReport& HapticLoop::start() const {
   return state_->now->loop->start();
+}
+const std::vector<ContactPoint>& HapticLoop::contacts() const {
+  return state_->contacts.contacts();
+}
+const std::vector<ContactEvent>& HapticLoop::contact_events() const {
+  return state_->contacts.events();
 }
 const std::vector<Contact>& HapticLoop::limits() const {
   return state_->now->loop->limits();

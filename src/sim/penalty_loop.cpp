@@ -28,6 +28,7 @@ constexpr std::size_t kMostSprings = 16384;
 PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
     : settings_(settings), coupling_(scene.coupling), center_(mass.center) {
   const SceneParts parts(scene);
+  ids_ = parts.fixed_id;
   std::map<const TriangleMesh*, std::shared_ptr<const SignedDistance>> fields;
   const auto field = [&fields](const std::shared_ptr<const TriangleMesh>& mesh) {
     auto& f = fields[mesh.get()];
@@ -87,7 +88,7 @@ void PenaltyLoop::collect(double reach, TickReport& report) {
       s.gap = p.gap;
       s.row << n, r.cross(n);
       springs_.push_back(s);
-      limits_.push_back({n, r, p.gap, part, 0});
+      limits_.push_back({n, r, p.gap, ids_[part], 0, p.on_a, p.on_b});
       report.contacts += p.gap < 0 ? 1 : 0;
       report.depth = std::max(report.depth, -p.gap);
       report.gap = std::min(report.gap, p.gap);

@@ -49,7 +49,8 @@ class PenaltyLoop final : public ProxyLoop {
   Vec3 center_;
   double radius_;
   BoundingSpheres spheres_;
-  std::vector<Pose> poses_;  ///< of the fixed parts
+  std::vector<PartId> ids_;  ///< of the fixed parts
+  std::vector<Pose> poses_;  ///< likewise
   std::vector<VertexShell> shells_;
   StartPairs start_;
   std::unique_ptr<MotionCheck> check_;  ///< tells when suspended pairs are free; null when none is

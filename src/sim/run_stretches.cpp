@@ -145,14 +145,15 @@ std::vector<Part> RunStretches::change(std::vector<Part> parts, const std::funct
     if (part.name == before.held) part.pose = loop_.latest();
   auto made = std::make_unique<RunStretch>();
   RunStretch& stretch = *made;
-  const std::uint64_t change =
+  SceneChange handle =
       loop_.change(in_its_time(scene, settings_.real_time), [&](std::uint64_t number, const StartReport& start) {
         begin(stretch, scene, start);
         if (!settings_.record.empty()) record(stretch, start);
         by_change_[number % kSlots].store(&stretch, std::memory_order_release);
         if (ready) ready(stretch.number);
       });
-  if (!wait_for(change) && loop_.withdraw()) {
+  const std::uint64_t change = handle.number();
+  if (!wait_for(change) && handle.cancel()) {
     stretch.recorder.reset();
     if (!stretch.recording.empty()) remove_files(stretch);
     if (over_) throw Error("the run has ended");

@@ -94,6 +94,11 @@ RunningScene::RunningScene(const Scene& scene)
   keeps_out = settings.narrowphase == "patch" && (settings.custom_resolver || settings.resolver != "penalty");
 }
 
+RunningScene::~RunningScene() {
+  ChangeState pending = ChangeState::pending;
+  if (change) change->state.compare_exchange_strong(pending, ChangeState::replaced, std::memory_order_acq_rel);
+}
+
 void RunningScene::compare(const std::vector<Obstacle>& old, std::uint64_t old_number) {
   // The same mesh may stand in many places; those of one place are the same obstacle.
   const auto before = [](const Obstacle& a, const Obstacle& b) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include "sim/proxy_loop.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/scene_change.hpp"
 
 namespace tegotae {
 
@@ -31,7 +33,8 @@ struct RunningScene {
   double radius;              ///< of the held part about its center of mass, m
   CouplingSettings coupling;  ///< nothing left open
   std::unique_ptr<ProxyLoop> loop;
-  RunningScene* done_before = nullptr;  ///< see Handover
+  RunningScene* done_before = nullptr;          ///< see Handover
+  std::shared_ptr<SceneChange::Record> change;  ///< that it came with; null: none
 
   /// Throws Error as HapticLoop's constructor.
   explicit RunningScene(const Scene& scene);
@@ -39,6 +42,22 @@ struct RunningScene {
   void compare(const std::vector<Obstacle>& old, std::uint64_t old_number);
   /// Does once what is slow or allocates the first time, where the held part is.
   void warm_up();
+  ~RunningScene();
+  RunningScene(const RunningScene&) = delete;
+  RunningScene& operator=(const RunningScene&) = delete;
+};
+
+class SceneChanges;
+
+/// What a change's handles share.
+struct SceneChange::Record {
+  Record(std::uint64_t number_in, const StartReport& start_in, std::weak_ptr<SceneChanges> changes_in)
+      : number(number_in), start(start_in), changes(std::move(changes_in)) {}
+
+  const std::uint64_t number;
+  const StartReport start;
+  const std::weak_ptr<SceneChanges> changes;
+  std::atomic<ChangeState> state{ChangeState::pending};
 };
 
 }  // namespace tegotae

@@ -17,8 +17,11 @@ std::size_t held_number(const Scene& scene) {
 }
 
 SceneParts::SceneParts(const Scene& scene) : held(&held_part(scene)) {
-  for (const Part& p : scene.parts)
-    if (!p.held) fixed.push_back(&p);
+  for (std::uint32_t i = 0; i < scene.parts.size(); ++i) {
+    if (scene.parts[i].held) continue;
+    fixed.push_back(&scene.parts[i]);
+    fixed_id.push_back({i});
+  }
 }
 
 }  // namespace tegotae

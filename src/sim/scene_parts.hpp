@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "tegotae/core/ids.hpp"
 #include "tegotae/sim/scene.hpp"
 
 namespace tegotae {
@@ -20,6 +21,7 @@ inline Part& held_part(Scene& scene) {
 struct SceneParts {
   const Part* held = nullptr;
   std::vector<const Part*> fixed;
+  std::vector<PartId> fixed_id;  ///< of each fixed part
   explicit SceneParts(const Scene& scene);
 };
 

@@ -1,20 +1,18 @@
 #include "tegotae/sim/session.hpp"
 
-#include <time.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "sim/fit_watch.hpp"
 #include "sim/loop_priority.hpp"
+#include "sim/pen_port.hpp"
 #include "sim/run_check.hpp"
 #include "sim/run_goal.hpp"
-#include "sim/run_pen.hpp"
 #include "sim/run_stretches.hpp"
 #include "sim/scene_parts.hpp"
+#include "sim/step_schedule.hpp"
 #include "sim/torsion.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
@@ -26,9 +24,6 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;  // of the servo, and at most of the contact loop
 constexpr double kPeriod = 1e-9 * kPeriodNs;
-// A tick is followed by a rest of a tenth of it, or a period: the kernel stops a real-time thread that takes more than
-// 95 % of a second for 50 ms, longer than the servo waits for a heartbeat.
-constexpr std::int64_t kTickPerRest = 10;
 
 HapticLoop make_loop(const SceneFile& file, bool real_time) try {
   return HapticLoop(in_its_time(file.scene, real_time));
@@ -36,10 +31,26 @@ HapticLoop make_loop(const SceneFile& file, bool real_time) try {
   throw Error(file.path + ": " + e.what());
 }
 
-std::unique_ptr<RunPen> make_pen(const SceneFile& file, const RunSettings& settings, const HapticLoop& loop) {
-  if (settings.device.empty()) return make_local_pen(file, loop, settings.real_time, settings.hand, settings.guide);
-  if (!settings.real_time) throw Error("a device in another process has its own clock; it cannot run in virtual time");
-  return make_remote_pen(settings.device, file, loop);
+/// The scene's simulated device; null where the run has that of another process.
+std::unique_ptr<SimulatedDevice> make_device(const SceneFile& file, const RunSettings& settings,
+                                             const HapticLoop& loop) {
+  if (!settings.device.empty()) return nullptr;
+  auto device = settings.hand ? std::make_unique<SimulatedDevice>(file.device, *settings.hand, loop.center())
+                              : std::make_unique<SimulatedDevice>(file.device, file.script, loop.center());
+  if (settings.guide) device->follow(*settings.guide);
+  return device;
+}
+
+std::unique_ptr<PenPort> make_pen(SimulatedDevice* device, const SceneFile& file, const RunSettings& settings,
+                                  const HapticLoop& loop) {
+  if (device == nullptr) {
+    if (!settings.real_time)
+      throw Error("a device in another process has its own clock; it cannot run in virtual time");
+    return make_remote_pen(settings.device, file.scene.scale, loop);
+  }
+  ServoSettings servo;
+  servo.safety = file.safety;
+  return make_local_pen(*device, servo, settings.real_time, file.scene.scale, loop);
 }
 
 /// `file` for the device that it is run with.
@@ -56,19 +67,14 @@ double duration(const SceneFile& file, const RunSettings& settings) {
   return file.script.end() - file.script.begin() + kSettleTime;
 }
 
-void sleep_until(std::int64_t time_ns) {
-  const timespec t = {static_cast<time_t>(time_ns / 1'000'000'000), static_cast<long>(time_ns % 1'000'000'000)};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
-  }
-}
-
 class Session {
  public:
   Session(const SceneFile& file, const RunSettings& settings)
       : file_(for_device(file, settings)),
         settings_(settings),
         loop_(make_loop(file_, settings.real_time)),
-        pen_(make_pen(file_, settings, loop_)),
+        device_(make_device(file_, settings, loop_)),
+        pen_(make_pen(device_.get(), file_, settings, loop_)),
         goal_(file_, loop_.center()),
         duration_(duration(file_, settings)),
         check_(settings.check_all, settings.real_time),
@@ -125,17 +131,16 @@ class Session {
     const LoopPriority priority;
     missing_ = priority.missing();
     const std::int64_t start = monotonic_ns();
-    std::int64_t last = start - kPeriodNs, next = start;
+    std::int64_t last = start - kPeriodNs;
+    StepSchedule schedule(kPeriodNs);
+    schedule.begin(start);
     while (!stopped()) {
-      sleep_until(next);
-      const std::int64_t now = monotonic_ns();
+      const std::int64_t now = schedule.wait();
       summary_.seconds = 1e-9 * static_cast<double>(now - start);
       if (summary_.seconds >= duration_) break;
       tick(summary_.seconds, 1e-9 * static_cast<double>(now - last), now);
       last = now;
-      // A tick that took longer than a period is followed by the next, not by a burst that makes up for it.
-      const std::int64_t end = monotonic_ns();
-      next = std::max(next + kPeriodNs, end + std::min((end - now) / kTickPerRest, kPeriodNs));
+      schedule.done(now, monotonic_ns());
     }
   }
 
@@ -234,7 +239,8 @@ class Session {
   const SceneFile file_;
   const RunSettings& settings_;
   HapticLoop loop_;
-  std::unique_ptr<RunPen> pen_;
+  std::unique_ptr<SimulatedDevice> device_;  // null: another process's
+  std::unique_ptr<PenPort> pen_;
   RunGoal goal_;
   double duration_;
   RunCheck check_;

@@ -30,10 +30,10 @@ struct FixedParts {
   std::vector<FixedSurface> surfaces;
   std::map<const TriangleMesh*, std::shared_ptr<const Surface>> known;
 
-  void add(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& pose, std::uint32_t stands_for) {
+  void add(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& pose, PartId id) {
     auto& surface = known[mesh.get()];
     if (!surface) surface = std::make_shared<Surface>(mesh);
-    surfaces.push_back({surface, pose, stands_for});
+    surfaces.push_back({surface, pose, id});
     poses.push_back(pose);
     meshes.push_back(mesh);
   }
@@ -60,13 +60,14 @@ Surroundings::Surroundings(const Scene& scene, const ContactSettings& settings, 
     for (const Part& p : scene.parts) trees.push_back(cached_patch_tree(p.mesh));
   start = StartPairs(scene, settings);
   FixedParts fixed;
-  for (const Part* p : parts.fixed) {
-    fixed.add(p->mesh, p->pose, kNone);
-    spheres.add(bounding_sphere(*p->mesh), p->pose);
-    boxes.add(bounding_box(*p->mesh), p->pose);
+  for (std::size_t i = 0; i < parts.fixed.size(); ++i) {
+    const Part& p = *parts.fixed[i];
+    fixed.add(p.mesh, p.pose, parts.fixed_id[i]);
+    spheres.add(bounding_sphere(*p.mesh), p.pose);
+    boxes.add(bounding_box(*p.mesh), p.pose);
   }
   const auto copies = start.relieve(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
-  for (const StartPairs::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, c.part);
+  for (const StartPairs::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, parts.fixed_id[c.part]);
   radius = radius_about(*parts.held->mesh, mass.center);
   reach = settings.l_min + 2 * kReachShare * radius;
   check = make_check(*parts.held, fixed, settings, mass.center, radius);

@@ -1,9 +1,12 @@
 // The public API on one page, docs/api.md: every public header without what users do not read (includes, guards,
 // private members). `api_page HEADERS_FOLDER` prints the page; the test compares it with the one in docs.
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,38 @@ namespace {
 const std::vector<std::string> kParts = {"core", "mesh",    "device",   "record", "narrowphase", "contact",
                                          "lp",   "resolve", "coupling", "servo",  "sim"};
 
+/// What one wants to do, and the headers for it.
+struct Task {
+  const char* what;
+  const char* headers;  ///< with spaces between them
+};
+const Task kMap[] = {
+    {"feel a scene with a pen: all that most programs need", "tegotae.hpp sim/rig.hpp"},
+    {"the same from C, C#, Rust, Unity", "tegotae.h"},
+    {"describe a scene", "sim/scene.hpp mesh/triangle_mesh.hpp mesh/load.hpp sim/scene_file.hpp mesh/assembly.hpp"},
+    {"know a mesh before it is used",
+     "mesh/report.hpp mesh/mass.hpp sim/clash.hpp mesh/isolated_load.hpp mesh/write.hpp"},
+    {"use contacts", "contact/contact_point.hpp core/ids.hpp core/contact_force.hpp contact/contact.hpp"},
+    {"change a scene while it runs", "sim/scene_change.hpp sim/start.hpp"},
+    {"know what a tick did, and why a part lags", "sim/haptic_loop.hpp core/lag_reason.hpp resolve/status.hpp"},
+    {"bring a device",
+     "device/device.hpp device/simulated_device.hpp device/openhaptics_device.hpp device/input_devices.hpp "
+     "device/limits.hpp"},
+    {"be the hand of a simulated pen",
+     "device/script.hpp device/hand_intent.hpp device/hand_guide.hpp device/operator.hpp"},
+    {"set the feel and the safety chain",
+     "coupling/coupling.hpp coupling/stability.hpp servo/safety.hpp servo/mapping.hpp"},
+    {"wire servo and contact loop by hand",
+     "servo/servo.hpp servo/contact_link.hpp servo/attachment.hpp servo/realtime.hpp "
+     "device/channel.hpp coupling/contact_planes.hpp servo/latency_histogram.hpp"},
+    {"write a driver in another language", "device/shm.h"},
+    {"run a scene file, record it, watch it", "sim/session.hpp record/recorder.hpp record/recording.hpp"},
+    {"bring a resolver", "resolve/resolver.hpp lp/low_rank_matrix.hpp"},
+    {"poses, errors, clock, version",
+     "core/pose.hpp core/error.hpp core/clock.hpp core/constants.hpp core/version.hpp core/export.hpp"},
+    {"start large scenes sooner", "narrowphase/hierarchy_cache.hpp"},
+};
+
 bool starts_with(const std::string& s, const std::string& prefix) {
   return s.rfind(prefix, 0) == 0;
 }
@@ -22,6 +57,7 @@ bool starts_with(const std::string& s, const std::string& prefix) {
 /// Whether a line of a header has no place on the page.
 bool is_frame(const std::string& line) {
   return starts_with(line, "#pragma once") || starts_with(line, "#include") ||
+         starts_with(line, "#ifndef TEGOTAE_TEGOTAE_H") || starts_with(line, "#define TEGOTAE_TEGOTAE_H") ||
          starts_with(line, "namespace tegotae TEGOTAE_EXPORT") || starts_with(line, "}  // namespace tegotae");
 }
 
@@ -43,6 +79,51 @@ std::vector<std::string> public_lines(const fs::path& header) {
   return lines;
 }
 
+/// The headers of one folder of `root`, by name.
+std::vector<fs::path> headers_in(const fs::path& root, const std::string& part) {
+  std::vector<fs::path> headers;
+  for (const auto& entry : fs::directory_iterator(root / part))
+    if (entry.is_regular_file()) headers.push_back(entry.path());
+  std::sort(headers.begin(), headers.end());
+  return headers;
+}
+
+/// The anchor of a header's heading, as GitHub makes it.
+std::string anchor(const std::string& header) {
+  std::string out = "tegotae";
+  for (const char c : header)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') out += c;
+  return out;
+}
+
+/// What the folder has and the map has not, or the other way around; empty: nothing.
+std::string not_in_map(const fs::path& root, const std::vector<fs::path>& headers) {
+  std::set<std::string> mapped;
+  for (const Task& task : kMap) {
+    std::istringstream words(task.headers);
+    for (std::string word; words >> word;) {
+      if (!fs::is_regular_file(root / word)) return word;
+      mapped.insert(word);
+    }
+  }
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) files += entry.is_regular_file() ? 1 : 0;
+  if (files != headers.size()) return "a folder of " + root.string();
+  for (const fs::path& header : headers)
+    if (mapped.count(fs::relative(header, root).generic_string()) == 0) return header.string();
+  return "";
+}
+
+void print_map() {
+  std::cout << "\n| to ... | headers under `tegotae/` |\n|---|---|\n";
+  for (const Task& task : kMap) {
+    std::cout << "| " << task.what << " |";
+    std::istringstream words(task.headers);
+    for (std::string word; words >> word;) std::cout << " [" << word << "](#" << anchor(word) << ")";
+    std::cout << " |\n";
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,22 +138,25 @@ int main(int argc, char** argv) {
          "`cmake --build build/release --target api`.\n"
          "All of it is in the namespace `tegotae`. SI units everywhere; `X_WF` is the pose of frame F in the world.\n"
          "What may change from version to version: [package](package.md).\n";
-  for (const auto& entry : fs::directory_iterator(root)) {
-    if (std::find(kParts.begin(), kParts.end(), entry.path().filename().string()) == kParts.end()) {
-      std::cerr << "api_page: " << entry.path().string() << " has no place on the page\n";
-      return 1;
-    }
+  std::vector<fs::path> headers = headers_in(root, "");
+  for (const std::string& part : kParts)
+    for (const fs::path& header : headers_in(root, part)) headers.push_back(header);
+  const std::string missing = not_in_map(root, headers);
+  if (!missing.empty()) {
+    std::cerr << "api_page: " << missing << " has no place on the page; see kMap and kParts\n";
+    return 1;
   }
-  for (const std::string& part : kParts) {
-    std::vector<fs::path> headers;
-    if (!fs::exists(root / part)) continue;
-    for (const auto& entry : fs::directory_iterator(root / part)) headers.push_back(entry.path());
-    std::sort(headers.begin(), headers.end());
-    std::cout << "\n## " << part << "\n";
-    for (const fs::path& header : headers) {
-      std::cout << "\n### `tegotae/" << part << "/" << header.filename().string() << "`\n```cpp\n";
-      for (const std::string& line : public_lines(header)) std::cout << line << "\n";
-      std::cout << "```\n";
+  print_map();
+  std::string part = "-";
+  for (const fs::path& header : headers) {
+    const fs::path name = fs::relative(header, root);
+    if (name.parent_path().string() != part) {
+      part = name.parent_path().string();
+      std::cout << "\n## " << (part.empty() ? "the door" : part) << "\n";
     }
+    std::cout << "\n### `tegotae/" << name.generic_string() << "`\n```" << (name.extension() == ".h" ? "c" : "cpp")
+              << "\n";
+    for (const std::string& line : public_lines(header)) std::cout << line << "\n";
+    std::cout << "```\n";
   }
 }

@@ -35,7 +35,7 @@ TEST_CASE("whitened coordinates are the mass metric, and rows keep their meaning
     const Displacement back = metric.unwhiten(metric.whiten(d));
     REQUIRE((back.dp - d.dp).norm() < 1e-15);
     REQUIRE((back.dr - d.dr).norm() < 1e-14);
-    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, 0, 0};
+    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, {}, 0};
     REQUIRE(metric.row(c).dot(metric.whiten(d)) == Approx(c.n.dot(d.dp + d.dr.cross(c.r))).margin(1e-15));
   }
 }
@@ -53,7 +53,7 @@ TEST_CASE("in the metric of the coupling the squared length is the springs' ener
     const Displacement back = metric.unwhiten(metric.whiten(d));
     REQUIRE((back.dp - d.dp).norm() < 1e-15);
     REQUIRE((back.dr - d.dr).norm() < 1e-14);
-    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, 0, 0};
+    const Contact c{random_direction(rng), random_vector(rng, 0.03), 0, {}, 0};
     REQUIRE(metric.row(c).dot(metric.whiten(d)) == Approx(c.n.dot(d.dp + d.dr.cross(c.r))).margin(1e-15));
   }
 }

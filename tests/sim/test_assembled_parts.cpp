@@ -86,7 +86,7 @@ const std::string kGears = "industreal/industreal_gear_";
 std::set<std::string> touched(const HapticLoop& loop, const std::vector<std::string>& files) {
   std::set<std::string> out;
   for (const Contact& c : loop.limits())
-    if (c.age != kCutAge && c.gap <= loop.report().contact_gap) out.insert(files[c.part + 1]);
+    if (c.age != kCutAge && c.gap <= loop.report().contact_gap) out.insert(files[c.part.index]);
   return out;
 }
 

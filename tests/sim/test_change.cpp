@@ -87,7 +87,7 @@ TEST_CASE("a part that is added stops the held one, and one that is removed lets
     // Nothing of the floor is left in the first tick without it.
     scene.parts = {wall_at(0.05), scene.parts[1]};
     scene.parts[1].pose = loop.report().proxy.X;
-    CHECK(loop.change(scene) == 1);
+    CHECK(loop.change(scene).number() == 1);
     CHECK(loop.change_in_force() == 0);
     loop.step({Quat::Identity(), Vec3(0, 0, 0.005)}, 1e-3);
     CHECK(loop.change_in_force() == 1);
@@ -102,7 +102,7 @@ TEST_CASE("a part that is added stops the held one, and one that is removed lets
     // The wall goes back by 10 mm, and the block after it.
     scene.parts[0] = wall_at(0.06);
     scene.parts[1].pose = loop.report().proxy.X;
-    CHECK(loop.change(scene) == 2);
+    CHECK(loop.change(scene).number() == 2);
     push(loop, Vec3(0.055, 0, -0.05), 200);
     CHECK(loop.change_in_force() == 2);
     CHECK(loop.report().proxy.X.p.x() == Approx(0.05).margin(slack));
@@ -131,13 +131,15 @@ TEST_CASE("a change waits while what it adds is between where the part was and w
   Scene walled = scene;
   walled.parts.push_back(wall_at(0.02));
   push(loop, Vec3(0.06, 0, 0), 100);  // the part has gone on since
-  loop.change(walled);
+  const SceneChange first = loop.change(walled);
   push(loop, Vec3(0.07, 0, 0), 100);
   CHECK(loop.change_in_force() == 0);
+  CHECK(first.state() == ChangeState::pending);
   CHECK(loop.report().proxy.X.p.x() == Approx(0.07).margin(1e-9));
   // A change made later takes its place.
   walled.parts.back() = wall_at(0.03);
-  CHECK(loop.change(walled) == 2);
+  CHECK(loop.change(walled).number() == 2);
+  CHECK(first.state() == ChangeState::replaced);
   push(loop, Vec3(0.019, 0, 0), 100);
   CHECK(loop.change_in_force() == 2);
   push(loop, Vec3(0.07, 0, 0), 200);
@@ -181,13 +183,16 @@ TEST_CASE("a held part of another shape is asked about everything on its way", "
 
 TEST_CASE("a change that is not in force can be taken back", "[change]") {
   Scene scene = scene_of({floor_at(0), block_at(Vec3(0, 0, 0.03))});
-  HapticLoop loop(scene);
-  CHECK_FALSE(loop.withdraw());
+  auto loop_made = std::make_unique<HapticLoop>(scene);
+  HapticLoop& loop = *loop_made;
   Scene empty = scene;
   empty.parts = {scene.parts[1]};
-  loop.change(empty);
-  CHECK(loop.withdraw());
-  CHECK_FALSE(loop.withdraw());
+  SceneChange taken_back = loop.change(empty);
+  CHECK(taken_back.state() == ChangeState::pending);
+  CHECK(taken_back.wait(0.01) == ChangeState::pending);  // nobody steps the loop
+  CHECK(taken_back.cancel());
+  CHECK_FALSE(taken_back.cancel());
+  CHECK(taken_back.state() == ChangeState::canceled);
   push(loop, Vec3(0, 0, 0), 200);
   CHECK(loop.change_in_force() == 0);
   CHECK(loop.report().proxy.X.p.z() == Approx(0.01).margin(1e-4));
@@ -195,12 +200,28 @@ TEST_CASE("a change that is not in force can be taken back", "[change]") {
   empty.parts[0].pose = loop.report().proxy.X;
   CHECK_THROWS_WITH(loop.change(empty, [](std::uint64_t, const StartReport&) { throw Error("no disk"); }), "no disk");
   std::uint64_t told = 0;
-  const std::uint64_t number = loop.change(empty, [&](std::uint64_t n, const StartReport&) { told = n; });
-  CHECK(told == number);
+  SceneChange change = loop.change(empty, [&](std::uint64_t n, const StartReport&) { told = n; });
+  CHECK(told == change.number());
   push(loop, Vec3(0, 0, -0.01), 200);
-  CHECK(loop.change_in_force() == number);
-  CHECK_FALSE(loop.withdraw());
+  CHECK(loop.change_in_force() == change.number());
+  CHECK(change.wait(0) == ChangeState::in_force);
+  CHECK_FALSE(change.cancel());
+  CHECK(taken_back.state() == ChangeState::canceled);
   CHECK(loop.report().proxy.X.p.z() == Approx(-0.01).margin(1e-6));
+  // One that another takes the place of, and one that comes after.
+  empty.parts[0].pose = loop.report().proxy.X;
+  SceneChange replaced = loop.change(empty);
+  SceneChange after = loop.change(empty);
+  CHECK(replaced.state() == ChangeState::replaced);
+  CHECK_FALSE(replaced.cancel());
+  push(loop, Vec3(0, 0, -0.01), 2);
+  CHECK(after.state() == ChangeState::in_force);
+  CHECK(change.state() == ChangeState::superseded);
+  // Handles outlive the loop.
+  SceneChange late = loop.change(empty);
+  loop_made.reset();
+  CHECK(late.wait(0) == ChangeState::replaced);
+  CHECK_FALSE(late.cancel());
 }
 
 TEST_CASE("a part that comes into the hand and a change right after it: nothing of the old part's pen is left",
@@ -302,7 +323,7 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
           if (p.held) p.pose = lately;
       }
       try {
-        const std::uint64_t number = loop.change(next);
+        const std::uint64_t number = loop.change(next).number();
         const std::lock_guard<std::mutex> lock(mutex);
         accepted.resize(std::max<std::size_t>(accepted.size(), number + 1));
         accepted[number] = next;

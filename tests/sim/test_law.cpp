@@ -49,7 +49,7 @@ bool compare(const Scene& scene, HapticLoop& loop, const Pose& Y, Sums& worst) {
     const ContactForce& c = r.forces.items[static_cast<std::size_t>(i)];
     REQUIRE(c.force > 0);
     REQUIRE(c.n.norm() == Approx(1));
-    REQUIRE(c.part + 1 < scene.parts.size());
+    REQUIRE(c.part.index + 1 < scene.parts.size());
     REQUIRE((c.point - r.proxy.X * loop.center()).norm() < 1.001 * size);
   }
   const double force = felt.force.norm();

@@ -7,7 +7,7 @@
 #include "apps/run_program.hpp"
 #include "bodies.hpp"
 #include "catch.hpp"
-#include "sim/run_pen.hpp"
+#include "sim/pen_port.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/write.hpp"
@@ -177,7 +177,8 @@ TEST_CASE("a pen that takes another part tells nothing until its servo has heard
   const TempFolder folder;
   const SceneFile file = scene_in(folder);
   const HapticLoop loop(file.scene);
-  const auto pen = make_local_pen(file, loop, false, nullptr, nullptr);
+  SimulatedDevice device(file.device, file.script, loop.center());
+  const auto pen = make_local_pen(device, {}, false, file.scene.scale, loop);
   std::int64_t now = 0;
   PenSample sample;
   ProxyState proxy;

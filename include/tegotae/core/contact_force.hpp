@@ -1,20 +1,22 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "tegotae/core/export.hpp"
+#include "tegotae/core/ids.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
 
 /// The force of one contact on the held part A: `force` along `n` at `point`.
 struct ContactForce {
-  std::uint32_t part = 0;     ///< number of the fixed part B, as Contact::part
+  PartId part;                ///< the fixed part B
   Vec3 point = Vec3::Zero();  ///< of A, m, world
   Vec3 n = Vec3::Zero();      ///< n_BA_W: unit normal from B to A, world
   double gap = 0;             ///< m
   double force = 0;           ///< N, positive
+  Feature feature_a = {};     ///< of A's mesh; not in recordings
+  Feature feature_b = {};     ///< of B's mesh; not in recordings
 };
 
 /// The contacts that carry force: no more than six are needed to hold a rigid body, however many touch. So of a face
@@ -23,6 +25,7 @@ struct ContactForces {
   static constexpr int kMost = 6;         ///< degrees of freedom of a free body
   std::array<ContactForce, kMost> items;  ///< the first `count` of them hold
   int count = 0;                          ///< 0: nothing carries, or the forces are not available
+  bool available = false;                 ///< that they are known; not in recordings
   /// What the coupling's springs pull beyond the contacts' forces because the part is not yet where it is going: out of
   /// time, held to a length a tick, or opening a gap. Zero at rest. At the held part's center of mass, world.
   Wrench lag;

@@ -93,6 +93,11 @@ class Device {
   const Vec3& center() const noexcept { return center_; }
   virtual void set_center(const Vec3& center) noexcept { center_ = center; }  ///< `center` in m, file frame
 
+  /// Before start(): whether the device moves with the clock (hardware always does) or by advance() alone.
+  virtual void use_wall_clock(bool) noexcept {}
+  /// Moves a device that does not move with the clock on by `dt` seconds of virtual time. Between two calls of read().
+  virtual void advance(double) noexcept {}
+
   /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
   /// read() while an application is attached; an input that is integrated stays near the part by it.
   virtual void set_lead(const Displacement&) noexcept {}

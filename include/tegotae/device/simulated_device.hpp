@@ -62,12 +62,13 @@ class SimulatedDevice final : public Device {
   ForceOff reason() const noexcept override;
   void set_center(const Vec3& center) noexcept override;
   void set_lead(const Displacement& lead) noexcept override;  ///< an application is there
+  void use_wall_clock(bool on) noexcept override;             ///< sets SimulatedDeviceSettings::wall_clock
 
   /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
   /// keeps a reference.
   void follow(const HandGuide& guide) noexcept;
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
-  void advance(double dt) noexcept;
+  void advance(double dt) noexcept override;
   /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.
   double script_time() const noexcept;
   /// The exact pose and velocity (v of the center of mass), before resolution and filter.

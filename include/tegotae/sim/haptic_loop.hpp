@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "tegotae/contact/contact.hpp"
+#include "tegotae/contact/contact_point.hpp"
 #include "tegotae/core/contact_force.hpp"
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/lag_reason.hpp"
@@ -13,6 +15,7 @@
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/resolve/status.hpp"
 #include "tegotae/sim/scene.hpp"
+#include "tegotae/sim/scene_change.hpp"
 #include "tegotae/sim/start.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
@@ -96,14 +99,14 @@ class HapticLoop {
   /// the first tick with it does not follow the pen, so that the pen can be brought there first (ContactLink::home).
   ///
   /// `ready` is told the change's number and how the held part starts in it, in this thread and before step() may go
-  /// over to it. Returns the number, from 1 on. Throws Error as the constructor does, and what `ready` throws; nothing
-  /// changes then.
-  std::uint64_t change(const Scene& next,
-                       const std::function<void(std::uint64_t number, const StartReport& start)>& ready = {});
-  /// Takes the last change back, from any thread; false when it is in force.
-  bool withdraw();
+  /// over to it. Throws Error as the constructor does, and what `ready` throws; nothing changes then.
+  SceneChange change(const Scene& next,
+                     const std::function<void(std::uint64_t number, const StartReport& start)>& ready = {});
   /// Number of the change that the last tick ran in, 0 before the first; from any thread.
   std::uint64_t change_in_force() const noexcept;
+
+  /// Name of the part that is held in the scene in force; from any thread.
+  std::string held() const;
 
   /// Where the held part was after the last tick; from any thread, to draw it and for change().
   Pose latest() const noexcept;
@@ -112,6 +115,11 @@ class HapticLoop {
   const TickReport& report() const;
   /// What the held part touched or overlapped at the start, and what has become of it by the last tick.
   const StartReport& start() const;
+  /// The contacts of the held part at X, sorted by part and features: what is in contact (TickReport::contacts) or
+  /// carries force; of more than 1024 the nearest. Valid until the next call of step().
+  const std::vector<ContactPoint>& contacts() const;
+  /// Which of them began and which ended in the last tick, in the same order. Valid until the next call of step().
+  const std::vector<ContactEvent>& contact_events() const;
   /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
   /// when the tick was cut). Valid until the next call of step().
   const std::vector<Contact>& limits() const;

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tegotae/core/export.hpp"
+#include "tegotae/core/ids.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/coupling/coupling.hpp"
 #include "tegotae/mesh/assembly.hpp"
@@ -65,6 +68,15 @@ struct ContactSettings {
 
 /// The parts of a mock-up and the settings of its loops.
 struct Scene {
+  /// Adds a part that stands at `pose` (X_WF). `name` is to be unique, `mesh` as Part::mesh.
+  PartId add_fixed(std::string name, TriangleMesh mesh, const Pose& pose = {}) {
+    return add(std::move(name), std::move(mesh), pose, false);
+  }
+  /// Adds the part that the pen holds, which starts at `pose` (X_WF). `name` is to be unique, `mesh` as Part::mesh.
+  PartId add_held(std::string name, TriangleMesh mesh, const Pose& pose = {}) {
+    return add(std::move(name), std::move(mesh), pose, true);
+  }
+
   std::vector<Part> parts;    ///< exactly one of them held
   ContactSettings contact;    ///< of the contact loop
   CouplingSettings coupling;  ///< of the spring and damper between part and pen
@@ -74,6 +86,12 @@ struct Scene {
   /// Meters that the held part moves for a meter of the pen: what ContactLink::set_scale() is told. Part of the law by
   /// which the part follows the pen, because the springs are felt in the pen's lengths.
   double scale = 1;
+
+ private:
+  PartId add(std::string name, TriangleMesh mesh, const Pose& pose, bool held) {
+    parts.push_back({std::move(name), std::make_shared<const TriangleMesh>(std::move(mesh)), pose, held});
+    return {static_cast<std::uint32_t>(parts.size() - 1)};
+  }
 };
 
 }  // namespace tegotae

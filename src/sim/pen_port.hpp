@@ -3,20 +3,18 @@
 #include <memory>
 #include <string>
 
-#include "tegotae/device/hand_guide.hpp"
-#include "tegotae/device/hand_intent.hpp"
+#include "tegotae/device/device.hpp"
 #include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
-#include "tegotae/sim/scene_file.hpp"
 
 namespace tegotae {
 
-/// What a run has for a pen, with its servo.
-class RunPen {
+/// A pen with its servo, as a contact loop sees them, in this process or in another one.
+class PenPort {
  public:
-  virtual ~RunPen() = default;
-  /// On the wall clock the servo runs from start() to stop(); in virtual time advance() drives it.
+  virtual ~PenPort() = default;
+  /// On the wall clock the servo runs from start() to stop(); in virtual time tick_servo() and advance() drive it.
   virtual void start() = 0;
   virtual void stop() = 0;
   /// In virtual time: a servo tick at `now_ns`, and after the contact loop's tick the pen `dt` seconds on.
@@ -25,6 +23,7 @@ class RunPen {
 
   /// The newest sample; false when there is none to follow, and the part stays.
   virtual bool read(PenSample& pen, std::int64_t now_ns) noexcept = 0;
+  /// The answer to the pen's sample `device_sequence`, with what the servo needs to go on between two ticks.
   virtual void publish(const ProxyState& proxy, const ContactPlanes& planes, std::uint64_t tick,
                        std::uint64_t device_sequence, std::int64_t now_ns) noexcept = 0;
 
@@ -41,11 +40,10 @@ class RunPen {
   virtual std::string stability() const = 0;
 };
 
-/// The scene's simulated pen with a servo of its own, in this process.
-/// `hand` (may be null) moves it instead of the script; `guide` (may be null) leads its hand away from that.
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand,
-                                       const HandGuide* guide);
+/// `device` with a servo of its own, in this process. Keeps a reference to the device. `scale`: Scene::scale.
+std::unique_ptr<PenPort> make_local_pen(Device& device, const ServoSettings& servo, bool wall_clock, double scale,
+                                        const HapticLoop& loop);
 /// A device in another process, "shm:NAME". Throws Error when there is none.
-std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop);
+std::unique_ptr<PenPort> make_remote_pen(const std::string& device, double scale, const HapticLoop& loop);
 
 }  // namespace tegotae

@@ -1,6 +1,7 @@
-#include "sim/run_pen.hpp"
+#include "sim/pen_port.hpp"
 
 #include <limits>
+#include <optional>
 
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
@@ -10,44 +11,31 @@ namespace tegotae {
 
 namespace {
 
-SimulatedDeviceSettings with_clock(SimulatedDeviceSettings settings, bool wall_clock) {
-  settings.wall_clock = wall_clock;
-  return settings;
-}
-
-ServoSettings servo_settings(const SceneFile& file) {
-  ServoSettings s;
-  s.safety = file.safety;
-  return s;
-}
-
-SimulatedDevice make_device(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand) {
-  const SimulatedDeviceSettings settings = with_clock(file.device, wall_clock);
-  return hand ? SimulatedDevice(settings, *hand, loop.center()) : SimulatedDevice(settings, file.script, loop.center());
-}
-
-class LocalPen final : public RunPen {
+class LocalPen final : public PenPort {
  public:
-  LocalPen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand, const HandGuide* guide)
+  LocalPen(Device& device, const ServoSettings& servo, bool wall_clock, double scale, const HapticLoop& loop)
       : wall_clock_(wall_clock),
-        device_(make_device(file, loop, wall_clock, hand)),
+        settings_(servo),
+        coupling_(loop.coupling()),
+        device_(device),
         channel_(Channel::create()),
-        servo_(device_, channel_, servo_settings(file)),
-        link_(channel_, loop.coupling(), loop.center()),
-        stability_(tegotae::stability(device_.info(), loop.coupling(), ServoSettings().rate_hz).text()) {
-    link_.set_scale(file.scene.scale);
-    if (guide) device_.follow(*guide);
+        link_(channel_, coupling_, loop.center()) {
+    link_.set_scale(scale);
+    device_.use_wall_clock(wall_clock);
+    if (device_.center() != loop.center()) device_.set_center(loop.center());
   }
 
   void start() override {
     device_.start();
-    if (wall_clock_) servo_.start();
+    // Asks the device what it is, which some know when they are started.
+    servo_.emplace(device_, channel_, settings_);
+    if (wall_clock_) servo_->start();
   }
   void stop() override {
-    servo_.stop();
+    if (servo_) servo_->stop();
     device_.stop();
   }
-  void tick_servo(std::int64_t now_ns) noexcept override { servo_.tick(now_ns); }
+  void tick_servo(std::int64_t now_ns) noexcept override { servo_->tick(now_ns); }
   void advance(double dt) noexcept override { device_.advance(dt); }
 
   bool read(PenSample& pen, std::int64_t) noexcept override {
@@ -69,27 +57,31 @@ class LocalPen final : public RunPen {
 
   bool connected() const noexcept override { return true; }
   std::uint64_t losses() const noexcept override { return 0; }
-  ServoStatistics statistics() const noexcept override { return servo_.statistics(); }
+  ServoStatistics statistics() const noexcept override { return servo_ ? servo_->statistics() : ServoStatistics(); }
   double servo_late_us() const noexcept override {
-    return wall_clock_ ? 1e-3 * static_cast<double>(servo_.newest_late_ns()) : std::numeric_limits<double>::quiet_NaN();
+    return wall_clock_ && servo_ ? 1e-3 * static_cast<double>(servo_->newest_late_ns())
+                                 : std::numeric_limits<double>::quiet_NaN();
   }
-  std::string missing_realtime() const override { return servo_.realtime().missing; }
-  std::string stability() const override { return stability_; }
+  std::string missing_realtime() const override { return servo_ ? servo_->realtime().missing : std::string(); }
+  std::string stability() const override {
+    return tegotae::stability(device_.info(), coupling_, settings_.rate_hz).text();
+  }
 
  private:
   bool wall_clock_;
-  SimulatedDevice device_;
+  ServoSettings settings_;
+  CouplingSettings coupling_;
+  Device& device_;
   Channel channel_;
-  Servo servo_;
+  std::optional<Servo> servo_;  // from start() on
   ContactLink link_;
   bool homed_ = false;
-  std::string stability_;
 };
 
-class RemotePen final : public RunPen {
+class RemotePen final : public PenPort {
  public:
-  RemotePen(const std::string& device, const SceneFile& file, const HapticLoop& loop)
-      : attachment_(device, loop.coupling(), loop.center(), file.scene.scale) {}
+  RemotePen(const std::string& device, double scale, const HapticLoop& loop)
+      : attachment_(device, loop.coupling(), loop.center(), scale) {}
 
   void start() override {}
   void stop() override {}
@@ -122,13 +114,13 @@ class RemotePen final : public RunPen {
 
 }  // namespace
 
-std::unique_ptr<RunPen> make_local_pen(const SceneFile& file, const HapticLoop& loop, bool wall_clock, HandIntent* hand,
-                                       const HandGuide* guide) {
-  return std::make_unique<LocalPen>(file, loop, wall_clock, hand, guide);
+std::unique_ptr<PenPort> make_local_pen(Device& device, const ServoSettings& servo, bool wall_clock, double scale,
+                                        const HapticLoop& loop) {
+  return std::make_unique<LocalPen>(device, servo, wall_clock, scale, loop);
 }
 
-std::unique_ptr<RunPen> make_remote_pen(const std::string& device, const SceneFile& file, const HapticLoop& loop) {
-  return std::make_unique<RemotePen>(device, file, loop);
+std::unique_ptr<PenPort> make_remote_pen(const std::string& device, double scale, const HapticLoop& loop) {
+  return std::make_unique<RemotePen>(device, scale, loop);
 }
 
 }  // namespace tegotae

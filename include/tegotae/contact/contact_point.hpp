@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "tegotae/core/export.hpp"
+#include "tegotae/core/ids.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
+
+/// A place where the held part A touches a fixed part B: their surfaces are no farther apart there than
+/// TickReport::contact_gap. Part and features are its identity from tick to tick.
+struct ContactPoint {
+  PartId part;                  ///< B
+  Feature feature_a;            ///< nearest feature of A's mesh
+  Feature feature_b;            ///< nearest feature of B's mesh
+  Vec3 point_a = Vec3::Zero();  ///< on A, m, world
+  Vec3 point_b = Vec3::Zero();  ///< on B, m, world
+  Vec3 normal = Vec3::Zero();   ///< n_BA_W: unit normal from B to A, world
+  double gap = 0;               ///< m; negative where the resolver "penalty" lets A into B
+  std::optional<double> force;  ///< N, on A along `normal`, 0 or positive; none: see TickReport::forces
+  std::int64_t ticks = 0;       ///< for so many ticks before this one it has been in contact; 0: it has just begun
+};
+
+/// That a contact began or ended in the last tick. Where the scene changes, contacts end without an event: their part
+/// is of a scene that is gone.
+struct ContactEvent {
+  /// What happened.
+  enum class Kind : std::uint8_t { began, ended };
+
+  Kind kind = Kind::began;  ///< what happened
+  ContactPoint contact;     ///< as it is; one that ended: as it was in the tick before
+};
+
+}  // namespace tegotae

@@ -1,0 +1,13 @@
+#pragma once
+
+/// The door: a scene, a pen, and the Rig that brings them together, with what they need. Everything else has a header
+/// of its own (docs/api.md has a map by task).
+
+#include "tegotae/core/clock.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
+#include "tegotae/device/simulated_device.hpp"
+#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/report.hpp"
+#include "tegotae/sim/rig.hpp"
+#include "tegotae/sim/scene_file.hpp"

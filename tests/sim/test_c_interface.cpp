@@ -1,0 +1,162 @@
+// tegotae.h, called as C would: closed forms, and what goes wrong is told and never thrown.
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "tegotae/coupling/coupling.hpp"
+#include "tegotae/tegotae.h"
+
+using tegotae::CouplingSettings;
+using tegotae::TriangleMesh;
+using tegotae::Vec3;
+
+namespace {
+
+int64_t add(tegotae_scene* scene, const char* name, const TriangleMesh& mesh, const double (&pose)[7], bool held) {
+  std::vector<double> vertices;
+  for (const Vec3& v : mesh.vertices) vertices.insert(vertices.end(), v.data(), v.data() + 3);
+  std::vector<uint32_t> triangles;
+  for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  return tegotae_scene_add(scene, name, vertices.data(), mesh.vertices.size(), triangles.data(), mesh.triangles.size(),
+                           pose, held);
+}
+
+const double kFloor[7] = {0, 0, -0.01, 1, 0, 0, 0}, kAbove[7] = {0, 0, 0.015, 1, 0, 0, 0};
+
+tegotae_scene* floor_scene() {
+  tegotae_scene* scene = tegotae_scene_create();
+  REQUIRE(scene != nullptr);
+  REQUIRE(add(scene, "floor", tegotae::test::box(Vec3(0.2, 0.2, 0.02)), kFloor, false) == 0);
+  REQUIRE(add(scene, "block", tegotae::test::box(Vec3(0.02, 0.02, 0.02)), kAbove, true) == 1);
+  return scene;
+}
+
+std::string error() {
+  return tegotae_last_error();
+}
+
+}  // namespace
+
+TEST_CASE("a rig from C is pressed on a floor and feels it", "[c_interface]") {
+  tegotae_scene* scene = floor_scene();
+  tegotae_rig* rig = tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED);
+  REQUIRE(rig != nullptr);
+  REQUIRE(tegotae_rig_start(rig) == 0);
+  const double below[7] = {0, 0, 0.006, 1, 0, 0, 0};
+  REQUIRE(tegotae_rig_lead(rig, below) == 0);
+  tegotae_tick tick;
+  int began = 0;
+  for (int i = 0; i < 1500; ++i) {
+    REQUIRE(tegotae_rig_step(rig, &tick) == 0);
+    tegotae_contact contacts[32];
+    const int64_t count = tegotae_rig_contacts(rig, contacts, 32);
+    REQUIRE(count == tick.contacts);
+    for (int64_t k = 0; k < count; ++k) began += contacts[k].began;
+  }
+  CHECK(tick.connected == 1);
+  CHECK(tick.touching == 1);
+  CHECK(tick.part[2] == Approx(0.01).margin(2e-5));
+  CHECK(tick.force[2] == Approx(CouplingSettings().stiffness * (tick.part[2] - tick.pen[2])).epsilon(0.01));
+  CHECK(tick.force[2] > 0.5);
+  CHECK(began >= 4);
+
+  tegotae_contact contacts[32];
+  const int64_t count = tegotae_rig_contacts(rig, contacts, 32);
+  REQUIRE(count >= 4);
+  double sum = 0;
+  for (int64_t k = 0; k < count; ++k) {
+    CHECK(contacts[k].part == 0);
+    CHECK(contacts[k].normal[2] == Approx(1));
+    CHECK(contacts[k].point_b[2] == Approx(0).margin(1e-9));
+    CHECK(contacts[k].point_a[2] == Approx(contacts[k].gap).margin(1e-9));
+    sum += contacts[k].force;
+  }
+  CHECK(sum == Approx(tick.force[2]).epsilon(0.02));
+  // Fewer than there are: the first of them, and nothing beyond.
+  tegotae_contact one[2];
+  std::memset(one, 0x5a, sizeof one);
+  const tegotae_contact before = one[1];
+  CHECK(tegotae_rig_contacts(rig, one, 1) == count);
+  CHECK(one[0].gap == contacts[0].gap);
+  CHECK(std::memcmp(&one[1], &before, sizeof before) == 0);
+  CHECK(tegotae_rig_contacts(rig, nullptr, 0) == count);
+
+  double pose[7];
+  REQUIRE(tegotae_rig_part(rig, pose) == 0);
+  CHECK(std::memcmp(pose, tick.part, sizeof pose) == 0);
+  tegotae_scene_destroy(scene);  // the rig goes on
+  CHECK(tegotae_rig_step(rig, nullptr) == 0);
+  CHECK(tegotae_rig_stop(rig) == 0);
+  tegotae_rig_destroy(rig);
+}
+
+TEST_CASE("a scene is changed from C while it runs", "[c_interface]") {
+  tegotae_scene* scene = floor_scene();
+  tegotae_rig* rig = tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED);
+  REQUIRE(rig != nullptr);
+  REQUIRE(tegotae_rig_start(rig) == 0);
+  const double lower[7] = {0, 0, -0.03, 1, 0, 0, 0}, below[7] = {0, 0, -0.01, 1, 0, 0, 0};
+  REQUIRE(tegotae_scene_move(scene, 0, lower) == 0);
+  REQUIRE(tegotae_rig_change(rig, scene, 0) == 0);
+  REQUIRE(tegotae_rig_lead(rig, below) == 0);
+  tegotae_tick tick;
+  for (int i = 0; i < 1500; ++i) REQUIRE(tegotae_rig_step(rig, &tick) == 0);
+  CHECK(tick.part[2] == Approx(-0.01).margin(2e-5));
+  // Nobody steps: the change is taken back.
+  const double aside[7] = {1, 0, -0.03, 1, 0, 0, 0};
+  REQUIRE(tegotae_scene_move(scene, 0, aside) == 0);
+  CHECK(tegotae_rig_change(rig, scene, 0.01) < 0);
+  CHECK_THAT(error(), Catch::Matchers::Contains("steps"));
+  tegotae_rig_destroy(rig);
+  tegotae_scene_destroy(scene);
+}
+
+TEST_CASE("what goes wrong in a call from C is told", "[c_interface]") {
+  const double no_turn[7] = {0, 0, 0, 0, 0, 0, 0}, far[7] = {1e300, 0, 0, 1, 0, 0, 0};
+  const double nan[7] = {0, 0, 0, std::nan(""), 0, 0, 0}, one[3] = {0, 0, 0};
+  const uint32_t triangle[3] = {0, 1, 2};
+  CHECK(tegotae_scene_add(nullptr, "a", one, 1, triangle, 1, kFloor, 0) < 0);
+  CHECK(error() == "scene must not be NULL");
+  tegotae_scene* scene = floor_scene();
+  CHECK(tegotae_scene_add(scene, nullptr, one, 1, triangle, 1, kFloor, 0) < 0);
+  CHECK(tegotae_scene_add(scene, "a", nullptr, 1, triangle, 1, kFloor, 0) < 0);
+  CHECK(tegotae_scene_add(scene, "a", one, 1, nullptr, 1, kFloor, 0) < 0);
+  CHECK(tegotae_scene_add(scene, "a", one, 1, triangle, 1, kFloor, 0) < 0);
+  CHECK_THAT(error(), Catch::Matchers::Contains("\"a\"") && Catch::Matchers::Contains("vertex"));
+  for (const double* pose : {no_turn, far, nan, static_cast<const double*>(nullptr)})
+    CHECK(tegotae_scene_move(scene, 0, pose) < 0);
+  CHECK(tegotae_scene_move(scene, 2, kFloor) < 0);
+  CHECK(tegotae_scene_load("/no/such/scene.toml") == nullptr);
+  CHECK_THAT(error(), Catch::Matchers::Contains("/no/such/scene.toml"));
+  CHECK(tegotae_rig_create(scene, "shm:/tegotae-nobody-has-this-name", TEGOTAE_CLOCK_REAL) == nullptr);
+  CHECK(tegotae_rig_create(scene, "shm:/x", TEGOTAE_CLOCK_SIMULATED) == nullptr);
+  CHECK(tegotae_rig_create(scene, nullptr, 7) == nullptr);
+  REQUIRE(tegotae_scene_move(scene, 1, kFloor) == 0);
+  CHECK(tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED) == nullptr);
+  CHECK_THAT(error(), Catch::Matchers::Contains("\"block\" and \"floor\" intersect"));
+  CHECK(tegotae_rig_step(nullptr, nullptr) < 0);
+  CHECK(tegotae_rig_contacts(nullptr, nullptr, 0) < 0);
+  // Another thread has its own last error.
+  std::string others = "unset";
+  std::thread([&others] { others = tegotae_last_error(); }).join();
+  CHECK(others.empty());
+  tegotae_scene_destroy(scene);
+  tegotae_scene_destroy(nullptr);
+  tegotae_rig_destroy(nullptr);
+}
+
+TEST_CASE("a scene file is loaded from C", "[c_interface]") {
+  tegotae_scene* scene = tegotae_scene_load(TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml");
+  REQUIRE(scene != nullptr);
+  tegotae_rig* rig = tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED);
+  REQUIRE(rig != nullptr);
+  CHECK(tegotae_rig_start(rig) == 0);
+  CHECK(tegotae_rig_step(rig, nullptr) == 0);
+  tegotae_rig_destroy(rig);
+  tegotae_scene_destroy(scene);
+  CHECK(std::string(tegotae_version()).find('.') != std::string::npos);
+}
