@@ -117,7 +117,7 @@ TEST_CASE("a page gets the force of each contact, in the coupling's newtons at i
   const Vec3 size(0.02, 0.03, 0.01);
   scene.parts.push_back({"block", test::shared(test::box(size)), {Quat::Identity(), {0, 0, 0.0051}}, true});
   HapticLoop loop(scene);
-  const FrameMaker maker(scene);
+  const FrameMaker maker;
   Frame frame;
   for (const auto& [depth, newtons] : {std::pair(-1e-3, 0.0), {1e-3, 0.8}, {2.5e-3, 2.0}}) {
     CAPTURE(depth);
