@@ -18,4 +18,4 @@ picture task-time 1250
 picture ladder 1340
 picture hold 1130
 picture widening 1640
-picture wrench 2080
+picture wrench 3480
