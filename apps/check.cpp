@@ -19,7 +19,8 @@ namespace tegotae::apps {
 
 namespace {
 
-void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
+void print_mesh(const TriangleMesh& mesh, double unit_in_m, const char* unit) {
+  const MeshReport r = report(mesh);
   std::printf("  %zu triangle%s, %zu vertices, %zu component%s, %s\n", r.triangles, r.triangles == 1 ? "" : "s",
               r.vertices, r.components, r.components == 1 ? "" : "s", r.closed ? "closed" : "not closed");
   if (r.boundary_edges + r.non_manifold_edges + r.degenerate_faces + r.duplicate_faces > 0)
@@ -30,12 +31,13 @@ void print_mesh(const MeshReport& r, double unit_in_m, const char* unit) {
                 r.inverted_shells, r.components, r.inverted_shells == 1 ? "s" : "");
   const Vec3 lo = r.box_min / unit_in_m, hi = r.box_max / unit_in_m;
   std::printf("  box %.6g..%.6g  %.6g..%.6g  %.6g..%.6g %s\n", lo.x(), hi.x(), lo.y(), hi.y(), lo.z(), hi.z(), unit);
+  for (const std::string& note : mesh.notes) std::printf("  note: %s\n", note.c_str());
 }
 
 void check_mesh(const std::string& file, const MeshLoader& load) {
   const TriangleMesh mesh = load(file, 1.0);
   std::cout << file << "\n" << std::flush;
-  print_mesh(report(mesh), 1.0, "(file units)");
+  print_mesh(mesh, 1.0, "(file units)");
 }
 
 void check_scene(const std::string& path, const MeshLoader& load) {
@@ -46,7 +48,7 @@ void check_scene(const std::string& path, const MeshLoader& load) {
     std::printf("%s%s: %s\n", part.name.c_str(), part.held ? " (held)" : "", part.mesh->name.c_str());
     const auto [first, fresh] = seen.emplace(part.mesh.get(), part.name);
     if (fresh)
-      print_mesh(report(*part.mesh), 1e-3, "mm");
+      print_mesh(*part.mesh, 1e-3, "mm");
     else
       std::printf("  as %s\n", first->second.c_str());
   }
@@ -86,6 +88,7 @@ void check_clashes(const std::string& path, double within, const MeshLoader& loa
   const SceneFile file = load_with_progress(path, {"", false, {}, load});
   ClashOptions options;
   options.within = within;
+  print_notes(file.scene);
   std::vector<Clash> clashes;
   {
     StatusLine status;

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <iostream>
+#include <set>
 
 namespace tegotae::apps {
 
@@ -30,6 +32,15 @@ SceneFile load_with_progress(const std::string& path, SceneOptions options) {
   StatusLine status;
   options.progress = [&](std::size_t done, std::size_t total) { status.show("reading meshes of part", done, total); };
   return load_scene(path, options);
+}
+
+void print_notes(const Scene& scene) {
+  std::set<const TriangleMesh*> told;
+  for (const Part& part : scene.parts) {
+    if (!told.insert(part.mesh.get()).second) continue;
+    for (const std::string& note : part.mesh->notes)
+      std::cerr << "tegotae: note: " << part.mesh->name << ": " << note << "\n";
+  }
 }
 
 }  // namespace tegotae::apps

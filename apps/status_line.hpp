@@ -30,4 +30,7 @@ class StatusLine {
 /// Loads a scene with such a line.
 SceneFile load_with_progress(const std::string& path, SceneOptions options = {});
 
+/// What of a scene's meshes is not as their files say, a line each on stderr.
+void print_notes(const Scene& scene);
+
 }  // namespace tegotae::apps

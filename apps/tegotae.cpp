@@ -132,6 +132,7 @@ int main(int argc, char** argv) {
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
     SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);
+    print_notes(loaded.scene);
     if (!script.empty()) {
       loaded.script = read_script(script);
       loaded.files.push_back(script);

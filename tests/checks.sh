@@ -5,13 +5,14 @@
 #                 warnings as errors; --quick: the tests of what reads bytes and indexes memory
 #   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
 #   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer)
+#   headers       every public header compiles alone with the newest clang and the newest standard library that are here
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
 #   tidy          clang-tidy with the list of .clang-tidy, over src/ and apps/
 #   determinism   recordings of runs in virtual time: of builds with -O2 and -O3, idle and busy, the same bytes
 #   docs          every public name has a docstring (doxygen), links of the documents
 #   fuzz          every fuzz target for 20 seconds; --quick: 3
 # A check whose tool is not installed is skipped: it says so, and the exit code at the end is 77. The tools (Debian 12)
-# are those of `.ci/setup.sh --checks`, and clang-22 libclang-rt-22-dev for rtsan.
+# are those of `.ci/setup.sh --checks`, clang-22 libclang-rt-22-dev for rtsan, clang-22 libc++-22-dev for headers.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -91,17 +92,16 @@ check_tsan() {
   TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan -R "^($(IFS='|'; echo "${tests[*]}"))\$" --output-on-failure
 }
 
-check_rtsan() {
-  local clang="" n
-  for n in $(seq 30 -1 20); do
-    if command -v "clang++-$n" >/dev/null; then clang=clang-$n; break; fi
-  done
-  if [ -z "$clang" ]; then
-    skipped="it needs clang 20 or newer (clang-22 libclang-rt-22-dev)"
-    return
-  fi
+# The newest clang from a version on, in $tool.
+newest_clang() {
   # shellcheck disable=SC2046
-  CC=$clang CXX=${clang/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) -DTEGOTAE_STEP=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=OFF \
+  needs "clang $1 or newer ($2)" $(seq -f 'clang-%g' 30 -1 "$1")
+}
+
+check_rtsan() {
+  newest_clang 20 "clang-22 libclang-rt-22-dev" || return 0
+  # shellcheck disable=SC2046
+  CC=$tool CXX=${tool/clang/clang++} configure -S . -B build/rtsan $(new_tree build/rtsan) -DTEGOTAE_STEP=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=OFF \
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-fsanitize=realtime -O1 -g1"
   cmake --build build/rtsan --parallel "$jobs" --target test_servo test_device
   build/rtsan/bin/test_device
@@ -109,6 +109,23 @@ check_rtsan() {
   # That one makes the servo call the system on purpose; the sanitizer must see it.
   build/rtsan/bin/test_servo '*system call*' >build/rtsan/caught 2>&1 || true
   grep -q 'RealtimeSanitizer: unsafe-library-call' build/rtsan/caught || fail "the sanitizer saw nothing"
+}
+
+# A newer standard library has fewer of its headers along; clang's own has the fewest.
+check_headers() {
+  local eigen flags=(-fsyntax-only -Wall -Wextra -Werror -Iinclude)
+  newest_clang 14 "clang-22 libc++-22-dev" || return 0
+  ! echo '#include <vector>' | "$tool" -xc++ -stdlib=libc++ -fsyntax-only - 2>/dev/null || flags+=(-stdlib=libc++)
+  echo "with $("$tool" --version | head -n 1) ${flags[*]}"
+  eigen=$(pkg-config --cflags-only-I eigen3 | xargs)
+  flags+=("${eigen/-I/-isystem}" -xc++)
+  mkdir -p build
+  (cd include && find tegotae -name '*.h*' -printf '#include "%p"\n') | sort >build/headers.txt
+  # shellcheck disable=SC2016
+  tr '\n' '\0' <build/headers.txt |
+    xargs -0 -P "$jobs" -I{} sh -c 'header=$1; shift; echo "$header" | "$@" - || { echo "alone: $header" >&2; exit 1; }' \
+      sh {} "$tool" -std=c++17 "${flags[@]}"
+  "$tool" -std=c++23 "${flags[@]}" build/headers.txt
 }
 
 # In $tool: clang.
@@ -176,9 +193,9 @@ if [ "${1:-}" = --quick ]; then
   quick=true
   shift
 fi
-[ $# -gt 0 ] || fail "name a check: format asan tsan rtsan clang tidy determinism docs fuzz, or all"
+[ $# -gt 0 ] || fail "name a check: format asan tsan rtsan headers clang tidy determinism docs fuzz, or all"
 code=0
-[ "$*" != all ] || set -- format docs tsan rtsan determinism clang tidy asan fuzz
+[ "$*" != all ] || set -- format docs headers tsan rtsan determinism clang tidy asan fuzz
 for name in "$@"; do
   declare -F "check_$name" >/dev/null || fail "unknown check $name"
   SECONDS=0

@@ -21,6 +21,7 @@ Task load_task(const TryOptions& o) {
   SceneOptions how;
   how.hold = o.hold;
   SceneFile file = apps::load_with_progress(o.scene, how);
+  apps::print_notes(file.scene);
   if (o.goal.empty() && !(file.script.end() > file.script.begin()))
     throw Error(o.scene + ": its script goes nowhere; tell where the part is to go with --goal");
   const Pose goal = o.goal.empty() ? file.script.pose(file.script.end()) : apps::parse_pose(o.goal, file.scene);

@@ -86,14 +86,6 @@ void center_far_shapes(Assembly& assembly) {
   for (AssemblyPart& part : assembly.parts) part.pose.p = part.pose * shift[part.shape];
 }
 
-/// `text` in UTF-8 and on one line, as scene files want it: control characters become spaces.
-std::string printable(const std::string& text) {
-  std::string line = to_utf8(text);
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  std::replace_if(line.begin(), line.end(), is_control, ' ');
-  return line;
-}
-
 void name_parts(Assembly& assembly) {
   std::set<std::string> given;  // names in the file: a number added to one must not make another of them
   for (AssemblyPart& part : assembly.parts) {
@@ -130,6 +122,7 @@ Assembly read_assembly(const std::string& path, const AssemblyOptions& options) 
     share_equal_shapes(assembly);
     center_far_shapes(assembly);
     name_parts(assembly);
+    for (std::string& note : assembly.notes) note = printable(note);
     if (assembly.parts.empty()) throw Error(path + ": no parts with triangles");
     return assembly;
   });

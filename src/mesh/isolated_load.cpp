@@ -15,9 +15,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 #include "mesh/mesh_pipe.hpp"
+#include "mesh/utf8.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -176,10 +178,15 @@ TriangleMesh received(Reader& reader, const std::string& path, const IsolatedLoa
   std::string text(head.text_bytes, '\0');
   reader.read_all(text.data(), text.size());
   if (head.failed != 0) throw Error(text);
-  const double bytes = 24.0 * static_cast<double>(head.vertices) + 12.0 * static_cast<double>(head.triangles);
+  const double bytes = static_cast<double>(head.note_bytes) + 24.0 * static_cast<double>(head.vertices) +
+                       12.0 * static_cast<double>(head.triangles);
   if (bytes > 1e6 * bounds.megabytes) fail(path, "the loading process sent more than the memory it may have");
   TriangleMesh mesh;
   mesh.name = std::move(text);
+  std::string notes(head.note_bytes, '\0');
+  reader.read_all(notes.data(), notes.size());
+  std::istringstream lines(notes);
+  for (std::string note; std::getline(lines, note);) mesh.notes.push_back(printable(note));
   mesh.vertices.resize(head.vertices);
   reader.read_all(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
   mesh.triangles.resize(head.triangles);

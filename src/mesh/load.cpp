@@ -5,6 +5,7 @@
 #include "mesh/load_assimp.hpp"
 #include "mesh/reading.hpp"
 #include "mesh/usable.hpp"
+#include "mesh/utf8.hpp"
 
 namespace tegotae {
 namespace {
@@ -20,6 +21,7 @@ TriangleMesh import(const std::string& path, double unit) {
   mesh.name = path;
   if (is_part_file(path)) {
     const PartFile file = read_part_file(path);
+    for (const std::string& note : file.notes) mesh.notes.push_back(printable(note));
     for (const PartFile::Placed& part : file.parts) append(file.meshes[part.mesh], part.X, unit, mesh);
     return mesh;
   }

@@ -58,12 +58,16 @@ int send_error(const std::string& text) {
 }
 
 int send_mesh(const TriangleMesh& mesh) {
+  std::string notes;
+  for (const std::string& note : mesh.notes) notes += note + '\n';
   MeshPipeHead head;
   head.text_bytes = mesh.name.size();
+  head.note_bytes = notes.size();
   head.vertices = mesh.vertices.size();
   head.triangles = mesh.triangles.size();
   static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof mesh.triangles[0] == 3 * sizeof(std::uint32_t));
   const bool sent = send(&head, sizeof head) && send(mesh.name.data(), mesh.name.size()) &&
+                    send(notes.data(), notes.size()) &&
                     send(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3)) &&
                     send(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
   return sent ? 0 : 1;

@@ -2,22 +2,13 @@
 
 #include <Interface_Check.hxx>
 #include <Interface_CheckIterator.hxx>
-#include <StepBasic_Product.hxx>
-#include <StepBasic_ProductDefinition.hxx>
-#include <StepBasic_ProductDefinitionFormation.hxx>
 #include <StepData_StepModel.hxx>
-#include <StepData_UndefinedEntity.hxx>
 #include <StepGeom_CartesianPoint.hxx>
 #include <StepGeom_CartesianTransformationOperator3d.hxx>
 #include <StepGeom_Direction.hxx>
-#include <StepRepr_CharacterizedDefinition.hxx>
 #include <StepRepr_MappedItem.hxx>
-#include <StepRepr_PropertyDefinition.hxx>
 #include <StepRepr_RepresentationRelationshipWithTransformation.hxx>
-#include <StepRepr_RepresentedDefinition.hxx>
 #include <StepRepr_Transformation.hxx>
-#include <StepShape_ShapeDefinitionRepresentation.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -57,24 +48,6 @@ bool is_beside_color(const std::string& type) {
          std::any_of(kOthers.begin(), kOthers.end(), [&](auto o) { return has(type, o); });
 }
 
-bool is_tessellated(const Entity& entity) {
-  const auto undefined = Handle(StepData_UndefinedEntity)::DownCast(entity);
-  return !undefined.IsNull() && begins(undefined->StepType(), "TESSELLATED_");
-}
-
-/// The name of the product whose shape `entity` would represent; empty when it represents none.
-std::string product_of(const Entity& entity) {
-  const auto shown = Handle(StepShape_ShapeDefinitionRepresentation)::DownCast(entity);
-  if (shown.IsNull() || !shown->UsedRepresentation().IsNull()) return "";
-  const Handle(StepRepr_PropertyDefinition) property = shown->Definition().PropertyDefinition();
-  if (property.IsNull()) return "";
-  const Handle(StepBasic_ProductDefinition) definition = property->Definition().ProductDefinition();
-  if (definition.IsNull() || definition->Formation().IsNull() || definition->Formation()->OfProduct().IsNull())
-    return "";
-  const Handle(TCollection_HAsciiString) name = definition->Formation()->OfProduct()->Name();
-  return name.IsNull() ? "" : name->ToCString();
-}
-
 gp_Vec vector_of(const Handle(StepGeom_Direction) & direction) {
   if (direction.IsNull() || direction->NbDirectionRatios() < 3) return {};
   return {direction->DirectionRatiosValue(1), direction->DirectionRatiosValue(2), direction->DirectionRatiosValue(3)};
@@ -111,29 +84,24 @@ void require_rigid(const std::string& path, const Handle(StepData_StepModel) & m
 
 }  // namespace
 
-StepEntities check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session) {
-  StepEntities out;
+bool check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session) {
+  bool has_colors = true;
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
-  bool has_tessellated = false;
-  for (int i = 1; i <= model->NbEntities(); ++i) has_tessellated |= is_tessellated(model->Value(i));
   // Of entities that do not fit together OpenCASCADE makes null handles, which its own transfer then follows.
   Interface_CheckIterator checks = session->ModelCheckList(true);
   for (checks.Start(); checks.More(); checks.Next()) {
     if (!checks.Value()->HasFailed()) continue;
     const Entity entity = checks.Number() > 0 ? model->Value(checks.Number()) : Entity();
     const std::string type = entity.IsNull() ? "" : entity->DynamicType()->Name();
-    const std::string product = has_tessellated && !entity.IsNull() ? product_of(entity) : "";
-    if (!product.empty()) {
-      out.tessellated.insert(product);
-    } else if (is_beside_shape(type)) {
-      out.colors = out.colors && is_beside_color(type);
+    if (is_beside_shape(type)) {
+      has_colors = has_colors && is_beside_color(type);
     } else {
       const std::string which = entity.IsNull() ? "" : " (#" + std::to_string(model->IdentLabel(entity)) + ")";
       throw Error(path + ": damaged: OpenCASCADE finds entities that cannot be: wrong or missing references" + which);
     }
   }
   require_rigid(path, model);
-  return out;
+  return has_colors;
 }
 
 }  // namespace tegotae

@@ -14,7 +14,7 @@ Assembly read_step(const std::string& path, const AssemblyOptions& options);
 
 /// Whether the bytes of `path` begin like a STEP file, or its name ends like one's.
 bool is_step(const std::string& path);
-/// Throws Error unless the STEP file `path` is whole and of a known schema.
-void check_step(const std::string& path);
+/// The bytes of the STEP file `path`. Throws Error unless it is whole and of a known schema.
+std::string check_step(const std::string& path);
 
 }  // namespace tegotae

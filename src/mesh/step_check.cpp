@@ -46,8 +46,8 @@ bool is_step(const std::string& path) {
   return file && std::string_view(start.data(), start.size()) == kMagic;
 }
 
-void check_step(const std::string& path) {
-  const std::string bytes = read_bytes(path);
+std::string check_step(const std::string& path) {
+  std::string bytes = read_bytes(path);
   const std::string_view all(bytes);
   const std::size_t begin = all.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) throw Error(path + ": empty file");
@@ -58,6 +58,7 @@ void check_step(const std::string& path) {
   if (schema.empty()) throw Error(path + ": damaged: it names no schema (FILE_SCHEMA)");
   if (!known_schema(schema))
     throw Error(path + ": unknown STEP schema " + schema + " (known: AP203, AP214, AP242); export one of these");
+  return bytes;
 }
 
 }  // namespace tegotae

@@ -23,9 +23,12 @@
 #include <gp_Quaternion.hxx>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "mesh/occt_check.hpp"
 #include "mesh/occt_shape.hpp"
+#include "mesh/occt_triangles.hpp"
+#include "mesh/part_file.hpp"
 #include "mesh/read_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/load.hpp"
@@ -76,9 +79,10 @@ class Quiet {
 
 /// Half a unit in the last place of a file of floats, wherever in the shape; for the shape's file frame see
 /// read_assembly.
-double rounding_margin(const TriangleMesh& mesh) {
+double rounding_margin(const std::vector<Vec3>& exact, const std::vector<Vec3>& plain) {
   Eigen::AlignedBox3d box;
-  for (const Vec3& p : mesh.vertices) box.extend(p);
+  for (const auto* points : {&exact, &plain})
+    for (const Vec3& p : *points) box.extend(p);
   const bool far = box.center().norm() > box.diagonal().norm();
   const double largest = far ? 0.5 * box.sizes().maxCoeff() : box.max().cwiseMax(-box.min()).maxCoeff();
   return std::ldexp(largest, -23);
@@ -86,7 +90,8 @@ double rounding_margin(const TriangleMesh& mesh) {
 
 class StepReader {
  public:
-  StepReader(const std::string& path, const AssemblyOptions& options) : path_(path), options_(options) {}
+  StepReader(const std::string& path, const std::string& bytes, const AssemblyOptions& options)
+      : path_(path), bytes_(bytes), options_(options) {}
   // The application lives as long as the program, and keeps the documents that are open.
   ~StepReader() {
     if (!document_.IsNull()) XCAFApp_Application::GetApplication()->Close(document_);
@@ -106,6 +111,7 @@ class StepReader {
       if (options_.progress) options_.progress("tessellating", i, leaves_.size());
       make_shape(i);
     }
+    tell_unread();
     drop_empty();
     return std::move(assembly_);
   }
@@ -125,15 +131,19 @@ class StepReader {
     reader.SetGDTMode(false);
     reader.SetMatMode(false);
     reader.SetViewMode(false);
-    if (reader.ReadFile(path_.c_str()) != IFSelect_RetDone) throw Error(path_ + ": damaged: not a readable STEP file");
-    const StepEntities entities = check_entities(path_, reader.ChangeReader().WS());
-    tessellated_ = entities.tessellated;
-    reader.SetColorMode(entities.colors);
-    if (!entities.colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
-    if (!reader.Transfer(document_)) {
-      if (!tessellated_.empty()) throw Error(path_ + only_tessellated());
-      throw Error(path_ + ": no shapes can be read from it");
-    }
+    PlainStep plain;
+    if (mentions_triangles(bytes_)) plain = take_triangles(path_, bytes_);
+    unread_ = plain.unread;
+    std::istringstream text(plain.text);
+    const bool done = plain.text.empty() ? reader.ReadFile(path_.c_str()) == IFSelect_RetDone
+                                         : reader.ChangeReader().ReadStream(path_.c_str(), text) == IFSelect_RetDone;
+    if (!done) throw Error(path_ + ": damaged: not a readable STEP file");
+    const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
+    const bool has_colors = check_entities(path_, session);
+    reader.SetColorMode(has_colors);
+    if (!has_colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
+    if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
+    triangles_ = TransferredTriangles(std::move(plain.shapes), session);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
   }
@@ -188,7 +198,7 @@ class StepReader {
   }
 
   /// The product's color; of one colored piece by piece, the color of the largest area.
-  std::optional<Color> color_of_product(const TDF_Label& what, const TopoDS_Shape& shape) const {
+  std::optional<Color> color_of_product(const TDF_Label& what, const TopoDS_Shape& shape) {
     if (const auto own = color_of(what)) return own;
     std::map<Color, double> areas;
     TDF_LabelSequence pieces;
@@ -197,9 +207,9 @@ class StepReader {
       const auto color = color_of(piece);
       const TopoDS_Shape sub = XCAFDoc_ShapeTool::GetShape(piece);
       if (!color || sub.IsNull() || sub.ShapeType() > TopAbs_FACE) continue;
-      GProp_GProps area;
+      GProp_GProps area;  // mm^2
       BRepGProp::SurfaceProperties(sub, area);
-      areas[*color] += area.Mass();
+      areas[*color] += area.Mass() + 1e6 * triangles_.area_in(sub);
     }
     const auto largest =
         std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -250,9 +260,12 @@ class StepReader {
     const std::string self = '"' + leaf.name + '"';
     if (missing > 0)
       assembly_.notes.push_back(self + ": " + std::to_string(missing) + " faces could not be tessellated");
+    const TriangleMesh plain = triangles_.in(leaf.shape);
+    leaf.tessellated = triangles_.any_in(leaf.shape);
+    if (!shape.mesh.triangles.empty())
+      note(self, keep_clearance(shape, leaf.cad, rounding_margin(shape.mesh.vertices, plain.vertices)));
+    append(plain, Matrix34::Identity(), 1, shape.mesh);
     if (!shape.mesh.triangles.empty()) {
-      const ClearanceReport kept = keep_clearance(shape, leaf.cad, rounding_margin(shape.mesh));
-      note(self, kept);
       shape.mesh.name = leaf.name;
       if (!report(shape.mesh).closed) assembly_.notes.push_back(self + ": its surface is not closed");
     }
@@ -276,25 +289,20 @@ class StepReader {
       assembly_.notes.push_back(self + ": " + std::to_string(kept.turned) + " facets beside holes were turned over");
   }
 
-  void drop_empty() {
-    auto& parts = assembly_.parts;
-    for (const AssemblyPart& part : parts) {
-      if (!assembly_.shapes[part.shape]->triangles.empty())
-        tessellated_.erase(leaves_[part.shape].name);
-      else if (tessellated_.count(leaves_[part.shape].name) == 0)
-        assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
-    }
-    const auto empty = [&](const AssemblyPart& part) { return assembly_.shapes[part.shape]->triangles.empty(); };
-    parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
-    if (parts.empty() && !tessellated_.empty()) throw Error(path_ + only_tessellated());
-    for (const std::string& name : tessellated_)
-      assembly_.notes.push_back('"' + name +
-                                "\" is tessellated (triangles without exact faces), which is not read: left out");
+  void tell_unread() {
+    for (const std::string& what : unread_) assembly_.notes.push_back(what + ", which is not read: left out");
+    for (const std::uint64_t id : triangles_.unused())
+      assembly_.notes.push_back("the triangles of #" + std::to_string(id) + " are of no product: left out");
   }
 
-  static std::string only_tessellated() {
-    return ": its shapes are tessellated (triangles without exact faces), which is not read: export exact shapes, or a "
-           "mesh file";
+  void drop_empty() {
+    auto& parts = assembly_.parts;
+    const auto empty = [&](const AssemblyPart& part) { return assembly_.shapes[part.shape]->triangles.empty(); };
+    for (const AssemblyPart& part : parts)
+      if (empty(part) && !leaves_[part.shape].tessellated)
+        assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
+    parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
+    if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
   }
 
   struct Leaf {
@@ -304,16 +312,18 @@ class StepReader {
     std::vector<CadFace> cad;
     std::vector<bool> fine;
     std::optional<Color> color;
+    bool tessellated = false;
   };
 
-  const std::string& path_;
+  const std::string &path_, &bytes_;
   const AssemblyOptions& options_;
   Handle(TDocStd_Document) document_;
   Handle(XCAFDoc_ShapeTool) shapes_;
   Handle(XCAFDoc_ColorTool) colors_;
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
-  std::set<std::string> tessellated_;  // products
+  TransferredTriangles triangles_;
+  std::vector<std::string> unread_;  // kinds of tessellated shapes
   Assembly assembly_;
 };
 
@@ -324,10 +334,10 @@ bool reads_step() {
 }
 
 Assembly read_step(const std::string& path, const AssemblyOptions& options) {
-  check_step(path);
+  const std::string bytes = check_step(path);
   const Quiet quiet;
   try {
-    return StepReader(path, options).read();
+    return StepReader(path, bytes, options).read();
   } catch (const Standard_Failure& e) {
     throw Error(path + ": damaged: OpenCASCADE: " + e.GetMessageString());
   }

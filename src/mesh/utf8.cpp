@@ -1,5 +1,6 @@
 #include "mesh/utf8.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace tegotae {
@@ -44,6 +45,13 @@ std::string to_utf8(const std::string& text) {
     }
   }
   return out;
+}
+
+std::string printable(const std::string& text) {
+  std::string line = to_utf8(text);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(line.begin(), line.end(), is_control, ' ');
+  return line;
 }
 
 }  // namespace tegotae

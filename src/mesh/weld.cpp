@@ -112,6 +112,7 @@ TriangleMesh weld(const TriangleMesh& mesh) {
 
   TriangleMesh out;
   out.name = mesh.name;
+  out.notes = mesh.notes;
   out.triangles.reserve(mesh.triangles.size());
   std::vector<std::uint32_t> index(mesh.vertices.size(), kNone);
   for (const auto& t : mesh.triangles) {

@@ -6,6 +6,7 @@
 
 #include "apps/program_summary.hpp"
 #include "catch.hpp"
+#include "mesh/gltf_doc.hpp"
 #include "spawn.hpp"
 
 using namespace tegotae;
@@ -138,6 +139,33 @@ TEST_CASE("Ctrl-C ends a run and keeps the recording", "[programs]") {
   REQUIRE(!text.empty());
   CHECK(text.back() == '\n');
   CHECK(std::count(text.begin(), text.end(), '\n') > j.at("ticks").get<int>());
+}
+
+TEST_CASE("check and run tell what of a mesh is not as its file says", "[programs]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  test::GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}, {"scale", {10, 10, 10}}});
+  doc.uses("ACME_bends", false);
+  doc.save(folder, "tet");
+  std::string scene = read_text(folder / "scene.toml");
+  for (std::size_t at = 0; (at = scene.find("tet.obj")) != std::string::npos;) scene.replace(at, 7, "tet.gltf");
+  folder.write("scene.toml", scene);
+  const std::string note = "ACME_bends is not read";
+  for (const char* trusted : {"", " --trusted"}) {
+    INFO(trusted);
+    for (const char* file : {"tet.gltf", "scene.toml"})
+      CHECK_THAT(run_program("tegotae", "check " + (folder / file) + trusted).out,
+                 Catch::Contains("note: ") && Catch::Contains(note));
+    CHECK_THAT(run_program("tegotae", "check --clash " + (folder / "scene.toml") + trusted).err, Catch::Contains(note));
+    const Output run = run_program("tegotae", "run --fast --json " + (folder / "scene.toml") + trusted);
+    CHECK(run.code == 0);
+    // Once, though two parts have the mesh.
+    const auto at = run.err.find(note);
+    REQUIRE(at != std::string::npos);
+    CHECK(run.err.find("tet.gltf: ") < at);
+    CHECK(run.err.find(note, at + 1) == std::string::npos);
+  }
 }
 
 TEST_CASE("check reports on meshes and scenes", "[programs]") {

@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:?usage: tests/fuzz/run.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ "${#targets[@]}" -gt 0 ] || targets=(stl obj ply off gltf glb 3mf scene script recording shared_memory page http tries)
+[ "${#targets[@]}" -gt 0 ] || targets=(stl obj ply off gltf glb 3mf step scene script recording shared_memory page http tries)
 parts=${TEGOTAE_PARTS_DIR:-../shared/parts}
 
 clang=${TEGOTAE_CLANG:--14}

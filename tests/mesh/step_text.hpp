@@ -13,7 +13,12 @@ class StepText {
     add("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000," + ref(application) + ")");
     product_context_ = add("PRODUCT_CONTEXT(''," + ref(application) + ",'mechanical')");
     definition_context_ = add("PRODUCT_DEFINITION_CONTEXT('part definition'," + ref(application) + ",'design')");
-    const int length = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
+    set_unit(".MILLI.");
+  }
+
+  /// Of the representations that follow: ".MILLI." or "$" of meters.
+  void set_unit(const std::string& prefix) {
+    const int length = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(" + prefix + ",.METRE.))");
     const int angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
     const int solid_angle = add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
     context_ = add("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((" + ref(length) + "," +
@@ -72,6 +77,18 @@ class StepText {
     std::string all;
     for (const int i : items) all += (all.empty() ? "" : ",") + ref(i);
     return add(kind + "('',(" + all + ")," + ref(context_) + ")");
+  }
+
+  /// Places `product`, shown by `shown`, in the product `in`, shown by `all`: its frame `from` comes to lie on `to`.
+  void instance(int product, int shown, int from, int in, int all, int to, const std::string& name) {
+    const int use =
+        add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('" + name + "','" + name + "',''," + ref(in) + "," + ref(product) + ",$)");
+    const int self = add("PRODUCT_DEFINITION_SHAPE('',''," + ref(use) + ")");
+    const int moved = add("ITEM_DEFINED_TRANSFORMATION('',''," + ref(from) + "," + ref(to) + ")");
+    const int relation =
+        add("(REPRESENTATION_RELATIONSHIP('',''," + ref(shown) + "," + ref(all) +
+            ")REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(" + ref(moved) + ")SHAPE_REPRESENTATION_RELATIONSHIP())");
+    add("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(" + ref(relation) + "," + ref(self) + ")");
   }
 
   /// An operator with these axes, moved by 5 mm in x.

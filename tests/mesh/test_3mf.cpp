@@ -2,11 +2,8 @@
 #include <minizip/zip.h>
 
 #include "apps/run_program.hpp"
-#include "catch.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -54,27 +51,9 @@ std::string write(const TempFolder& folder, const std::string& text) {
   return write(folder, {{"_rels/.rels", kRelations}, {"3D/3dmodel.model", text}});
 }
 
-Eigen::AlignedBox3d box_of(const Assembly& a, std::size_t part) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
-  return box;
-}
-
-void check_box(const Assembly& a, std::size_t part, const Vec3& lo, const Vec3& hi) {
-  const auto box = box_of(a, part);
-  INFO(box.min().transpose() << " to " << box.max().transpose());
-  CHECK((box.min() - lo).norm() < 1e-9);
-  CHECK((box.max() - hi).norm() < 1e-9);
+void check_part(const Assembly& a, std::size_t part, const Vec3& lo, const Vec3& hi) {
+  check_box(box_of(a, part), lo, hi);
   CHECK(report(*a.shapes[a.parts[part].shape]).inverted_shells == 0);
-}
-
-std::string refusal(const std::string& path) {
-  try {
-    read_assembly(path);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -114,9 +93,9 @@ TEST_CASE("3MF: items and components are placed, turned, scaled and mirrored", "
                                                R"(<item objectid="1" transform="-1 0 0 0 1 0 0 0 2 0 0 0"/>)"));
   const Assembly a = read_assembly(file);
   REQUIRE(a.parts.size() == 3);
-  check_box(a, 0, {0.09, 0, 0}, {0.1, 0.01, 0.01});
-  check_box(a, 1, {0.09, 0.02, 0}, {0.1, 0.03, 0.01});
-  check_box(a, 2, {-0.01, 0, 0}, {0, 0.01, 0.02});
+  check_part(a, 0, {0.09, 0, 0}, {0.1, 0.01, 0.01});
+  check_part(a, 1, {0.09, 0.02, 0}, {0.1, 0.03, 0.01});
+  check_part(a, 2, {-0.01, 0, 0}, {0, 0.01, 0.02});
   CHECK(a.parts[0].shape == a.parts[1].shape);
   CHECK(a.parts[0].path == std::vector<std::string>{"pair"});
   // As one surface, in units of the file.
@@ -138,7 +117,7 @@ TEST_CASE("3MF: objects in other files of the archive (production)", "[3mf]") {
        {"3D/Objects/o.model", other}}));
   REQUIRE(a.parts.size() == 1);
   CHECK(a.parts[0].name == "inner");
-  check_box(a, 0, Vec3::Zero(), Vec3::Constant(0.01));
+  check_part(a, 0, Vec3::Zero(), Vec3::Constant(0.01));
 }
 
 TEST_CASE("3MF: what is not built is left out, supports with a note; lattices are told", "[3mf]") {

@@ -4,12 +4,9 @@
 #include <filesystem>
 
 #include "apps/run_program.hpp"
-#include "catch.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "models/shapes.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
 #include "tegotae/mesh/write.hpp"
 
 using namespace tegotae;
@@ -80,21 +77,6 @@ std::string glb(const std::string& nodes) {
   return out + std::string("BIN\0", 4) + data;
 }
 
-double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return v;
-}
-
-std::string error_of(const std::string& path) {
-  try {
-    read_assembly(path);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
@@ -146,7 +128,7 @@ TEST_CASE("broken glTF files are refused in one line", "[assembly]") {
   const TempFolder folder;
   write_gltf(folder);
   const auto refused = [&](const std::string& file, const std::string& why) {
-    const std::string error = error_of(folder / file);
+    const std::string error = refusal(folder / file);
     INFO(file << ": " << error);
     CHECK(error.find(file + ": ") != std::string::npos);
     CHECK(error.find(why) != std::string::npos);

@@ -2,11 +2,8 @@
 #include <cstring>
 
 #include "apps/run_program.hpp"
-#include "catch.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -73,12 +70,7 @@ void check_tetrahedron(const TempFolder& folder, const std::string& name, const 
 
 std::string refusal(const TempFolder& folder, const std::string& name, const std::string& bytes) {
   folder.write(name, bytes);
-  try {
-    load_mesh(folder / name);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return test::refusal([&] { load_mesh(folder / name); });
 }
 
 const char* const kVertices = "0 0 0\n2 0 0\n0 1 0\n0 0 1\n";

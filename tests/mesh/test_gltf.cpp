@@ -3,45 +3,27 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 
-#include "catch.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "mesh/gltf_doc.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
 
-using Box = Eigen::AlignedBox3d;
-
-Box box_of(const Assembly& a, std::size_t part) {
-  Box box;
-  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
-  return box;
-}
-
-void check_box(const Box& box, const Vec3& lo, const Vec3& hi) {
-  INFO(box.min().transpose() << " to " << box.max().transpose());
-  CHECK((box.min() - lo).norm() < 2e-6);
-  CHECK((box.max() - hi).norm() < 2e-6);
-}
-
-double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return v;
+/// glTF's coordinates are floats.
+void check_near(const Eigen::AlignedBox3d& box, const Vec3& lo, const Vec3& hi) {
+  check_box(box, lo, hi, 2e-6);
 }
 
 /// The file read both ways: as parts and as one surface, whose boxes must be the same.
 Assembly read(const std::string& file) {
   const Assembly a = read_assembly(file);
-  Box parts;
+  Eigen::AlignedBox3d parts;
   for (std::size_t i = 0; i < a.parts.size(); ++i) parts.extend(box_of(a, i));
   const MeshReport whole = report(load_mesh(file));
-  check_box(parts, whole.box_min, whole.box_max);
+  check_near(parts, whole.box_min, whole.box_max);
   for (const auto& shape : a.shapes) {
     CHECK(report(*shape).closed);
     CHECK(volume(*shape) > 0);
@@ -49,23 +31,8 @@ Assembly read(const std::string& file) {
   return a;
 }
 
-std::string refusal(const std::string& file) {
-  std::string why;
-  for (int k = 0; k < 2; ++k) {
-    try {
-      if (k == 0) load_mesh(file);
-      if (k == 1) read_assembly(file);
-    } catch (const Error& e) {
-      why += e.what();
-    }
-  }
-  return why;
-}
-
-bool has_note(const Assembly& a, const std::string& text) {
-  for (const std::string& note : a.notes)
-    if (note.find(text) != std::string::npos) return true;
-  return false;
+std::string refused(const std::string& file) {
+  return test::refusal([&] { load_mesh(file); }) + test::refusal(file);
 }
 
 /// A file of one tetrahedron whose positions are the accessor `position` of `doc`.
@@ -93,9 +60,9 @@ TEST_CASE("glTF: places of nodes: matrix, or scale, rotation, translation; paren
   doc.node({{"name", "mirror"}, {"scale", {-1, 1, 1}}, {"children", {child}}});
   const Assembly a = read(doc.save(folder));
   REQUIRE(a.parts.size() == 3);
-  check_box(box_of(a, 0), {9, 0, 0}, {10, 2, 1});
-  check_box(box_of(a, 1), {19, 0, 0}, {20, 2, 1});
-  check_box(box_of(a, 2), {-1, 5, 0}, {0, 6, 1});
+  check_near(box_of(a, 0), {9, 0, 0}, {10, 2, 1});
+  check_near(box_of(a, 1), {19, 0, 0}, {20, 2, 1});
+  check_near(box_of(a, 2), {-1, 5, 0}, {0, 6, 1});
   CHECK(a.parts[0].shape == a.parts[1].shape);
   CHECK(a.parts[2].path == std::vector<std::string>{"mirror"});
 }
@@ -155,7 +122,7 @@ TEST_CASE("glTF: positions of integers mean what they stand for (KHR_mesh_quanti
     doc.j["bufferViews"].back()["byteStride"] = 4 * sizeof(T);
     doc.j["accessors"][position]["normalized"] = normalized;
     const Assembly a = read_with_position(doc, position, {{"scale", {scale, scale, scale}}});
-    check_box(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
+    check_near(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
   };
   check(std::int8_t{100}, 5120, false, 0.01);
   check(std::int8_t{127}, 5120, true, 1);
@@ -177,12 +144,12 @@ TEST_CASE("glTF: sparse accessors", "[gltf]") {
     return position;
   };
   GltfDoc doc;
-  check_box(box_of(read_with_position(doc, sparse(doc, 3)), 0), Vec3::Zero(), {1, 1, 7});
+  check_near(box_of(read_with_position(doc, sparse(doc, 3)), 0), Vec3::Zero(), {1, 1, 7});
   const TempFolder folder;
   GltfDoc beyond;
   beyond.node(
       {{"mesh", beyond.mesh({{"attributes", {{"POSITION", sparse(beyond, 4)}}}, {"indices", beyond.faces()}})}});
-  CHECK_THAT(refusal(beyond.save(folder)), Catch::Contains("index out of range: a sparse accessor"));
+  CHECK_THAT(refused(beyond.save(folder)), Catch::Contains("index out of range: a sparse accessor"));
 }
 
 TEST_CASE("glTF: morph weights of the node, or of the mesh, pose it", "[gltf]") {
@@ -200,8 +167,8 @@ TEST_CASE("glTF: morph weights of the node, or of the mesh, pose it", "[gltf]") 
   doc.node({{"mesh", mesh}, {"weights", {0, 1}}});
   const Assembly a = read(doc.save(folder));
   REQUIRE(a.parts.size() == 2);
-  check_box(box_of(a, 0), Vec3::Zero(), {2, 1, 1});
-  check_box(box_of(a, 1), Vec3::Zero(), {1, 4, 1});
+  check_near(box_of(a, 0), Vec3::Zero(), {2, 1, 1});
+  check_near(box_of(a, 1), Vec3::Zero(), {1, 4, 1});
 }
 
 TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", "[gltf]") {
@@ -217,14 +184,14 @@ TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", 
   const std::size_t near = doc.node({{"name", "near"}, {"translation", {10, 0, 0}}, {"children", {far}}});
   doc.j["skins"] = {{{"joints", {near, far}}}};
   doc.node({{"mesh", mesh}, {"skin", 0}, {"translation", {100, 100, 100}}});
-  check_box(box_of(read(doc.save(folder)), 0), {10, 0, 0}, {11, 1, 4});
+  check_near(box_of(read(doc.save(folder)), 0), {10, 0, 0}, {11, 1, 4});
   // Inverse bind matrices that take the joints' places back: the mesh as it is.
   doc.j["skins"][0]["inverseBindMatrices"] =
       doc.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, -6, 1},
                  "MAT4", 16);
-  check_box(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
+  check_near(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
   doc.j["skins"][0]["joints"] = {near};
-  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("a vertex names a joint"));
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("a vertex names a joint"));
 }
 
 TEST_CASE("glTF: instances (EXT_mesh_gpu_instancing)", "[gltf]") {
@@ -239,9 +206,9 @@ TEST_CASE("glTF: instances (EXT_mesh_gpu_instancing)", "[gltf]") {
             {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", places}}}}}});
   const Assembly a = read(doc.save(folder));
   REQUIRE(a.parts.size() == 3);
-  check_box(box_of(a, 0), {100, 0, 0}, {101, 1, 1});
-  check_box(box_of(a, 1), {104, 0, 0}, {105, 1, 1});
-  check_box(box_of(a, 2), {100, 0, 7}, {102, 2, 9});
+  check_near(box_of(a, 0), {100, 0, 0}, {101, 1, 1});
+  check_near(box_of(a, 1), {104, 0, 0}, {105, 1, 1});
+  check_near(box_of(a, 2), {100, 0, 7}, {102, 2, 9});
   CHECK(a.parts[0].shape == a.parts[1].shape);
 }
 
@@ -254,7 +221,7 @@ TEST_CASE("glTF: extensions that are not read refuse the file when required, and
   doc.uses("ACME_bends", false);
   CHECK(has_note(read(doc.save(folder)), "ACME_bends is not read"));
   doc.uses("ACME_bends");
-  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("requires the glTF extension ACME_bends"));
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("requires the glTF extension ACME_bends"));
 }
 
 TEST_CASE("glTF: animations are told, cameras and lights are nothing", "[gltf]") {
@@ -268,7 +235,7 @@ TEST_CASE("glTF: animations are told, cameras and lights are nothing", "[gltf]")
   doc.j["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
                           {"samplers", {{{"input", times}, {"output", places}}}}}};
   const Assembly a = read(doc.save(folder));
-  check_box(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
+  check_near(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
   CHECK(has_note(a, "animations"));
 }
 
@@ -299,8 +266,17 @@ TEST_CASE("glTF: Draco (KHR_draco_mesh_compression)", "[gltf]") {
                    {{"KHR_draco_mesh_compression", {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}}}}}})}});
   const Assembly a = read(doc.save(folder));
   CHECK(volume(*a.shapes[0]) == Approx(1.0 / 6));
+  const auto refused_for = [&](const GltfDoc& posed) {
+    CHECK_THAT(refused(posed.save(folder)), Catch::Contains("compressed by Draco with a skin or morph targets"));
+  };
+  GltfDoc skinned = doc, morphed = doc;
+  skinned.j["skins"] = {{{"joints", {skinned.node(Json::object())}}}};
+  skinned.j["nodes"][0]["skin"] = 0;
+  refused_for(skinned);
+  morphed.j["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", morphed.corners()}}};
+  refused_for(morphed);
   doc.j["bufferViews"][view]["byteLength"] = packed.size() / 2;
-  CHECK_THAT(refusal(doc.save(folder)), Catch::Contains("Draco is no stream of it"));
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("Draco is no stream of it"));
 }
 
 TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
@@ -359,9 +335,9 @@ TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
   }
   GltfDoc damaged = file(plain, "NONE", triangles, "TRIANGLES");
   damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = plain.size() - 1;
-  CHECK_THAT(refusal(damaged.save(folder)), Catch::Contains("no stream of EXT_meshopt_compression"));
+  CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no stream of EXT_meshopt_compression"));
   for (const auto& [key, value] : {std::pair("byteStride", 13), {"count", 5}, {"byteLength", 4000}}) {
     damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;
-    CHECK_THAT(refusal(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));
+    CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));
   }
 }

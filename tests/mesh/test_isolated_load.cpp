@@ -10,10 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "catch.hpp"
 #include "core/sanitizers.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "tegotae/core/clock.hpp"
-#include "tegotae/core/error.hpp"
 #include "tegotae/mesh/isolated_load.hpp"
 #include "tegotae/mesh/load.hpp"
 
@@ -47,15 +46,10 @@ class Sandbox {
 const std::string kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 std::string refusal(const std::string& path, const IsolatedLoad& bounds) {
-  try {
-    load_mesh_isolated(path, 1.0, bounds);
-  } catch (const Error& e) {
-    const std::string what = e.what();
-    CHECK(what.rfind(path + ": ", 0) == 0);
-    CHECK(what.find('\n') == std::string::npos);
-    return what;
-  }
-  return "";
+  const std::string what = test::refusal([&] { load_mesh_isolated(path, 1.0, bounds); });
+  if (!what.empty()) CHECK(what.rfind(path + ": ", 0) == 0);
+  CHECK(what.find('\n') == std::string::npos);
+  return what;
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -82,21 +76,28 @@ TEST_CASE("a mesh comes back bit for bit", "[isolated]") {
   }
 }
 
+TEST_CASE("what is told of a file comes along, on one line each", "[isolated]") {
+  const Sandbox s;
+  s.write("c.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0", 36));
+  const std::string file =
+      s.write("a.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"animations":[{"channels":[],"samplers":[]}],
+"extensionsUsed":["ACME\n\u001b[1mbold"],"buffers":[{"byteLength":36,"uri":"c.bin"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]})");
+  const TriangleMesh here = load_mesh(file), there = load_mesh_isolated(file, 1.0, {kHelper});
+  CHECK(here.triangles.size() == 1);
+  REQUIRE(here.notes.size() == 2);
+  CHECK(there.notes == here.notes);
+  CHECK(contains(here.notes[0] + here.notes[1], "animations"));
+  CHECK(contains(here.notes[0] + here.notes[1], "ACME  [1mbold is not read"));
+}
+
 TEST_CASE("an error is the error of load_mesh", "[isolated]") {
   const Sandbox s;
   for (const std::string& file : {s.write("e.stl", ""), s.write("r.obj", "v 0 0 0\nf 1 2 3\n"), s.path("missing.ply"),
                                   s.write("odd name\n.txt", "x")}) {
-    std::string here, there;
-    try {
-      load_mesh(file);
-    } catch (const Error& e) {
-      here = e.what();
-    }
-    try {
-      load_mesh_isolated(file, 1.0, {kHelper});
-    } catch (const Error& e) {
-      there = e.what();
-    }
+    const std::string here = test::refusal([&] { load_mesh(file); });
+    const std::string there = test::refusal([&] { load_mesh_isolated(file, 1.0, {kHelper}); });
     CHECK(!here.empty());
     CHECK(there == here);
   }
@@ -126,19 +127,22 @@ TEST_CASE("what the helper sends is checked", "[isolated]") {
   const Sandbox s;
   const std::string file = s.write("t.obj", kTetrahedron);
   // A head and a body as the real helper writes them, with one number wrong.
-  const auto sent = [&](std::uint64_t failed, std::uint64_t text, std::uint64_t vertices, std::uint32_t index) {
+  const auto sent = [&](std::uint64_t text, std::uint64_t notes, std::uint64_t vertices, std::uint32_t index) {
     std::string bytes;
     const auto put = [&](auto v) { bytes.append(reinterpret_cast<const char*>(&v), sizeof v); };
-    bytes += "1TEGMSH1";
-    put(failed), put(text), put(vertices), put(std::uint64_t{1});
+    bytes += "1TEGMSH2";
+    put(std::uint64_t{0}), put(text), put(notes), put(vertices), put(std::uint64_t{1});
+    if (notes == 6) bytes += "a\x1b\nbc\n";
     for (double x : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0}) put(x);
     put(std::uint32_t{0}), put(std::uint32_t{1}), put(index);
     s.write("bytes", bytes);
     return s.write("send", "#!/bin/sh\ncat " + s.path("bytes") + " >&3\n", true);
   };
   CHECK(load_mesh_isolated(file, 1.0, {sent(0, 0, 3, 2)}).triangles.size() == 1);
+  CHECK(load_mesh_isolated(file, 1.0, {sent(0, 6, 3, 2)}).notes == std::vector<std::string>{"a ", "bc"});
+  CHECK(contains(refusal(file, {sent(0, std::uint64_t{1} << 60, 3, 2)}), "more than the memory"));
   CHECK(contains(refusal(file, {sent(0, 0, 3, 3)}), "no usable mesh"));
-  CHECK(contains(refusal(file, {sent(0, 1u << 30, 3, 2)}), "sent no mesh"));
+  CHECK(contains(refusal(file, {sent(1u << 30, 0, 3, 2)}), "sent no mesh"));
   CHECK(contains(refusal(file, {sent(0, 0, std::uint64_t{1} << 60, 2)}), "more than the memory"));
 }
 

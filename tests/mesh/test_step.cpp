@@ -7,12 +7,9 @@
 #include <fstream>
 
 #include "apps/run_program.hpp"
-#include "catch.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "mesh/step_assembly.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
 #include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/report.hpp"
 #include "tegotae/mesh/write.hpp"
 
 using namespace tegotae;
@@ -29,12 +26,6 @@ const AssemblyPart& part(const Assembly& assembly, const std::string& name) {
 
 const TriangleMesh& mesh_of(const Assembly& assembly, const std::string& name) {
   return *assembly.shapes[part(assembly, name).shape];
-}
-
-double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return v;
 }
 
 double disc(double diameter_mm, double height_mm) {
@@ -66,15 +57,6 @@ Radii radii(const TriangleMesh& mesh, double x_mm, double from, double to) {
     }
   }
   return out;
-}
-
-std::string error_of(const std::string& path) {
-  try {
-    read_assembly(path);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -204,7 +186,7 @@ TEST_CASE("STEP files that cannot be read are refused in one line", "[step]") {
   const std::string whole = read_text(folder / "a.step");
   const auto refused = [&](const std::string& text, const std::string& why) {
     folder.write("bad.step", text);
-    const std::string error = error_of(folder / "bad.step");
+    const std::string error = refusal(folder / "bad.step");
     INFO(error);
     CHECK(error.find("bad.step: ") != std::string::npos);
     CHECK(error.find(why) != std::string::npos);
@@ -220,7 +202,7 @@ TEST_CASE("STEP files that cannot be read are refused in one line", "[step]") {
   refused(future, "AP999_EVERYTHING_");
   // A whole frame around data cut in the middle of an instance.
   refused(whole.substr(0, whole.find("DATA;") + 5) + "\nENDSEC;\nEND-ISO-10303-21;\n", "");
-  CHECK(error_of(folder / "none.step").find("none.step") != std::string::npos);
+  CHECK(refusal(folder / "none.step").find("none.step") != std::string::npos);
 }
 
 TEST_CASE("a file that was read leaves nothing behind", "[step]") {

@@ -1,11 +1,8 @@
 // What CAD systems write into STEP files besides exact shapes: a test for each row of docs/formats.md that test_step
 // has not.
 #include "apps/run_program.hpp"
-#include "catch.hpp"
+#include "mesh/assembly_checks.hpp"
 #include "mesh/step_text.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
-#include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -19,24 +16,11 @@ Assembly read(const StepText& step) {
 }
 
 std::string refusal(const StepText& step) {
-  try {
-    read(step);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
-Eigen::AlignedBox3d box_of(const Assembly& a, std::size_t part) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : a.shapes[a.parts[part].shape]->vertices) box.extend(a.parts[part].pose * p);
-  return box;
+  return test::refusal([&] { read(step); });
 }
 
 void check_block(const Assembly& a, std::size_t part, double x_mm = 0) {
-  const auto box = box_of(a, part);
-  CHECK((box.min() - Vec3(1e-3 * x_mm, 0, 0)).norm() < 1e-9);
-  CHECK((box.max() - Vec3(0.04 + 1e-3 * x_mm, 0.03, 0.01)).norm() < 1e-9);
+  check_box(box_of(a, part), {1e-3 * x_mm, 0, 0}, {0.04 + 1e-3 * x_mm, 0.03, 0.01});
   CHECK(report(*a.shapes[a.parts[part].shape]).inverted_shells == 0);
 }
 
@@ -84,12 +68,6 @@ StepText styled(const std::string& style) {
   return s;
 }
 
-int tessellated(StepText& s) {
-  const int points = s.add("COORDINATES_LIST('',4,((0.,0.,0.),(10.,0.,0.),(0.,10.,0.),(0.,0.,10.)))");
-  const int face = s.add("TRIANGULATED_FACE(''," + r(points) + ",4,(),$,(1,2,3,4),((1,3,2),(1,2,4),(2,3,4),(3,1,4)))");
-  return s.add("TESSELLATED_SOLID('',(" + r(face) + "),$)");
-}
-
 }  // namespace
 
 TEST_CASE("STEP: operators that move are read, those that scale or mirror are refused by name", "[step]") {
@@ -122,27 +100,4 @@ TEST_CASE("STEP: missing references in shapes refuse the file", "[step]") {
   const int plate = s.product("plate");
   s.shape(plate, {s.origin(), s.add("FACETED_BREP(''," + r(s.origin()) + ")")}, "FACETED_BREP_SHAPE_REPRESENTATION");
   CHECK_THAT(refusal(s), Catch::Contains("damaged: OpenCASCADE finds entities that cannot be"));
-}
-
-TEST_CASE("STEP: tessellated parts are read, or told by name; never refused as damaged", "[step]") {
-  const char* const schema = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }";
-  StepText both(schema);
-  const int plate = both.product("plate"), bush = both.product("bush");
-  both.shape(plate, {both.origin(), both.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
-  both.shape(bush, {tessellated(both)}, "TESSELLATED_SHAPE_REPRESENTATION");
-  const Assembly a = read(both);
-  std::string notes;
-  for (const std::string& note : a.notes) notes += note;
-  REQUIRE(!a.parts.empty());
-  check_block(a, 0);
-  if (a.parts.size() == 1) {
-    CHECK_THAT(notes, Catch::Contains("\"bush\" is tessellated"));
-  } else {
-    CHECK((box_of(a, 1).max() - Vec3(0.01, 0.01, 0.01)).norm() < 1e-9);
-  }
-  StepText only(schema);
-  const int product = only.product("bush");
-  only.shape(product, {tessellated(only)}, "TESSELLATED_SHAPE_REPRESENTATION");
-  const std::string why = refusal(only);
-  if (!why.empty()) CHECK_THAT(why, Catch::Contains("its shapes are tessellated"));
 }

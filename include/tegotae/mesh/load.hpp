@@ -11,7 +11,8 @@ namespace tegotae TEGOTAE_EXPORT {
 double unit_length(const std::string& unit);
 
 /// Reads STL, OBJ, PLY, OFF, glTF/GLB or 3MF (of these two all placed meshes in one surface), scales it by `unit_in_m`
-/// (the length of one file unit) and welds vertices that coincide. docs/formats.md lists what is read of each format.
+/// (the length of one file unit) and welds vertices that coincide. docs/formats.md lists what is read of each format;
+/// what is told of it (animations, supports and the like) is in the mesh's `notes`.
 ///
 /// Dirty surfaces load (see report.hpp for what is counted); a file that cannot be used throws Error with the file and
 /// the reason: unreadable, empty, truncated, no triangles, indices out of range, non-finite or absurd coordinates,

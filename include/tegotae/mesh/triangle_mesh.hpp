@@ -16,6 +16,7 @@ struct TriangleMesh {
   std::string name;                                     ///< where it came from, for messages
   std::vector<Vec3> vertices;                           ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
+  std::vector<std::string> notes{};                     ///< what is not as the file says, a line each
 };
 
 }  // namespace tegotae
