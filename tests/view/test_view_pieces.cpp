@@ -154,7 +154,7 @@ TEST_CASE("a page gets the friction of each contact, and whether it slides") {
   scene.parts.push_back(
       {"block", test::shared(test::box({0.02, 0.03, 0.01})), {Quat::Identity(), {0, 0, 0.0051}}, true});
   HapticLoop loop(scene);
-  const FrameMaker maker(scene);
+  const FrameMaker maker;
   Frame frame;
   Pose Y{Quat::Identity(), {0, 0, 0.004}};
   for (int tick = 0; tick < 200; ++tick) {
