@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12, apt), configures and builds: setup.sh [--browser] [--checks] [TARGET...]
+# Installs what is missing (Debian 12 or 13, apt), configures and builds: setup.sh [--browser] [--checks] [TARGET...]
 # (everything without targets). --browser adds what the tests need that are not daily: a browser, doxygen. --checks adds
 # the tools of tests/checks.sh; without them its checks are skipped, so that one that cannot be had is no error.
 # Shared by apps/demo.sh and tests/run.sh; a second call only builds what changed.

@@ -158,7 +158,7 @@ void ContactSet::keep(const std::vector<std::uint8_t>& kept) {
     next_limits_[limits] = next_limits_[i];
     next_owners_[limits++] = next_owners_[i];
   }
-  next_limits_.resize(limits, {});
+  next_limits_.erase(next_limits_.begin() + static_cast<std::ptrdiff_t>(limits), next_limits_.end());
   next_owners_.resize(limits);
   forget_places();
   pairs_.clear();

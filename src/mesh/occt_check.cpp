@@ -42,8 +42,8 @@ bool is_beside_shape(const std::string& type) {
 
 /// Whether reading colors does not go through entities of this class, or looks before it does.
 bool is_beside_color(const std::string& type) {
-  static constexpr std::array kOthers = {"Point", "Curve",      "Text",       "Camera",
-                                         "View",  "Annotation", "Draughting", "Tessellated"};
+  static constexpr std::array kOthers = {"Point",      "Curve",      "Text",        "Camera",       "View",
+                                         "Annotation", "Draughting", "Tessellated", "Triangulated", "CoordinatesList"};
   return !begins(type, "StepVisual_") ||
          std::any_of(kOthers.begin(), kOthers.end(), [&](auto o) { return has(type, o); });
 }

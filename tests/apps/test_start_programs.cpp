@@ -5,7 +5,7 @@
 #include "catch.hpp"
 
 using namespace tegotae::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using nlohmann::json;
 
 namespace {

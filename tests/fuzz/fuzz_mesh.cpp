@@ -15,7 +15,8 @@ std::vector<Seed> seeds() {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string path = write_input(std::string("input.") + kFormat, data, size);
+  const std::string bytes = mesh_file(kFormat, std::string(reinterpret_cast<const char*>(data), size));
+  const std::string path = write_input(std::string("input.") + kFormat, bytes.data(), bytes.size());
   try {
     const auto mesh = std::make_shared<const TriangleMesh>(load_mesh(path, 1e-3));
     require(!mesh->triangles.empty(), "a mesh that loads has triangles");

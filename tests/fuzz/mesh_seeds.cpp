@@ -1,7 +1,6 @@
 #include "fuzz/mesh_seeds.hpp"
 
 #include <minizip/zip.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -196,8 +195,7 @@ std::vector<Seed> gltf() {
 
 /// An archive of these files, read back from `archive`.
 std::string zipped(const std::vector<Seed>& files) {
-  const std::string archive =
-      (std::filesystem::temp_directory_path() / ("tegotae-seed-" + std::to_string(getpid()))).string();
+  const std::string archive = (scratch_folder() / "packed").string();
   zipFile zip = zipOpen(archive.c_str(), APPEND_STATUS_CREATE);
   for (const auto& [name, bytes] : files) {
     zipOpenNewFileInZip(zip, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, 0, 0);  // stored, not packed
@@ -211,6 +209,12 @@ std::string zipped(const std::vector<Seed>& files) {
   return bytes;
 }
 
+/// A 3MF file of this model.
+std::string threemf_of(const std::string& model) {
+  const std::string relations = "<Relationships><Relationship Target='/m' Type='x/3dmodel'/></Relationships>";
+  return zipped({{"_rels/.rels", relations}, {"m", model}});
+}
+
 std::vector<Seed> threemf() {
   std::string mesh = "<mesh><vertices>";
   for (const auto& c : kCorners)
@@ -221,14 +225,12 @@ std::vector<Seed> threemf() {
     mesh += "<triangle v1='" + std::to_string(f[0]) + "' v2='" + std::to_string(f[1]) + "' v3='" +
             std::to_string(f[2]) + "'/>";
   mesh += "</triangles></mesh>";
-  const std::string relations = "<Relationships><Relationship Target='/m' Type='x/3dmodel'/></Relationships>";
   const std::string model =
       "<model unit='inch'><resources><object id='1' pid='5'>" + mesh +
       "</object><object id='2'><components><component objectid='1' transform='0 1 0 -1 0 0 0 0 2 3 4 5'/>"
       "</components></object><basematerials id='5'><base displaycolor='#12345678'/></basematerials>"
       "</resources><build><item objectid='2'/><item objectid='1'/></build></model>";
-  return {{"whole", zipped({{"_rels/.rels", relations}, {"m", model}})},
-          {"empty", zipped({{"_rels/.rels", relations}})}};
+  return {{"model", model}, {"whole", threemf_of(model)}, {"empty", zipped({{"_rels/.rels", "<Relationships/>"}})}};
 }
 
 std::vector<Seed> glb() {
@@ -254,6 +256,10 @@ std::vector<Seed> mesh_seeds(const std::string& extension) {
   if (extension == "off") return off();
   if (extension == "3mf") return threemf();
   return extension == "glb" ? glb() : gltf();
+}
+
+std::string mesh_file(const std::string& extension, const std::string& bytes) {
+  return extension == "3mf" && bytes.compare(0, 2, "PK") != 0 ? threemf_of(bytes) : bytes;
 }
 
 }  // namespace tegotae

@@ -16,7 +16,7 @@
 
 using namespace tegotae;
 using namespace tegotae::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using nlohmann::json;
 
 namespace {

@@ -206,7 +206,7 @@ TEST_CASE("a nut drawn into its bolt is suspended until it is off, then kept out
                                           "factory/factory_bolt_m16_loose.obj"};
   if (skipped(files)) return;
   Scene scene = assembled(files, 1.0);
-  CHECK_THROWS_WITH(HapticLoop(scene), Catch::Matchers::Contains("intersect at the start"));
+  CHECK_THROWS_WITH(HapticLoop(scene), Catch::Contains("intersect at the start"));
   scene.contact.initial_overlap = "ignore";
   HapticLoop loop(scene);
   REQUIRE(loop.report().suspended == 1);

@@ -110,7 +110,7 @@ TEST_CASE("a scene is changed from C while it runs", "[c_interface]") {
   const double aside[7] = {1, 0, -0.03, 1, 0, 0, 0};
   REQUIRE(tegotae_scene_move(scene, 0, aside) == 0);
   CHECK(tegotae_rig_change(rig, scene, 0.01) < 0);
-  CHECK_THAT(error(), Catch::Matchers::Contains("steps"));
+  CHECK_THAT(error(), Catch::Contains("steps"));
   tegotae_rig_destroy(rig);
   tegotae_scene_destroy(scene);
 }
@@ -126,18 +126,18 @@ TEST_CASE("what goes wrong in a call from C is told", "[c_interface]") {
   CHECK(tegotae_scene_add(scene, "a", nullptr, 1, triangle, 1, kFloor, 0) < 0);
   CHECK(tegotae_scene_add(scene, "a", one, 1, nullptr, 1, kFloor, 0) < 0);
   CHECK(tegotae_scene_add(scene, "a", one, 1, triangle, 1, kFloor, 0) < 0);
-  CHECK_THAT(error(), Catch::Matchers::Contains("\"a\"") && Catch::Matchers::Contains("vertex"));
+  CHECK_THAT(error(), Catch::Contains("\"a\"") && Catch::Contains("vertex"));
   for (const double* pose : {no_turn, far, nan, static_cast<const double*>(nullptr)})
     CHECK(tegotae_scene_move(scene, 0, pose) < 0);
   CHECK(tegotae_scene_move(scene, 2, kFloor) < 0);
   CHECK(tegotae_scene_load("/no/such/scene.toml") == nullptr);
-  CHECK_THAT(error(), Catch::Matchers::Contains("/no/such/scene.toml"));
+  CHECK_THAT(error(), Catch::Contains("/no/such/scene.toml"));
   CHECK(tegotae_rig_create(scene, "shm:/tegotae-nobody-has-this-name", TEGOTAE_CLOCK_REAL) == nullptr);
   CHECK(tegotae_rig_create(scene, "shm:/x", TEGOTAE_CLOCK_SIMULATED) == nullptr);
   CHECK(tegotae_rig_create(scene, nullptr, 7) == nullptr);
   REQUIRE(tegotae_scene_move(scene, 1, kFloor) == 0);
   CHECK(tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED) == nullptr);
-  CHECK_THAT(error(), Catch::Matchers::Contains("\"block\" and \"floor\" intersect"));
+  CHECK_THAT(error(), Catch::Contains("\"block\" and \"floor\" intersect"));
   CHECK(tegotae_rig_step(nullptr, nullptr) < 0);
   CHECK(tegotae_rig_contacts(nullptr, nullptr, 0) < 0);
   // Another thread has its own last error.

@@ -14,7 +14,7 @@
 
 using namespace tegotae;
 using namespace tegotae::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

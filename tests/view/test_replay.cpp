@@ -12,7 +12,7 @@
 using namespace tegotae;
 using namespace tegotae::test;
 using namespace tegotae::view;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "view/watcher.hpp"
 
 using namespace tegotae::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
