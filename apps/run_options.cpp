@@ -66,6 +66,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
     if (!options.json && !start.stability.empty())
       std::cout << format("%-12s ", "stability:") << start.stability << std::endl;
     if (!options.json) std::cout << format("%-12s ", "torsion:") << start.torsion << std::endl;
+    if (!options.json && !start.weight.empty()) std::cout << format("%-12s ", "weight:") << start.weight << std::endl;
   };
 
   RunSummary summary;

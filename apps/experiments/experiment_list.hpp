@@ -12,5 +12,6 @@ Outcome ladder(const Work& work);
 Outcome hold(const Work& work);
 Outcome widening(const Work& work);
 Outcome wrench(const Work& work);
+Outcome friction(const Work& work);
 
 }  // namespace tegotae::experiments

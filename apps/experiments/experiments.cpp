@@ -16,7 +16,7 @@ struct Experiment {
 };
 constexpr Experiment kExperiments[] = {{"wall", wall},     {"insertion", insertion}, {"task-time", task_time},
                                        {"ladder", ladder}, {"hold", hold},           {"widening", widening},
-                                       {"wrench", wrench}};
+                                       {"wrench", wrench}, {"friction", friction}};
 
 std::string command(const std::string& name, const Options& options) {
   std::string text = "tegotae experiment " + name;

@@ -19,3 +19,4 @@ picture ladder 1340
 picture hold 1130
 picture widening 1640
 picture wrench 3480
+picture friction 3200

@@ -1,6 +1,9 @@
 #include "coupling/local_model.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "lp/tangents.hpp"
 
 namespace tegotae {
 
@@ -15,6 +18,10 @@ constexpr double kMostError = 3.0;
 constexpr double kUnitTolerance = 1e-6;
 // A target that changes by no more than this (m) is left as it is: a force of 1 nN.
 constexpr double kSettled = 1e-12;
+// With friction, by this part of the target: so well is the program solved.
+constexpr double kSettledRubbing = 1e-8;
+// No pair of surfaces has more friction.
+constexpr double kMostMu = 10;
 // Each round leaves about a twelfth of the squared turn (rad²) of the last one's change, so a few are enough.
 constexpr int kMostRounds = 8;
 
@@ -36,7 +43,7 @@ Mat3 left_jacobian(const Vec3& r) {
 }  // namespace
 
 LocalModel::LocalModel()
-    : solver_(ContactPlanes::kMost), rows_(ContactPlanes::kMost), active_rows_(ContactPlanes::kMost) {}
+    : solver_(kMostActive), friction_(ContactPlanes::kMost), rows_(ContactPlanes::kMost), active_rows_(kMostActive) {}
 
 Vec6 LocalModel::whiten(const Displacement& d) const noexcept {
   Vec6 z;
@@ -46,34 +53,76 @@ Vec6 LocalModel::whiten(const Displacement& d) const noexcept {
 
 bool LocalModel::set_rows(const ContactPlanes& planes, const Vec3& center_W) noexcept {
   rows_.clear();
+  rubs_ = false;
   for (int i = 0; i < planes.count; ++i) {
     const ContactPlane& plane = planes.planes[static_cast<std::size_t>(i)];
     if (!(std::abs(plane.normal.squaredNorm() - 1) < kUnitTolerance)) return false;
-    Vec6 row;
-    row << plane.normal, (plane.point - center_W).cross(plane.normal) / radius_;
-    rows_.push_row(row);
+    if (!(plane.mu >= 0 && plane.mu <= kMostMu)) return false;
+    const auto along = [&](const Vec3& e) {
+      Vec6 row;
+      row << e, (plane.point - center_W).cross(e) / radius_;
+      return row;
+    };
+    rows_.push_row(along(plane.normal));
     bounds_[i] = -plane.room;
+    mu_[i] = plane.mu;
+    if (!(plane.mu > 0)) continue;
+    rubs_ = true;
+    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = along(tangent(plane.normal, k));
   }
   return true;
 }
 
-const QpResult* LocalModel::nearest(const Pose& X, const Vec3& center, const Pose& Y) noexcept {
+bool LocalModel::solve(const Vec6& target, Vec6& z) noexcept {
+  carrying_count_ = 0;
+  if (rubs_) {
+    const FrictionResult& r = friction_.solve({rows_, bounds_, tangents_, mu_, target});
+    z = r.z;
+    for (const FrictionForce& f : r.forces) carrying_[carrying_count_++] = {f.row, mu_[f.row] > 0 && !f.slides};
+    return r.status == LpStatus::optimal;
+  }
+  const QpResult& r = solver_.solve(rows_, bounds_, target);
+  z = r.z;
+  for (int i = 0; i < r.multipliers.count; ++i)
+    carrying_[carrying_count_++] = {r.multipliers.index[static_cast<std::size_t>(i)], false};
+  return r.status == LpStatus::optimal;
+}
+
+bool LocalModel::nearest(const Pose& X, const Vec3& center, const Pose& Y, Vec6& z) noexcept {
   // Where the part turns, the way to the pen is not the difference of two rotation vectors. So what is left of it at
   // each answer, carried back to X, is the next target; it settles where the energy is least.
   Vec6 target = whiten(displacement(X, Y, center));
+  const double settled = rubs_ ? std::max(kSettled, kSettledRubbing * target.norm()) : kSettled;
   for (int round = 0; round < kMostRounds; ++round) {
-    const QpResult& r = solver_.solve(rows_, bounds_, target);
-    if (r.status != LpStatus::optimal) return nullptr;
-    const Displacement made = unwhiten(r.z);
-    if (!(made.dr.norm() < kMostTurn)) return nullptr;
+    if (!solve(target, z)) return false;
+    const Displacement made = unwhiten(z);
+    if (!(made.dr.norm() < kMostTurn)) return false;
     Displacement left = displacement(displaced(X, center, made), Y, center);
     left.dr = left_jacobian(made.dr).transpose() * left.dr;
-    const Vec6 next = r.z + whiten(left);
-    if ((next - target).norm() <= kSettled) return &r;
+    const Vec6 next = z + whiten(left);
+    if ((next - target).norm() <= settled) return true;
     target = next;
   }
-  const QpResult& r = solver_.solve(rows_, bounds_, target);
-  return r.status == LpStatus::optimal ? &r : nullptr;
+  return solve(target, z);
+}
+
+bool LocalModel::slide(const Vec6& pen, Vec6& velocity) noexcept {
+  active_rows_.clear();
+  for (int i = 0; i < carrying_count_; ++i) {
+    const Vec6 n = rows_.row(carrying_[i].plane);
+    active_rows_.push_row(n);
+    if (!carrying_[i].sticks) continue;
+    // Its point stands still; it does not lift either while it is pressed down.
+    active_rows_.push_row(-n);
+    for (const Vec6& t : tangents_[carrying_[i].plane].row) {
+      active_rows_.push_row(t);
+      active_rows_.push_row(-t);
+    }
+  }
+  const double zeros[kMostActive] = {};
+  const QpResult& r = solver_.solve(active_rows_, zeros, pen);
+  velocity = r.z;
+  return r.status == LpStatus::optimal;
 }
 
 bool LocalModel::update(const ContactPlanes& planes, double radius, const Vec3& center, const Pose& Y,
@@ -84,20 +133,15 @@ bool LocalModel::update(const ContactPlanes& planes, double radius, const Vec3& 
   if (!(since < kMostTurn && error < kMostError)) return false;
   radius_ = radius;
   if (!set_rows(planes, x.X * center)) return false;
-  const QpResult* fresh = nearest(x.X, center, Y);
-  if (!fresh) return false;
-  const Displacement step = unwhiten(fresh->z);
+  Vec6 step;
+  if (!nearest(x.X, center, Y, step)) return false;
+  const bool touching = carrying_count_ > 0;
   // The velocity that the planes in use leave of the pen's.
-  active_rows_.clear();
-  for (int i = 0; i < fresh->multipliers.count; ++i)
-    active_rows_.push_row(rows_.row(fresh->multipliers.index[static_cast<std::size_t>(i)]));
-  const bool touching = fresh->multipliers.count > 0;
-  const double zeros[ContactPlanes::kMost] = {};
-  const QpResult& slide = solver_.solve(active_rows_, zeros, whiten({Y_velocity.v, Y_velocity.w}));
-  if (slide.status != LpStatus::optimal) return false;
-  const Displacement left = unwhiten(slide.z);
+  Vec6 slides;
+  if (!slide(whiten({Y_velocity.v, Y_velocity.w}), slides)) return false;
+  const Displacement left = unwhiten(slides);
   x.velocity = {left.dp, left.dr};
-  x.X = displaced(x.X, center, step);
+  x.X = displaced(x.X, center, unwhiten(step));
   x.touching |= touching;
   return true;
 }

@@ -40,7 +40,9 @@ constexpr const char* kForcesSchema =
     R"("type":"object","properties":{"forces":{"type":"array","items":{"type":"object","properties":{)"
     R"("part":{"type":"integer","description":"number among the fixed parts"},)"
     R"("point":)" TEGOTAE_XYZ R"(,"normal":)" TEGOTAE_XYZ
-    R"(,"gap":{"type":"number"},"force":{"type":"number","description":"N along the normal"}}}},)"
+    R"(,"gap":{"type":"number"},"force":{"type":"number","description":"N along the normal"},)"
+    R"("mu":{"type":"number","description":"coefficient of friction; this and the next two where it is not 0"},)"
+    R"("friction":)" TEGOTAE_XYZ R"(,"slides":{"type":"boolean"}}}},)"
     R"("lag":{"type":"object","description":"what the springs pull beyond the contacts; N and N*m",)"
     R"("properties":{"force":)" TEGOTAE_XYZ R"(,"torque":)" TEGOTAE_XYZ "}}}}";
 #undef TEGOTAE_XYZ
@@ -98,6 +100,10 @@ json forces_message(const ContactForces& forces) {
     const ContactForce& c = forces.items[static_cast<std::size_t>(i)];
     list.push_back(
         {{"part", c.part.index}, {"point", xyz(c.point)}, {"normal", xyz(c.n)}, {"gap", c.gap}, {"force", c.force}});
+    if (c.mu == 0) continue;
+    list.back()["mu"] = c.mu;
+    list.back()["friction"] = xyz(c.friction);
+    list.back()["slides"] = c.slides;
   }
   return {{"forces", std::move(list)}, {"lag", wrench_message(forces.lag)}};
 }
@@ -106,9 +112,17 @@ ContactForces forces(const json& message) {
   ContactForces out;
   for (const json& c : message.at("forces")) {
     if (out.count == ContactForces::kMost) break;
-    out.items[static_cast<std::size_t>(out.count++)] = {PartId{whole_number<std::uint32_t>(c.at("part"))},
-                                                        vector(c.at("point")), vector(c.at("normal")),
-                                                        number(c.at("gap")), number(c.at("force"))};
+    ContactForce& f = out.items[static_cast<std::size_t>(out.count++)];
+    f = {};
+    f.part = PartId{whole_number<std::uint32_t>(c.at("part"))};
+    f.point = vector(c.at("point"));
+    f.n = vector(c.at("normal"));
+    f.gap = number(c.at("gap"));
+    f.force = number(c.at("force"));
+    if (!c.contains("mu")) continue;
+    f.mu = number(c.at("mu"));
+    f.friction = vector(c.at("friction"));
+    f.slides = c.at("slides").get<bool>();
   }
   out.lag = wrench(message.at("lag"));
   return out;

@@ -28,10 +28,12 @@ class Metric {
   }
   Displacement unwhiten(const Vec6& z) const { return {z.head<3>(), axes_W_ * z.tail<3>().cwiseQuotient(radii_)}; }
   /// The contact's Jacobian [n, r × n] in whitened coordinates: row · whiten(d) = n · (dp + dr × r).
-  Vec6 row(const Contact& c) const {
+  Vec6 row(const Contact& c) const { return row(c, c.n); }
+  /// The same along another direction `e` (unit, world): row · whiten(d) = e · (dp + dr × r).
+  Vec6 row(const Contact& c, const Vec3& e) const {
     Vec6 g;
-    g.head<3>() = c.n;
-    g.tail<3>() = (axes_W_.transpose() * c.r.cross(c.n)).cwiseQuotient(radii_);
+    g.head<3>() = e;
+    g.tail<3>() = (axes_W_.transpose() * c.r.cross(e)).cwiseQuotient(radii_);
     return g;
   }
 

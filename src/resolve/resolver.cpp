@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lp/friction_solver.hpp"
 #include "lp/least_distance.hpp"
 #include "lp/simplex.hpp"
 #include "tegotae/core/error.hpp"
@@ -48,10 +49,11 @@ class LpResolver final : public Resolver {
   std::vector<double> d_;
 };
 
-/// The allowed motion nearest to the wanted one: in the coupling's metric the one of least energy.
+/// The allowed motion nearest to the wanted one: in the coupling's metric the one of least energy. With friction the
+/// one that Coulomb's law gives.
 class QpResolver final : public Resolver {
  public:
-  explicit QpResolver(int capacity) : solver_(capacity) {}
+  explicit QpResolver(int capacity) : solver_(capacity), friction_(capacity) {}
 
   Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept override {
     const QpResult& r = solver_.solve(rows, bounds, wanted);
@@ -64,8 +66,16 @@ class QpResolver final : public Resolver {
 
   bool projects() const override { return true; }
 
+  bool knows_friction() const override { return true; }
+
+  Resolution resolve_with_friction(const FrictionProblem& problem) noexcept override {
+    const FrictionResult& r = friction_.solve(problem);
+    return {r.z, status_of(r.status), r.iterations};
+  }
+
  private:
   LeastDistanceSolver solver_;
+  FrictionSolver friction_;
 };
 
 }  // namespace

@@ -21,10 +21,10 @@ bool constant(double x) {
 
 bool sane(const tegotae_shm_application& in) noexcept {
   return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
-         vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) && constant(in.stiffness) &&
-         constant(in.damping) && constant(in.torsional_stiffness) && constant(in.torsional_damping) &&
-         in.scale >= kLeastScale && in.scale <= kMostScale && in.clutch <= TEGOTAE_SHM_CLUTCH_ALL &&
-         (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
+         vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) && vector(in.weight).allFinite() &&
+         constant(in.stiffness) && constant(in.damping) && constant(in.torsional_stiffness) &&
+         constant(in.torsional_damping) && in.scale >= kLeastScale && in.scale <= kMostScale &&
+         in.clutch <= TEGOTAE_SHM_CLUTCH_ALL && (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
 }
 
 CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept {
@@ -40,7 +40,8 @@ MappingCommand mapping_of(const tegotae_shm_application& in) noexcept {
 ProxyState proxy_of(const tegotae_shm_application& in) noexcept {
   return {{quaternion(in.orientation), vector(in.position)},
           {vector(in.velocity), vector(in.angular_velocity)},
-          in.touching != 0};
+          in.touching != 0,
+          vector(in.weight)};
 }
 
 ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
@@ -48,7 +49,7 @@ ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
   if (in.plane_count > ContactPlanes::kMost || !placed(in.pen_position, in.pen_orientation)) return out;
   out.count = static_cast<int>(in.plane_count);
   for (std::size_t i = 0; i < in.plane_count; ++i)
-    out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room};
+    out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room, in.planes[i].mu};
   out.X = {quaternion(in.orientation), vector(in.position)};
   out.pen = {quaternion(in.pen_orientation), vector(in.pen_position)};
   return out;

@@ -17,6 +17,7 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
     store(plane.normal, out.planes[i].normal);
     store(plane.point, out.planes[i].point);
     out.planes[i].room = plane.room;
+    out.planes[i].mu = plane.mu;
   }
 }
 
@@ -85,6 +86,7 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   store(proxy.X.q, out.orientation);
   store(proxy.velocity.v, out.velocity);
   store(proxy.velocity.w, out.angular_velocity);
+  store(proxy.weight, out.weight);
   store(center_, out.center);
   out.stiffness = coupling_.stiffness;
   out.damping = coupling_.damping;

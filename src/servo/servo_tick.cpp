@@ -95,18 +95,34 @@ void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
 
 Wrench ServoTick::coupling(double& stored) noexcept {
   ProxyState x = proxy_of(application_);
+  const bool weighs = !x.weight.isZero() && coupling_.stiffness > 0;
+  // The part is drawn to where the weight stretches the springs to, and the hand feels how far that is from the pen.
+  Pose target = mapping_.Y();
+  if (weighs) target.p += mapping_.scale() / coupling_.stiffness * x.weight;
   if (settings_.local_model && local_.update(planes_of(application_), coupling_radius(coupling_, mapping_.scale()),
-                                             command_.center, mapping_.Y(), mapping_.velocity(), x))
+                                             command_.center, target, mapping_.velocity(), x))
     flags_ |= TEGOTAE_SHM_FLAG_LOCAL;
-  if (!x.touching) return {};
+  if (weighs && !x.touching) x.X = target;
+  lift(x);
+  stored = lifted_;
+  if (!x.touching && !weighs) return {};
   // The hand feels the set stiffness whatever the scale: lengths of the world are as long as the pen's way to them.
   CouplingSettings felt = coupling_;
   felt.stiffness /= mapping_.scale();
   felt.damping /= mapping_.scale();
   const Displacement error = displacement(mapping_.Y(), x.X, command_.center);
-  stored = 0.5 * (coupling_.stiffness * (error.dp / mapping_.scale()).squaredNorm() +
-                  coupling_.torsional_stiffness * error.dr.squaredNorm());
+  stored += 0.5 * (coupling_.stiffness * (error.dp / mapping_.scale()).squaredNorm() +
+                   coupling_.torsional_stiffness * error.dr.squaredNorm());
   return coupling_wrench(felt, x, mapping_.Y(), mapping_.velocity(), command_.center);
+}
+
+void ServoTick::lift(const ProxyState& x) noexcept {
+  const Vec3 at = x.X * command_.center / mapping_.scale();
+  if (!x.weight.isZero() && carries_) lifted_ -= x.weight.dot(at - carried_at_);
+  // What is lifted is told by the way alone: a weight that comes and goes, or another part, gives no energy.
+  carries_ = !x.weight.isZero();
+  if (!carries_) lifted_ = 0;
+  carried_at_ = at;
 }
 
 void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
@@ -123,7 +139,7 @@ void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
   if (attached_ && sane_ && in.pen_proper) in.wanted = coupling(stored);
   passivity_.observe(moved_, rendered_, stored, whole_, in.dt,
                      steps_.energy(moved_, coupling_, info_.position_resolution, in.dt));
-  if (safety_.passivity_control && stored > 0 && passivity_.acts() && coupling_.stiffness > 0) {
+  if (safety_.passivity_control && (stored > 0 || carries_) && passivity_.acts() && coupling_.stiffness > 0) {
     const Wrench damping = passivity_.controller(coupling_.torsional_stiffness / coupling_.stiffness);
     in.wanted.force += damping.force;
     in.wanted.torque += damping.torque;

@@ -32,6 +32,8 @@ class ServoTick {
   void tell_lead(std::int64_t now_ns) noexcept;
   /// Wrench on the pen that the coupling asks for; sets what its springs store.
   Wrench coupling(double& stored) noexcept;
+  /// Accounts for the way that the part's weight made.
+  void lift(const ProxyState& x) noexcept;
   void follow_pen(const DeviceState& pen, SafetyInput& in) noexcept;
   void publish(const DeviceState& pen, const SafetyOutput& out, std::int64_t now_ns) noexcept;
   void describe_device(tegotae_shm_device& out) const noexcept;
@@ -53,6 +55,9 @@ class ServoTick {
   bool sane_ = false;  // what the application says can be
   CouplingSettings coupling_;
   MappingCommand command_;
+  double lifted_ = 0;  // J that lifting the part has stored since it has a weight
+  bool carries_ = false;
+  Vec3 carried_at_ = Vec3::Zero();  // its center of mass then, in the pen's lengths
 
   bool started_ = false;  // a proper pen has been seen
   Pose pen_;              // raw, last

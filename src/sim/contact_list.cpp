@@ -67,7 +67,8 @@ void ContactList::gather(const std::vector<Contact>& limits, const TickReport& r
   };
   for (const Contact& c : limits) {
     if (c.age == kCutAge || (c.gap > report.contact_gap && !carries(c))) continue;
-    ContactPoint p{c.part, c.feature_a, c.feature_b, center_W + c.r, Vec3::Zero(), c.n, c.gap, {}, 0};
+    ContactPoint p{c.part, c.feature_a, c.feature_b, center_W + c.r, Vec3::Zero(), c.n, c.gap, {}, Vec3::Zero(), false,
+                   0};
     p.point_b = p.point_a - c.gap * c.n;
     if (forces.available) p.force = 0;
     add(p);
@@ -80,7 +81,10 @@ void ContactList::gather(const std::vector<Contact>& limits, const TickReport& r
     wanted.feature_a = f->feature_a;
     wanted.feature_b = f->feature_b;
     const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), wanted, less);
-    if (at != contacts_.end() && same(*at, wanted)) at->force = at->force.value_or(0) + f->force;
+    if (at == contacts_.end() || !same(*at, wanted)) continue;
+    at->force = at->force.value_or(0) + f->force;
+    at->friction += f->friction;
+    at->slides |= f->slides;
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/friction_pairs.hpp"
+#include "sim/kept_gap.hpp"
 #include "sim/lag.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -48,16 +50,6 @@ constexpr int kMostShorter = 3;
 constexpr int kMostHalvings = 4;
 // Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
 constexpr double kWorthwhile = 0.25;
-// Share of the kept gap by which one that is too small recovers in a piece.
-constexpr double kRecovery = 0.4;
-// Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
-// room no motion may keep all gaps to the last bit. Where there is none, gaps may be lost by this share of the wanted
-// motion.
-constexpr double kNormalNoise = 1e-9;
-// To recover gaps a part goes no farther away from the pen than this many kept gaps.
-constexpr double kMostRecovery = 30;
-// Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
-constexpr double kRecoverBelow = 0.8;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
 constexpr double kKeepShare = 0.5;
 // Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
@@ -70,9 +62,6 @@ constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMostWedging = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
 constexpr double kLeastKeep = 2e-6;
-// A limit of one motion alone comes from the plane that the certificate would find for it, and leaves this many times
-// what the certificate asks for.
-constexpr double kCutMargin = 1.2;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
@@ -108,6 +97,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       resolver_(resolver_of(settings)),
       rows_(kMostLimits),
       bounds_(kMostLimits),
+      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMostLimits),
       planes_(kMostLimits, scene.coupling, scene.scale) {
   trust_ = piece_cap_ = at_.check->longest_motion();
   most_keep_ = keep_ = kKeepShare * settings_.l_min;
@@ -185,6 +175,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.cut |= late();
   was_cut_ = report.cut;
   tell_forces(Y, report);
+  tell_slip(moved, report.forces);
 }
 
 void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
@@ -194,7 +185,7 @@ void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, X_, Y, center_, keep_, report.planes, report.forces);
+    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, report.planes, report.forces);
   } else {
     // Out of time, the limits may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));
@@ -351,8 +342,10 @@ LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
 
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
   Vec6 motion = wanted;
+  bool rubs = false;
   if (!at_.contacts->limits().empty()) {
-    if (!solve(wanted, report, motion)) return false;
+    rubs = friction_.fill(at_.contacts->limits(), metric_);
+    if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
     // Cutting planes stand for what the certificate failed at, and explain no lag.
     if (!cutting()) allowed_ = size(metric_.unwhiten(motion));
     const double far = size(metric_.unwhiten(wanted));
@@ -368,9 +361,11 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     // would leave nearly nothing of their recovery.
     const Vec6 scaled = (cap / length) * motion;
     motion = scaled;
-    if (!at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
-    trial.d = metric_.unwhiten(motion);
+    if (!rubs && !at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
   }
+  // What is left of a longer way would see no load and so no friction; its gaps are set right without any.
+  if (rubs) recover_gaps(report, motion);
+  trial.d = metric_.unwhiten(motion);
   trial.X = displaced(X_, center_, trial.d);
   return true;
 }
@@ -384,10 +379,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
     const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) {
-      const double gap = limits[i].gap;
-      const double lost = gap < kRecoverBelow * keep_ && limits[i].age != kCutAge ? recovery : 0;
-      const double keep = limits[i].age == kCutAge ? kCutMargin * kGapFloor : keep_;
-      bounds_[i] = std::min(keep, gap + lost) - gap - give;
+      bounds_[i] = bound_of(limits[i], keep_, recovery) - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;

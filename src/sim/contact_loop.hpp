@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "resolve/friction_rows.hpp"
 #include "resolve/metric.hpp"
 #include "sim/contact_planes.hpp"
 #include "sim/proxy_loop.hpp"
@@ -39,6 +40,12 @@ class ContactLoop final : public ProxyLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One programme over the limits: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// The same with friction, without gaps that should open.
+  bool solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Opens gaps that were lost, by the least change of `motion`, where that is possible and short.
+  void recover_gaps(TickReport& report, Vec6& motion);
+  /// Sets which of the contacts that carry have slid in the tick, in which X moved by `moved`.
+  void tell_slip(const Displacement& moved, ContactForces& forces) const;
   /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
   bool is_free(const Trial& trial, TickReport& report);
   /// Makes contacts, or planes for one motion, of what is in the way of `d`; whether there are fresh ones.
@@ -77,6 +84,7 @@ class ContactLoop final : public ProxyLoop {
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;
+  FrictionRows friction_;
   PlanePicker planes_;
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;

@@ -2,7 +2,9 @@
 
 #include <vector>
 
+#include "lp/friction_solver.hpp"
 #include "lp/least_distance.hpp"
+#include "resolve/friction_rows.hpp"
 #include "resolve/metric.hpp"
 #include "tegotae/core/contact_force.hpp"
 #include "tegotae/coupling/contact_planes.hpp"
@@ -17,22 +19,31 @@ class PlanePicker {
   /// For at most `capacity` limits; `scale`: Scene::scale.
   PlanePicker(int capacity, const CouplingSettings& coupling, double scale)
       : solver_(capacity),
+        friction_solver_(capacity),
         rows_(capacity),
         bounds_(static_cast<std::size_t>(capacity)),
         stiffness_(coupling.stiffness / scale),
-        torsional_stiffness_(coupling.torsional_stiffness) {}
+        torsional_stiffness_(coupling.torsional_stiffness) {
+    forces_.reserve(static_cast<std::size_t>(FrictionActiveSet::most_forces()));
+  }
 
   /// `metric` is the coupling's, oriented as X is. First the limits that carry force where X would go on towards Y
   /// (they keep the gap `keep`), then those with the least room. No planes and no forces when the programme stalls.
-  void pick(const std::vector<Contact>& limits, const Metric& metric, const Pose& X, const Pose& Y, const Vec3& center,
-            double keep, ContactPlanes& planes, ContactForces& forces) noexcept;
+  /// `friction` is scratch for the limits' tangents.
+  void pick(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Pose& X,
+            const Pose& Y, const Vec3& center, double keep, ContactPlanes& planes, ContactForces& forces) noexcept;
   /// What the springs pull, `d` from X to Y, at the center of mass.
   Wrench pull(const Displacement& d) const noexcept { return {-stiffness_ * d.dp, -torsional_stiffness_ * d.dr}; }
 
  private:
-  static void add(const Contact& contact, const Vec3& center_W, double room, ContactPlanes& planes) noexcept;
+  /// Sets forces_ and what the part still goes, in whitened coordinates; false when the program stalls.
+  bool solve(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Vec6& wanted,
+             Vec6& left) noexcept;
 
   LeastDistanceSolver solver_;
+  FrictionSolver friction_solver_;
+  std::vector<FrictionForce> forces_;
+  bool rubs_ = false;  // one of the limits has friction
   LowRankMatrix rows_;
   std::vector<double> bounds_;  // minus the room of each limit
   double stiffness_;            // N a meter of the world

@@ -1,5 +1,6 @@
 #include "tegotae/sim/haptic_loop.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -32,7 +33,8 @@ std::int64_t deadline(std::int64_t now_ns, double budget) {
 struct HapticLoop::State {
   std::unique_ptr<RunningScene> now;
   std::shared_ptr<SceneChanges> changes;
-  Pose Y;
+  Pose Y;              // of the pen; with the weight it carries, the part is drawn to target()
+  double carried = 0;  // of the weight, 0 to 1
   TickReport report;
   ContactList contacts;
   LagCounter lag;
@@ -51,9 +53,18 @@ struct HapticLoop::State {
     latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
   }
 
+  /// Where the pen's springs and the weight have the part: as far below the pen as the weight stretches them.
+  Pose target() const noexcept {
+    Pose out = Y;
+    // Without weight the pen's very bits.
+    if (carried > 0 && now->weight.mass > 0) out.p += now->sag(carried);
+    return out;
+  }
+
   /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
   const TickReport& finish() noexcept {
-    const Displacement d = displacement(report.proxy.X, Y, now->mass.center);
+    const Displacement d = displacement(report.proxy.X, target(), now->mass.center);
+    report.proxy.weight = carried * now->weight.force;
     report.lag = d.dp.norm() + now->radius * d.dr.norm();
     lag.add(report.lag, tegotae::lag_bound(now->radius), report.lag_reason);
     report.unexplained_lag_ticks = lag.ticks();
@@ -87,7 +98,7 @@ struct HapticLoop::State {
     const bool known = changed->fresh_since == now->number && now->keeps_out && changed->held_mesh == now->held_mesh &&
                        report.suspended + report.relieved == 0;
     const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
-    if (same && !changed->loop->take_over(report, Y, known ? &changed->fresh : nullptr, until)) {
+    if (same && !changed->loop->take_over(report, target(), known ? &changed->fresh : nullptr, until)) {
       changes->put_back(changed);
       return false;
     }
@@ -114,7 +125,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   const bool placed = proper(Y), timed = proper_time(dt);
   s.report.ignored = !(placed && timed);
   if (placed) s.Y = {Y.q.normalized(), Y.p};
-  s.now->loop->step(s.Y, timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  s.now->loop->step(s.target(), timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
   s.contacts.update(s.now->loop->limits(), s.report, s.report.proxy.X * s.now->mass.center);
   s.tell();
@@ -140,6 +151,10 @@ Pose HapticLoop::latest() const noexcept {
   while (!state_->latest.read(v)) {
   }
   return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+}
+
+void HapticLoop::carry(double share) noexcept {
+  state_->carried = share > 0 ? std::min(share, 1.0) : 0;
 }
 
 const TickReport& HapticLoop::report() const {
@@ -171,6 +186,9 @@ double HapticLoop::lag_bound() const {
 }
 const ContactSettings& HapticLoop::contact() const {
   return state_->now->settings;
+}
+const HeldWeight& HapticLoop::weight() const {
+  return state_->now->weight;
 }
 
 }  // namespace tegotae

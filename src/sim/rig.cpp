@@ -10,6 +10,7 @@
 #include "sim/pen_port.hpp"
 #include "sim/scene_parts.hpp"
 #include "sim/step_schedule.hpp"
+#include "sim/weight_ramp.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -48,6 +49,7 @@ struct Rig::State {
   std::int64_t begin_ns = 0, now_ns = 0;  ///< of start() and of the last step, the clock's
   std::atomic<bool> stop_requested{false};
   StepSchedule schedule;
+  WeightRamp carried;
   std::optional<LoopPriority> priority;  ///< in run()
   std::string missing;
 
@@ -70,6 +72,7 @@ struct Rig::State {
     connected = pen->read(sample, now_ns);
     if (connected) {
       const std::uint64_t change = loop.change_in_force();
+      loop.carry(carried.update(sample, dt));
       const TickReport& report = loop.step(sample.state.pose, dt);
       // The tick that takes up another part does not follow the pen.
       const bool suspended = report.lag_reason == LagReason::suspended && !report.ignored;

@@ -9,6 +9,8 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "core/proper_pose.hpp"
 #include "sim/contact_loop.hpp"
+#include "sim/friction_pairs.hpp"
+#include "sim/held_weight.hpp"
 #include "sim/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
@@ -87,8 +89,11 @@ RunningScene::RunningScene(const Scene& scene)
       mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
       radius(radius_about(*held_mesh, mass.center)),
       coupling(fitted(scene, mass)),
+      weight(held_weight(scene, mass)),
+      yields(coupling.stiffness > 0 ? scene.scale / coupling.stiffness : 0),
       loop(make_proxy_loop(coupled_by(scene, coupling), settings, mass)) {
   std::vector<Obstacle> list;
+  friction_of_parts(scene);  // refuses what the loop of another resolver would not look at
   for (const Part* p : SceneParts(scene).fixed) list.push_back({p->mesh, p->pose});
   obstacles = std::make_shared<const std::vector<Obstacle>>(std::move(list));
   keeps_out = settings.narrowphase == "patch" && (settings.custom_resolver || settings.resolver != "penalty");

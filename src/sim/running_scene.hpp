@@ -32,6 +32,8 @@ struct RunningScene {
   MassProperties mass;        ///< of the held part
   double radius;              ///< of the held part about its center of mass, m
   CouplingSettings coupling;  ///< nothing left open
+  HeldWeight weight;          ///< of the held part
+  double yields;              ///< m of the world that the part sinks for a newton of weight
   std::unique_ptr<ProxyLoop> loop;
   RunningScene* done_before = nullptr;          ///< see Handover
   std::shared_ptr<SceneChange::Record> change;  ///< that it came with; null: none
@@ -40,6 +42,8 @@ struct RunningScene {
   explicit RunningScene(const Scene& scene);
   /// Sets `fresh` and `fresh_since`.
   void compare(const std::vector<Obstacle>& old, std::uint64_t old_number);
+  /// How far the part hangs below the pen with this share of its weight, m, world.
+  Vec3 sag(double share) const noexcept { return share * yields * weight.force; }
   /// Does once what is slow or allocates the first time, where the held part is.
   void warm_up();
   ~RunningScene();

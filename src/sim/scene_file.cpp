@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "sim/contact_loop.hpp"
+#include "sim/held_weight.hpp"
+#include "sim/scene_friction.hpp"
 #include "sim/toml_table.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/coupling/stability.hpp"
@@ -86,8 +88,8 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
   std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
   std::set<std::string> names;
   std::string held;
-  const std::vector<TomlTable> tables =
-      top.tables("part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color"});
+  const std::vector<TomlTable> tables = top.tables(
+      "part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color", "mass"});
   for (const TomlTable& t : tables) {
     if (options.progress) options.progress(scene.parts.size(), tables.size());
     Part part;
@@ -100,6 +102,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     part.pose = read_pose(t);
     part.path = t.texts("path");
     part.color = read_color(t);
+    if (t.has("mass")) part.mass = t.positive("mass", 0);
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
     const std::string file = file_under(t, "mesh", folder, files);
     auto& mesh = meshes[{file, unit}];
@@ -187,6 +190,18 @@ double torsion_bound(const SimulatedDeviceSettings& device, const CouplingSettin
   return torsional_stiffness_bound(report.torsional_stiffness_limit, info.limits.torque);
 }
 
+void read_weight(const TomlTable& top, const SimulatedDeviceSettings& device, const SafetySettings& safety,
+                 Scene& scene) {
+  scene.weight.on = top.flag("weight", scene.weight.on);
+  if (top.has("gravity")) scene.weight.gravity = Vec3(top.numbers("gravity", 3).data());
+  if (scene.weight.on && scene.contact.resolver != "qp")
+    top.fail("weight", "the resolver " + scene.contact.resolver + " knows no weight; qp does");
+  double stands = device_info(device).continuous_force;
+  if (safety.continuous_force > 0)
+    stands = stands > 0 ? std::min(stands, safety.continuous_force) : safety.continuous_force;
+  scene.weight.most = weight_bound(stands);
+}
+
 /// A script of a hand that stays where the held part starts.
 StylusScript rest(const Scene& scene) {
   const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
@@ -198,7 +213,8 @@ StylusScript rest(const Scene& scene) {
 SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   std::string text = read_file(path);
   const toml::table parsed = parse_toml(text, path);
-  const TomlTable top(parsed, path, "", {"unit", "part", "contact", "coupling", "safety", "device"});
+  const TomlTable top(parsed, path, "",
+                      {"unit", "weight", "gravity", "part", "contact", "friction", "coupling", "safety", "device"});
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::vector<std::string> files = {path};
   Scene scene;
@@ -221,6 +237,8 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
     script = about(device, "script", [&] { return read_script(script_file); });
   }
   read_parts(top, folder, options, scene, files);
+  read_friction(top, scene);
+  read_weight(top, settings, safety, scene);
   if (!script) script = rest(scene);
   scene.scale = read_scale(device);
   if (!coupling.has("torsional_stiffness")) scene.torsional_stiffness_most = torsion_bound(settings, scene.coupling);

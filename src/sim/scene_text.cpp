@@ -34,6 +34,19 @@ void set_pose(toml::table& t, const Pose& X) {
   t.insert_or_assign("orientation", toml::array{X.q.w(), X.q.x(), X.q.y(), X.q.z()});
 }
 
+/// Takes out friction of pairs of which one is gone: a file that names a part it does not have is refused.
+void drop_pairs(toml::table& top, const Scene& now) {
+  toml::array* pairs = top["friction"]["pair"].as_array();
+  if (pairs == nullptr) return;
+  for (std::size_t i = pairs->size(); i-- > 0;) {
+    const toml::array& names = *(*pairs)[i].as_table()->get("parts")->as_array();
+    const bool gone = std::any_of(names.begin(), names.end(), [&](const toml::node& name) {
+      return find(now, *name.value<std::string>()) == nullptr;
+    });
+    if (gone) pairs->erase(pairs->begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 }  // namespace
 
 std::string scene_settings(const SceneFile& file) {
@@ -61,6 +74,7 @@ std::string scene_text(const SceneFile& file, const Scene& now, const std::strin
     if (part->held) t.insert("held", true);
     ++i;
   }
+  drop_pairs(top, now);
   if (toml::table* device = top["device"].as_table()) {
     move_path(*device, "script", from, folder);
     if (held_part(now).name != held_part(file.scene).name) device->erase("script");

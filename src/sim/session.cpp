@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/fit_watch.hpp"
+#include "sim/held_weight.hpp"
 #include "sim/loop_priority.hpp"
 #include "sim/pen_port.hpp"
 #include "sim/run_check.hpp"
@@ -14,6 +15,7 @@
 #include "sim/scene_parts.hpp"
 #include "sim/step_schedule.hpp"
 #include "sim/torsion.hpp"
+#include "sim/weight_ramp.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/sim/haptic_loop.hpp"
@@ -82,7 +84,9 @@ class Session {
     if (settings.progress) settings.progress->duration = duration_;
     summary_.held_fast.parts.reserve(file.scene.parts.size());
     summary_.stability = pen_->stability();
-    if (settings.on_start) settings.on_start({loop_.start(), summary_.stability, torsion_text(file_.scene, loop_)});
+    if (settings.on_start)
+      settings.on_start(
+          {loop_.start(), summary_.stability, torsion_text(file_.scene, loop_), weight_text(file_.scene, loop_)});
   }
 
   RunSummary run() {
@@ -148,6 +152,7 @@ class Session {
     PenSample pen;
     if (!pen_->read(pen, now)) return wait(now);
     const std::int64_t begin = monotonic_ns();
+    loop_.carry(carried_.update(pen, dt));
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::string& held = stretches_.now().held;
@@ -249,6 +254,7 @@ class Session {
   bool holds_first_ = true;          // that part is held
   bool lagging_ = false;             // at the end of the last tick, over the bound and not for a contact
   FitWatch watch_{loop_, file_.scene};
+  WeightRamp carried_;
   std::uint64_t sequence_ = 0;  // of the pen's sample that the last tick answered
   LatencyHistogram tick_times_;
   std::string missing_;  // of real time, for the contact loop

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "sim/held_weight.hpp"
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/channel.hpp"
 
@@ -20,11 +21,13 @@ std::string format(const char* pattern, double a, double b = 0, double c = 0) {
 }  // namespace
 
 Scene bounded_by(Scene scene, const std::string& device) {
-  if (!scene.torsional_stiffness_most || device.rfind(kDeviceScheme, 0) != 0) return scene;
+  if (device.rfind(kDeviceScheme, 0) != 0) return scene;
   tegotae_shm_device told{};
   // A device that has written nothing yet is one of which nothing is known.
   ChannelReader::open(device.substr(std::string(kDeviceScheme).size())).read(told);
-  scene.torsional_stiffness_most = torsional_stiffness_bound(told.torsional_stiffness_limit, told.torque_limit);
+  if (scene.torsional_stiffness_most)
+    scene.torsional_stiffness_most = torsional_stiffness_bound(told.torsional_stiffness_limit, told.torque_limit);
+  scene.weight.most = weight_bound(told.continuous_force);
   return scene;
 }
 

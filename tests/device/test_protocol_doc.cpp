@@ -27,7 +27,7 @@ struct Field {
 
 const std::map<std::string, std::size_t> kSize = {{"uint64_t", 8},          {"int64_t", 8}, {"uint32_t", 4},
                                                   {"int32_t", 4},           {"double", 8},  {"char", 1},
-                                                  {"tegotae_shm_plane", 56}};
+                                                  {"tegotae_shm_plane", 64}};
 const std::map<std::string, std::size_t> kNumber = {
     {"TEGOTAE_SHM_NAME", TEGOTAE_SHM_NAME},
     {"TEGOTAE_SHM_PLANES", TEGOTAE_SHM_PLANES},

@@ -69,9 +69,18 @@ inline ContactForces random_forces(std::mt19937_64& rng) {
   const auto vector = [&] { return Vec3(number(), number(), number()); };
   ContactForces out;
   out.count = static_cast<int>(rng() % (ContactForces::kMost + 1));
-  for (int i = 0; i < out.count; ++i)
-    out.items[static_cast<std::size_t>(i)] = {static_cast<std::uint32_t>(rng()), vector(), vector(), number(),
-                                              number()};
+  for (int i = 0; i < out.count; ++i) {
+    ContactForce& c = out.items[static_cast<std::size_t>(i)];
+    c.part = PartId{static_cast<std::uint32_t>(rng())};
+    c.point = vector();
+    c.n = vector();
+    c.gap = number();
+    c.force = number();
+    if (rng() % 2 == 0) continue;  // no friction
+    c.mu = 0.3;
+    c.friction = vector();
+    c.slides = rng() % 2 == 0;
+  }
   out.lag = {vector(), vector()};
   return out;
 }

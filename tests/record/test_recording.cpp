@@ -110,6 +110,9 @@ TEST_CASE("contact forces come back from MCAP, and a recording of a version with
       REQUIRE(a.items[k].n == b.items[k].n);
       REQUIRE(a.items[k].gap == b.items[k].gap);
       REQUIRE(a.items[k].force == b.items[k].force);
+      REQUIRE(a.items[k].mu == b.items[k].mu);
+      REQUIRE(a.items[k].friction == b.items[k].friction);
+      REQUIRE(a.items[k].slides == b.items[k].slides);
     }
     REQUIRE(a.lag.force == b.lag.force);
     REQUIRE(a.lag.torque == b.lag.torque);

@@ -178,6 +178,49 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(hand.inertia == 16);
 }
 
+TEST_CASE("friction and weight arrive, and what of them cannot be is named", "[scene_file]") {
+  const Folder folder;
+  const std::string parts = replaced(kParts, "held = true", "held = true\nmass = 0.25");
+  const std::string pair = "[[friction.pair]]\nparts = [\"peg\", \"block\"]\nmu = 0.1\n";
+  const SceneFile file =
+      folder.load("weight = true\ngravity = [0, -9.8, 0]\n" + parts + "[friction]\nmu = 0.3\n" + pair + kDevice);
+  CHECK(file.scene.weight.on);
+  CHECK(file.scene.weight.gravity == Vec3(0, -9.8, 0));
+  CHECK(*file.scene.weight.most == Approx(0.7));  // half of what the pen stands for long
+  CHECK(*file.scene.parts[1].mass == 0.25);
+  CHECK(file.scene.friction.mu == 0.3);
+  REQUIRE(file.scene.friction.pairs.size() == 1);
+  CHECK(file.scene.friction.pairs[0].a == "peg");
+  CHECK(file.scene.friction.pairs[0].b == "block");
+  CHECK(file.scene.friction.pairs[0].mu == 0.1);
+  // Without a part its pairs are gone.
+  Scene now = file.scene;
+  now.parts.erase(now.parts.begin());
+  CHECK(scene_text(file, now, "").find("friction.pair") == std::string::npos);
+
+  const SceneFile plain = folder.load(kParts + kDevice);
+  CHECK(plain.scene.friction.mu == 0);
+  CHECK(plain.scene.friction.pairs.empty());
+  CHECK_FALSE(plain.scene.weight.on);
+  CHECK_FALSE(plain.scene.parts[1].mass);
+
+  const auto named = [&](const std::string& added, const std::string& key) {
+    const std::string error = folder.error(kParts + added);
+    CAPTURE(added, error);
+    CHECK(error.find(key) != std::string::npos);
+  };
+  named("[friction]\nmu = -0.1\n", "friction.mu");
+  named("[friction]\nmu = 11\n", "friction.mu");
+  named("[friction]\nmu = nan\n", "friction.mu");
+  named("[[friction.pair]]\nparts = [\"peg\"]\nmu = 0.1\n", "two parts");
+  named("[[friction.pair]]\nparts = [\"peg\", \"nobody\"]\nmu = 0.1\n", "nobody");
+  named("[[friction.pair]]\nparts = [\"peg\", \"block\"]\n", "mu");
+  named("[friction]\nmu = 0.1\n[contact]\nresolver = \"lp\"\n", "knows no friction");
+  CHECK(folder.error("weight = true\n" + kParts + "[contact]\nresolver = \"lp\"\n").find("knows no weight") !=
+        std::string::npos);
+  CHECK(folder.error(replaced(kParts, "held = true", "held = true\nmass = 0")).find("mass") != std::string::npos);
+}
+
 TEST_CASE("roll, pitch and yaw turn about the fixed axes in this order", "[scene_file]") {
   const Folder folder;
   const SceneFile file = folder.load(replaced(kParts, "position", "rpy_deg = [20, -35, 110]\nposition") + kDevice);

@@ -12,15 +12,17 @@ namespace tegotae TEGOTAE_EXPORT {
 /// A place where the held part A touches a fixed part B: their surfaces are no farther apart there than
 /// TickReport::contact_gap. Part and features are its identity from tick to tick.
 struct ContactPoint {
-  PartId part;                  ///< B
-  Feature feature_a;            ///< nearest feature of A's mesh
-  Feature feature_b;            ///< nearest feature of B's mesh
-  Vec3 point_a = Vec3::Zero();  ///< on A, m, world
-  Vec3 point_b = Vec3::Zero();  ///< on B, m, world
-  Vec3 normal = Vec3::Zero();   ///< n_BA_W: unit normal from B to A, world
-  double gap = 0;               ///< m; negative where the resolver "penalty" lets A into B
-  std::optional<double> force;  ///< N, on A along `normal`, 0 or positive; none: see TickReport::forces
-  std::int64_t ticks = 0;       ///< for so many ticks before this one it has been in contact; 0: it has just begun
+  PartId part;                   ///< B
+  Feature feature_a;             ///< nearest feature of A's mesh
+  Feature feature_b;             ///< nearest feature of B's mesh
+  Vec3 point_a = Vec3::Zero();   ///< on A, m, world
+  Vec3 point_b = Vec3::Zero();   ///< on B, m, world
+  Vec3 normal = Vec3::Zero();    ///< n_BA_W: unit normal from B to A, world
+  double gap = 0;                ///< m; negative where the resolver "penalty" lets A into B
+  std::optional<double> force;   ///< N, on A along `normal`, 0 or positive; none: see TickReport::forces
+  Vec3 friction = Vec3::Zero();  ///< N, on A across `normal`, world
+  bool slides = false;           ///< A's point has slid in the tick, where there is friction
+  std::int64_t ticks = 0;        ///< for so many ticks before this one it has been in contact; 0: it has just begun
 };
 
 /// That a contact began or ended in the last tick. Where the scene changes, contacts end without an event: their part

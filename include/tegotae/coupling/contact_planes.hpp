@@ -12,6 +12,7 @@ struct ContactPlane {
   Vec3 normal = Vec3::Zero();  ///< unit, out of the obstacle, world
   Vec3 point = Vec3::Zero();   ///< of the held part at X, m, world
   double room = 0;             ///< m; below 0: the point should move out by so much
+  double mu = 0;               ///< coefficient of friction while the point is held there
 };
 
 /// What the contact loop knows about the held part's next millimeter, for a servo that is faster: the limits that held

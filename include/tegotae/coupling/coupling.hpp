@@ -30,11 +30,14 @@ double fitted_torsional_stiffness(double stiffness, double radius, double most) 
 struct ProxyState {
   Pose X;                 ///< X_WF of its file frame
   Twist velocity;         ///< `v` of its center of mass
-  bool touching = false;  ///< held back, by contacts or because the contact loop lags; otherwise the wrench is zero
+  bool touching = false;  ///< held back, by contacts or because the contact loop lags
+  /// N, world: of the held part as the hand carries it, on the pen at the center of mass. The part then hangs below the
+  /// pen by weight / stiffness.
+  Vec3 weight = Vec3::Zero();
 };
 
 /// Wrench on the pen at the held part's center of mass, expressed in the world:
-/// F = k (X − Y) + d (Ẋ − Ẏ), T = k_t rotvec(R_X R_Yᵀ) + d_t (ω_X − ω_Y); zero when not touching.
+/// F = k (X − Y) + d (Ẋ − Ẏ), T = k_t rotvec(R_X R_Yᵀ) + d_t (ω_X − ω_Y); when not touching the weight alone.
 /// `center` is the center of mass in the file frame (m); `Y_velocity.v` is the velocity of that point of the pen's
 /// body.
 Wrench coupling_wrench(const CouplingSettings& settings, const ProxyState& x, const Pose& Y, const Twist& Y_velocity,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tegotae/core/export.hpp"
+#include "tegotae/lp/friction_problem.hpp"
 #include "tegotae/lp/low_rank_matrix.hpp"
 #include "tegotae/resolve/status.hpp"
 
@@ -32,9 +33,19 @@ class Resolver {
   /// Whether the answer is the allowed motion nearest to the wanted one: then there are contact forces, and planes for
   /// the servo. If not, it may be no motion at all although some would lead nearer.
   virtual bool projects() const = 0;
+
+  /// Whether resolve_with_friction() knows friction. One that does not is never asked with it, and whatever the scene
+  /// says, parts slide without.
+  virtual bool knows_friction() const { return false; }
+  /// The motion that Coulomb's law gives for `problem.wanted`; z >= problem.bounds as in resolve(), without gaps that
+  /// should open.
+  virtual Resolution resolve_with_friction(const FrictionProblem& problem) noexcept {
+    return resolve(problem.normals, problem.bounds, problem.wanted);
+  }
 };
 
-/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (the springs' least energy), and two
+/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (the springs' least energy, the one
+/// that knows friction), and two
 /// that solve no programme but are loops of their own, "impulse" and "penalty" (see src/sim).
 const std::vector<std::string>& resolver_names();
 /// "lp" or "qp", for at most `capacity` rows. Throws Error for another name.

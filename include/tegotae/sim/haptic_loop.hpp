@@ -26,9 +26,9 @@ struct TickReport {
   ProxyState proxy;          ///< X, its velocity, and whether it touches
   ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
   /// What the contacts exert on the held part at the end of the tick: with `forces.lag` it is the wrench of the
-  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), before the damper, the servo's newer Y and the safety
-  /// chain. Of resolvers that project (Resolver::projects, "qp"), and only while it touches; of others none is
-  /// available.
+  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's newer
+  /// Y and the safety chain. Of resolvers that project (Resolver::projects, "qp"), and only while it touches; of others
+  /// none is available.
   ContactForces forces;
   int contacts = 0;         ///< feature pairs with a gap of at most contact_gap
   double contact_gap = 0;   ///< what counts as contact in this tick, m
@@ -53,6 +53,13 @@ struct TickReport {
   /// kMaxUnexplainedLag (scaled, see lag_bound) for a reason other than contact, as it had been in the kLagPatience
   /// ticks before without a break.
   std::int64_t unexplained_lag_ticks = 0;
+};
+
+/// The weight of the held part (Scene::weight).
+struct HeldWeight {
+  double mass = 0;            ///< kg, as given or by volume and density; 0: no weight is asked for
+  double share = 1;           ///< of mass × gravity that the hand carries: below 1 where it is more than `most`
+  Vec3 force = Vec3::Zero();  ///< N, world: share × mass × gravity
 };
 
 /// Lag (m) that needs a reason in contact, of a part with a radius of at least kLagRadius (m) about its center of mass;
@@ -87,6 +94,11 @@ class HapticLoop {
   /// coordinate; for another one the last pose that was taken stands in. Times are 0 (nothing has a velocity then) or
   /// from a microsecond on; for another one 0 stands in. TickReport::ignored tells both.
   const TickReport& step(const Pose& Y, double dt) noexcept;
+
+  /// How much of the weight the hand carries from the next tick on, from 0 (as it begins) to 1. Whoever sets it lets it
+  /// grow over some 0.3 s once the force is on: the part sinks by weight / stiffness, and a force that jumped would be
+  /// waited out by the safety chain.
+  void carry(double share) noexcept;
 
   /// Goes on in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be
   /// called from any thread while step() runs; it builds here what is new (parts that share a mesh with the scene so
@@ -127,6 +139,7 @@ class HapticLoop {
   double radius_of_gyration() const;         ///< of the held part about that center, the mean over three axes, m
   const CouplingSettings& coupling() const;  ///< in use: give these to the servo (ContactLink); see Scene
   const ContactSettings& contact() const;    ///< the settings in use, nothing left open
+  const HeldWeight& weight() const;          ///< of the held part, whatever of it is carried now
   double lag_bound() const;                  ///< lag_bound() of the held part, m
 
  private:

@@ -26,6 +26,8 @@ struct Part {
   bool held = false;                         ///< exactly one part of a scene is held
   std::vector<std::string> path = {};        ///< groups of the assembly that it is in, the outermost first
   std::optional<Color> color = {};           ///< to show it in
+  /// kg, of the weight that the hand feels while the part is held; not set: by volume and ContactSettings::density.
+  std::optional<double> mass = {};
 };
 
 /// Settings of the resolver "impulse".
@@ -66,6 +68,27 @@ struct ContactSettings {
   ContactSettings();        ///< lengths from the scene (NaN), the rest as above
 };
 
+/// Coulomb friction of one pair of parts, whichever of them is held.
+struct PairFriction {
+  std::string a, b;  ///< names of the parts; a pair of which one is not in the scene says nothing
+  double mu = 0;     ///< coefficient, sticking and sliding alike, 0 to 10
+};
+
+/// Coulomb friction between the held part and the others (resolver "qp"). Where nothing rubs, everything is as without.
+struct FrictionSettings {
+  double mu = 0;                         ///< coefficient of pairs that are not named, 0 to 10
+  std::vector<PairFriction> pairs = {};  ///< of several for one pair the last one holds
+};
+
+/// Weight of the held part in the hand (resolver "qp"). The part still has no inertia.
+struct WeightSettings {
+  bool on = false;                  ///< the hand feels it
+  Vec3 gravity = {0, 0, -9.80665};  ///< m/s², world
+  /// N, the most that the hand is to carry, for a device that would get warm: a heavier part weighs so much. Not set:
+  /// no such bound.
+  std::optional<double> most = {};
+};
+
 /// The parts of a mock-up and the settings of its loops.
 struct Scene {
   /// Adds a part that stands at `pose` (X_WF). `name` is to be unique, `mesh` as Part::mesh.
@@ -86,6 +109,8 @@ struct Scene {
   /// Meters that the held part moves for a meter of the pen: what ContactLink::set_scale() is told. Part of the law by
   /// which the part follows the pen, because the springs are felt in the pen's lengths.
   double scale = 1;
+  FrictionSettings friction = {};  ///< between the held part and the others
+  WeightSettings weight = {};      ///< of the held part
 
  private:
   PartId add(std::string name, TriangleMesh mesh, const Pose& pose, bool held) {

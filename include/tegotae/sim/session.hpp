@@ -86,6 +86,7 @@ struct RunStart {
   const StartReport& parts;      ///< what the held part touches or overlaps
   const std::string& stability;  ///< as RunSummary::stability
   const std::string& torsion;    ///< the torsional stiffness in use and why it is that, in one line, for people
+  const std::string& weight;     ///< of the held part, in one line, for people; empty when the hand feels none
 };
 
 /// How run_session() runs a scene.

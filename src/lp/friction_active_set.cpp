@@ -1,0 +1,261 @@
+#include "lp/friction_active_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lp/small_lu.hpp"
+
+namespace tegotae {
+namespace {
+
+/// Rounds after which it will not end; those that end take 2 to 12.
+constexpr int kMaxRounds = 25;
+/// A contact that changed between sliding and sticking so often goes in a circle.
+constexpr int kMostFlips = 4;
+/// Less than this part of the wanted motion is no motion, and no violation.
+constexpr double kSmall = 1e-8;
+/// Pulls and friction beyond a cone count from this part of the wanted motion on.
+constexpr double kForce = 1e-9;
+/// How much a contact gives (m per m of force, by the mean squared length of the rows) before the next round takes it
+/// back. All give alike: a face then presses as one on an even bed does.
+constexpr double kGive = 1e-7;
+/// An answer so many times as long as the wanted motion is none: the system was close to singular.
+constexpr double kFar = 1e3;
+/// Slip directions stand when they turn by less (rad).
+constexpr double kTurn = 1e-8;
+/// Forces below this part of the wanted motion matter in proportion for whether a direction stands.
+constexpr double kMatters = 1e-2;
+/// Of contacts beyond their cones those within this share of the worst slide in one round.
+constexpr double kTogether = 0.5;
+/// Of more contacts than this that touch, an even sample shares the load.
+constexpr std::size_t kMostTouching = 64;
+
+}  // namespace
+
+FrictionActiveSet::FrictionActiveSet(int capacity) : inside_(static_cast<std::size_t>(capacity)) {
+  touching_.reserve(static_cast<std::size_t>(capacity));
+}
+
+void FrictionActiveSet::set_direction(Member& m, double d0, double d1) noexcept {
+  m.direction[0] = d0;
+  m.direction[1] = d1;
+  m.column = m.n;
+  if (m.mu > 0) m.column -= m.mu * (d0 * m.t[0] + d1 * m.t[1]);
+}
+
+bool FrictionActiveSet::add(int row, Start start) noexcept {
+  if (count_ == kMostMembers) return false;
+  Member& m = members_[static_cast<std::size_t>(count_++)];
+  m.row = row;
+  m.n = problem_->normals.row(row);
+  m.bound = problem_->bounds[row];
+  m.mu = problem_->mu[row];
+  m.length = m.n.norm();
+  m.normal = m.tangential[0] = m.tangential[1] = m.slip[0] = m.slip[1] = 0;
+  m.flips = 0;
+  inside_[static_cast<std::size_t>(row)] = 1;
+  m.slides = true;
+  if (m.mu > 0) {
+    m.t[0] = problem_->tangents[row].row[0];
+    m.t[1] = problem_->tangents[row].row[1];
+    m.slip[0] = m.t[0].dot(z_);
+    m.slip[1] = m.t[1].dot(z_);
+    const double far = std::hypot(m.slip[0], m.slip[1]);
+    m.slides = start == Start::along && far > slip_;
+    if (m.slides) set_direction(m, m.slip[0] / far, m.slip[1] / far);
+  } else {
+    set_direction(m, 0, 0);
+  }
+  return true;
+}
+
+void FrictionActiveSet::remove(int position) noexcept {
+  inside_[static_cast<std::size_t>(members_[static_cast<std::size_t>(position)].row)] = 0;
+  std::copy(members_.begin() + position + 1, members_.begin() + count_, members_.begin() + position);
+  --count_;
+}
+
+void FrictionActiveSet::begin(const Vec6& from, Start start) noexcept {
+  z_ = from;
+  scale_ = problem_->wanted.norm();
+  slip_ = kSmall * scale_;
+  count_ = 0;
+  const int rows = problem_->normals.rows();
+  std::fill_n(inside_.begin(), rows, std::uint8_t{0});
+  touching_.clear();
+  for (int i = 0; i < rows; ++i)
+    if (problem_->normals.row(i).dot(z_) - problem_->bounds[i] < slip_) touching_.push_back(i);
+  const std::size_t taken = std::min(touching_.size(), kMostTouching);
+  double squares = 0;
+  for (std::size_t k = 0; k < taken; ++k)
+    squares += problem_->normals.row(touching_[k * touching_.size() / taken]).squaredNorm();
+  give_ = kGive * (taken > 0 ? squares / static_cast<double>(taken) : 1);
+  for (std::size_t k = 0; k < taken; ++k) add(touching_[k * touching_.size() / taken], start);
+}
+
+bool FrictionActiveSet::step() noexcept {
+  double h[6][6] = {};
+  Vec6 r = problem_->wanted;
+  for (int i = 0; i < 6; ++i) h[i][i] = 1;
+  const auto add_product = [&h](const Vec6& a, const Vec6& b) {
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) h[i][j] += a[i] * b[j];
+  };
+  for (int k = 0; k < count_; ++k) {
+    const Member& m = members_[static_cast<std::size_t>(k)];
+    const double stiff = 1 / give_, push = m.normal + m.bound * stiff;
+    if (m.slides) {
+      r += push * m.column;
+      add_product(stiff * m.column, m.n);
+      // As z turns the slip, friction turns with it.
+      const double far = std::hypot(m.slip[0], m.slip[1]);
+      if (m.mu > 0 && far > slip_ && m.normal > 0) {
+        const Vec6 across = m.direction[0] * m.t[1] - m.direction[1] * m.t[0];
+        add_product((m.mu * m.normal / far) * across, across);
+      }
+    } else {
+      r += push * m.n + m.tangential[0] * m.t[0] + m.tangential[1] * m.t[1];
+      add_product(stiff * m.n, m.n);
+      add_product(stiff * m.t[0], m.t[0]);
+      add_product(stiff * m.t[1], m.t[1]);
+    }
+  }
+  SmallLu lu;
+  if (!lu.factor(h, 6)) return false;
+  lu.solve(r.data());
+  if (!r.allFinite() || r.norm() > kFar * scale_) return false;
+  z_ = r;
+  error_ = 0;
+  for (int k = 0; k < count_; ++k) {
+    Member& m = members_[static_cast<std::size_t>(k)];
+    const double gap = m.bound - m.n.dot(z_);
+    m.normal += gap / give_;
+    error_ = std::max(error_, std::abs(gap));
+    if (m.mu == 0) continue;
+    for (int i = 0; i < 2; ++i) {
+      m.slip[i] = m.t[i].dot(z_);
+      if (!m.slides) m.tangential[i] -= m.slip[i] / give_;
+    }
+    if (!m.slides) error_ = std::max(error_, std::hypot(m.slip[0], m.slip[1]));
+  }
+  return true;
+}
+
+bool FrictionActiveSet::drop_pulling(bool first) noexcept {
+  const double most = -kForce * scale_;
+  int worst = -1;
+  double pull = most;
+  for (int k = 0; k < count_; ++k) {
+    const Member& m = members_[static_cast<std::size_t>(k)];
+    if (m.normal * m.length < pull) {
+      pull = m.normal * m.length;
+      worst = k;
+    }
+  }
+  if (worst < 0) return false;
+  if (!first) {
+    remove(worst);
+    return true;
+  }
+  for (int k = count_ - 1; k >= 0; --k)
+    if (members_[static_cast<std::size_t>(k)].normal < 0) remove(k);
+  for (int k = 0; k < count_; ++k) {
+    Member& m = members_[static_cast<std::size_t>(k)];
+    m.normal = m.tangential[0] = m.tangential[1] = 0;
+  }
+  return true;
+}
+
+FrictionActiveSet::Change FrictionActiveSet::stick_or_turn() noexcept {
+  bool changed = false;
+  turn_ = 0;
+  for (int k = 0; k < count_; ++k) {
+    Member& m = members_[static_cast<std::size_t>(k)];
+    if (m.mu == 0 || !m.slides) continue;
+    const double far = std::hypot(m.slip[0], m.slip[1]);
+    if (m.slip[0] * m.direction[0] + m.slip[1] * m.direction[1] < -slip_) {
+      if (++m.flips > kMostFlips) return Change::failed;
+      m.slides = false;
+      for (int i = 0; i < 2; ++i) m.tangential[i] = -m.mu * m.normal * m.direction[i];
+      changed = true;
+    } else if (far > slip_) {
+      const double d0 = m.slip[0] / far, d1 = m.slip[1] / far, force = m.normal * m.length;
+      if (force > kForce * scale_)
+        turn_ = std::max(turn_, std::hypot(d0 - m.direction[0], d1 - m.direction[1]) *
+                                    std::min(1.0, m.mu * force / (kMatters * scale_)));
+      set_direction(m, d0, d1);
+    }
+  }
+  return changed ? Change::some : Change::none;
+}
+
+FrictionActiveSet::Change FrictionActiveSet::slide() noexcept {
+  const auto beyond = [this](const Member& m) {
+    return (std::hypot(m.tangential[0], m.tangential[1]) - m.mu * m.normal) * m.length / scale_;
+  };
+  double worst = kForce;
+  for (int k = 0; k < count_; ++k) {
+    const Member& m = members_[static_cast<std::size_t>(k)];
+    if (!m.slides) worst = std::max(worst, beyond(m));
+  }
+  if (!(worst > kForce)) return Change::none;
+  for (int k = 0; k < count_; ++k) {
+    Member& m = members_[static_cast<std::size_t>(k)];
+    if (m.slides || !(beyond(m) > kTogether * worst)) continue;
+    if (++m.flips > kMostFlips) return Change::failed;
+    const double force = std::hypot(m.tangential[0], m.tangential[1]);
+    m.slides = true;
+    set_direction(m, -m.tangential[0] / force, -m.tangential[1] / force);
+    m.tangential[0] = m.tangential[1] = 0;
+  }
+  return Change::some;
+}
+
+bool FrictionActiveSet::add_most_violated() noexcept {
+  int most = -1;
+  double worst = slip_;
+  for (int i = 0; i < problem_->normals.rows(); ++i) {
+    if (inside_[static_cast<std::size_t>(i)] != 0) continue;
+    const double by = problem_->bounds[i] - problem_->normals.row(i).dot(z_);
+    if (by > worst) {
+      worst = by;
+      most = i;
+    }
+  }
+  return most >= 0 && add(most, Start::along);
+}
+
+bool FrictionActiveSet::solve(const FrictionProblem& problem, const Vec6& from, Start start) noexcept {
+  problem_ = &problem;
+  begin(from, start);
+  bool first = true;
+  for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
+    if (!step()) return false;
+    if (drop_pulling(first)) continue;
+    first = false;
+    const Change stuck = stick_or_turn();
+    if (stuck == Change::failed) return false;
+    if (stuck == Change::some) continue;
+    const Change slid = slide();
+    if (slid == Change::failed) return false;
+    if (slid == Change::some || turn_ > kTurn || error_ > 0.1 * slip_) continue;
+    if (!add_most_violated()) return true;
+  }
+  return false;
+}
+
+void FrictionActiveSet::forces(std::vector<FrictionForce>& out) const noexcept {
+  for (int k = 0; k < count_; ++k) {
+    const Member& m = members_[static_cast<std::size_t>(k)];
+    if (!(m.normal > 0)) continue;
+    FrictionForce f;
+    f.row = m.row;
+    f.normal = m.normal;
+    f.slides = m.slides && m.mu > 0 && std::hypot(m.slip[0], m.slip[1]) > slip_;
+    for (int i = 0; i < 2 && m.mu > 0; ++i)
+      f.tangential[i] = m.slides ? -m.mu * m.normal * m.direction[i] : m.tangential[i];
+    out.push_back(f);
+  }
+}
+
+}  // namespace tegotae

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lp/coulomb_residual.hpp"
+
+namespace tegotae {
+
+/// Exact friction by an active set: contacts in it slide along a direction of their own or stick. Each round solves one
+/// system of order six, in which a contact gives by a hair so that many contacts share the load (with the least sum of
+/// squares), and takes that hair back by shifting the forces. Then the contacts change: one that pulls leaves, one that
+/// would slide backwards sticks, one whose friction is beyond its cone slides, the one that is violated most comes in.
+/// Not every problem ends; `solve` says so. Allocates only when it is made.
+class FrictionActiveSet {
+ public:
+  /// For at most `capacity` rows.
+  explicit FrictionActiveSet(int capacity);
+
+  /// How contacts that touch are taken to move first.
+  enum class Start {
+    along,  ///< each slides as the motion `from` has it; it sticks where that does not slide
+    stick   ///< all stick
+  };
+  /// Starts from the contacts that touch after the motion `from`. False when the rounds ran out or it went in a circle.
+  bool solve(const FrictionProblem& problem, const Vec6& from, Start start) noexcept;
+
+  // Of the last solve that ended:
+  const Vec6& z() const noexcept { return z_; }
+  /// Appends the forces; `out` has room for most_forces().
+  void forces(std::vector<FrictionForce>& out) const noexcept;
+  int rounds() const noexcept { return rounds_; }
+  static constexpr int most_forces() { return kMostMembers; }
+
+ private:
+  static constexpr int kMostMembers = 96;
+
+  struct Member {
+    Vec6 n, t[2];
+    Vec6 column;  ///< what a unit of force moves: n, less the friction while it slides
+    double bound, mu, length;
+    double normal;         ///< ν
+    double tangential[2];  ///< τ while it sticks
+    double direction[2];   ///< of slip, unit, or 0
+    double slip[2];        ///< T z
+    int row, flips;
+    bool slides;
+  };
+  enum class Change { none, some, failed };
+
+  void begin(const Vec6& from, Start start) noexcept;
+  bool add(int row, Start start) noexcept;
+  void set_direction(Member& m, double d0, double d1) noexcept;
+  void remove(int position) noexcept;
+  /// One round: z_, all forces, error_. False when the system has no solution that can be.
+  bool step() noexcept;
+  /// Takes out contacts that pull: all of them in the first round, then the worst.
+  bool drop_pulling(bool first) noexcept;
+  Change stick_or_turn() noexcept;
+  Change slide() noexcept;
+  bool add_most_violated() noexcept;
+
+  const FrictionProblem* problem_ = nullptr;
+  std::array<Member, kMostMembers> members_;
+  int count_ = 0;
+  std::vector<std::uint8_t> inside_;  ///< of each row
+  std::vector<int> touching_;         ///< rows
+  Vec6 z_ = Vec6::Zero();
+  double scale_ = 0;  ///< |wanted|
+  double give_ = 0;   ///< of a contact, m per m
+  double slip_ = 0;   ///< less than this (m) is no slip
+  double error_ = 0;  ///< of the rows that hold, m
+  double turn_ = 0;   ///< of directions in the last round, rad
+  int rounds_ = 0;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "lp/coulomb_residual.hpp"
+#include "lp/span_basis.hpp"
+
+namespace tegotae {
+
+/// The convex neighbor of a friction problem: the motion nearest to the wanted one with N_i z - μ_i |T_i z| >= b_i. It
+/// always has an answer, which is Coulomb's wherever nothing slides; a contact that slides opens meanwhile. Goldfarb
+/// and Idnani's method with a row made for each contact where it is needed. Allocates nothing.
+class RelaxedCone {
+ public:
+  /// False when precision is lost, which leaves standing still.
+  bool solve(const FrictionProblem& problem) noexcept;
+
+  // Of the last solve that succeeded:
+  const Vec6& z() const noexcept { return z_; }
+  /// Appends the forces, at most six.
+  void forces(std::vector<FrictionForce>& out) const noexcept;
+  int changes() const noexcept { return changes_; }
+
+ private:
+  struct Row {
+    Vec6 unit;
+    double target = 0;  ///< along `unit`, from the wanted motion on
+    double length = 0;
+    double direction[2] = {0, 0};
+    int contact = 0;
+  };
+
+  /// The row that z_ violates most, by more than `tolerance`.
+  bool most_violated(double tolerance, Row& out) const noexcept;
+  /// Raises the row's multiplier until it holds; false when it cannot.
+  bool take(const Row& row) noexcept;
+  void drop(int position) noexcept;
+  void solve_active() noexcept;
+
+  const FrictionProblem* problem_ = nullptr;
+  SpanBasis span_;
+  Row rows_[6];
+  double lambda_[6] = {};
+  int size_ = 0;
+  Vec6 z_ = Vec6::Zero();
+  int changes_ = 0;
+};
+
+}  // namespace tegotae

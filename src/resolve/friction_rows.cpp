@@ -1,0 +1,32 @@
+#include "resolve/friction_rows.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lp/tangents.hpp"
+
+namespace tegotae {
+
+FrictionRows::FrictionRows(std::vector<double> mu_of_part, int capacity)
+    : mu_of_part_(std::move(mu_of_part)),
+      any_(std::any_of(mu_of_part_.begin(), mu_of_part_.end(), [](double mu) { return mu > 0; })) {
+  if (!any_) return;
+  mu_.resize(static_cast<std::size_t>(capacity));
+  tangents_.resize(static_cast<std::size_t>(capacity));
+}
+
+bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metric) noexcept {
+  if (!any_) return false;
+  bool found = false;
+  for (std::size_t i = 0; i < std::min(contacts.size(), mu_.size()); ++i) {
+    const Contact& c = contacts[i];
+    // A plane between two triangles is no surface that could rub.
+    mu_[i] = c.age == kCutAge || c.part.index >= mu_of_part_.size() ? 0 : mu_of_part_[c.part.index];
+    if (!(mu_[i] > 0)) continue;
+    found = true;
+    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = metric.row(c, tangent(c.n, k));
+  }
+  return found;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "resolve/metric.hpp"
+#include "tegotae/lp/friction_problem.hpp"
+
+namespace tegotae {
+
+/// What a problem with friction needs of contacts beside the rows of their normals. Allocates only when it is made.
+class FrictionRows {
+ public:
+  /// `mu_of_part`: the coefficient against each part, by its PartId (empty: 0 against all); for at most
+  /// `capacity` contacts.
+  FrictionRows(std::vector<double> mu_of_part, int capacity);
+
+  /// Takes the contacts, in their order; whether one of them has friction. `metric` is oriented as the held part is.
+  bool fill(const std::vector<Contact>& contacts, const Metric& metric) noexcept;
+  FrictionProblem problem(const LowRankMatrix& normals, const double* bounds, const Vec6& wanted) const noexcept {
+    return {normals, bounds, tangents_.data(), mu_.data(), wanted};
+  }
+  /// Of contact `i`.
+  double mu(std::size_t i) const noexcept { return mu_[i]; }
+
+ private:
+  std::vector<double> mu_of_part_;
+  std::vector<double> mu_;
+  std::vector<TangentRows> tangents_;
+  bool any_;
+};
+
+}  // namespace tegotae
