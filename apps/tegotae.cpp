@@ -93,6 +93,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(bench::scene_names()))
       ->type_name("NAME");
   measure->add_flag("--quick", bench_options.quick, "A short look: one round of the pen, small programmes");
+  measure->add_option("--friction", bench_options.mu, "Also with this coefficient of friction between the parts")
+      ->check(CLI::Range(0.0, 10.0));
   measure->add_flag("--budgets", bench_options.budgets, "Also with tick budgets of 0.1 and 0.3 ms");
   measure->add_option("--resolver", bench_options.resolver, "Contact resolver (the library's default unless told)")
       ->type_name("NAME");

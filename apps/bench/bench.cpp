@@ -43,6 +43,16 @@ BudgetFigures measure_budget(const BenchScene& scene, double budget) {
   return f;
 }
 
+FrictionFigures measure_friction(const BenchScene& scene, double mu, int rounds) {
+  Scene rubbing = scene.scene;
+  rubbing.friction.mu = mu;
+  HapticLoop loop(rubbing);
+  LoopTrace trace;
+  FrictionFigures f{mu, measure_loop(scene, loop, kHandSpeed, rounds, trace), trace.checked, 0};
+  f.intersecting = trace.committed.count_intersecting(scene.scene);
+  return f;
+}
+
 SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const apps::StatusLine& progress) {
   const int jams = options.quick ? kQuickJams : kJams;
   progress.say(name + ": building");
@@ -64,6 +74,10 @@ SceneFigures measure_scene(const std::string& name, const BenchOptions& options,
     f.hand = measure_loop(scene, loop, kHandSpeed, options.quick ? 1 : kRounds, trace);
     progress.say(name + ": fast");
     f.fast = measure_loop(scene, loop, kFastSpeed, options.quick ? 1 : kFastRounds, trace);
+  }
+  if (options.mu > 0) {
+    progress.say(name + ": friction");
+    f.friction = measure_friction(scene, options.mu, options.quick ? 1 : kRounds);
   }
   if (scene.seat) {
     progress.say(name + ": seat");
@@ -98,6 +112,7 @@ int run_bench(const BenchOptions& options) {
       const SceneFigures& row = results.rows.back();
       free = free && row.intersecting == 0;
       for (const BudgetFigures& b : row.budgets) free = free && b.intersecting == 0;
+      free = free && !(row.friction && row.friction->intersecting > 0);
     }
     progress.say("linear programmes");
     results.lp = measure_lp(options.quick);

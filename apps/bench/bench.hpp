@@ -9,6 +9,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  ///< empty: all
   bool quick = false;               ///< one round, few poses: for tests
   bool budgets = false;             ///< also with other tick budgets
+  double mu = 0;                    ///< above 0: also with friction between the parts
   bool json = false;
   std::string resolver;  ///< empty: the library's default
   std::string markdown;  ///< file whose generated part is to be replaced; empty: none

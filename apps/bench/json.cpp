@@ -49,6 +49,11 @@ Json to_json(const SceneFigures& s) {
   j["bytes_per_triangle"] = s.build.bytes_per_triangle;
   j["checked"] = s.checked;
   j["intersecting"] = s.intersecting;
+  if (s.friction) {
+    j["friction"] = {
+        {"mu", s.friction->mu}, {"checked", s.friction->checked}, {"intersecting", s.friction->intersecting}};
+    add(s.friction->loop, j["friction"]);
+  }
   if (s.seat) j["seat"] = to_json(*s.seat);
   for (const BudgetFigures& b : s.budgets) {
     Json row;

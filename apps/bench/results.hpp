@@ -26,6 +26,14 @@ struct BudgetFigures {
   std::int64_t intersecting = 0;
 };
 
+/// A run with friction, at hand speed.
+struct FrictionFigures {
+  double mu = 0;
+  LoopFigures loop;
+  std::int64_t checked = 0;
+  std::int64_t intersecting = 0;
+};
+
 /// Everything measured on one scene.
 struct SceneFigures {
   std::string scene;
@@ -40,6 +48,7 @@ struct SceneFigures {
   std::int64_t checked = 0;       ///< committed poses that FCL was asked about after the runs
   std::int64_t intersecting = 0;  ///< of them
   std::vector<BudgetFigures> budgets;
+  std::optional<FrictionFigures> friction;
   std::optional<SeatFigures> seat;  ///< of a scene with a seat
   SeatTargets seat_targets{};
 };

@@ -14,6 +14,8 @@ constexpr double kGlpkRatio = 25;
 // Hierarchies: µs and bytes a triangle.
 constexpr double kMostBuildUs = 2, kMostBytes = 160;
 constexpr double kMostGrowth = 3;
+// A tick with friction by one without, and the most that it takes (p99.9, µs).
+constexpr double kMostFriction = 1.5, kMostTick = 900;
 // How near (m) a peg comes to the bottom of its hole when it is pressed on it.
 constexpr double kArrived = 1e-4;
 
@@ -151,6 +153,27 @@ std::string budget_table(const Results& r) {
          text;
 }
 
+std::string friction_table(const Results& r) {
+  std::string text;
+  for (const SceneFigures& s : r.rows) {
+    if (!s.friction) continue;
+    const LoopFigures& f = s.friction->loop;
+    const double ratio = f.tick_us.p50 / s.hand.tick_us.p50;
+    const bool met = ratio <= kMostFriction && f.tick_us.p999 <= kMostTick && s.friction->intersecting == 0;
+    text += format("| `%s` | %.2g | %s / %s | %s / %s | %.2f | %.1f | %zu of %zu | %lld of %lld | ", s.scene.c_str(),
+                   s.friction->mu, number(f.tick_us.p50).c_str(), number(f.tick_us.p999).c_str(),
+                   number(s.hand.tick_us.p50).c_str(), number(s.hand.tick_us.p999).c_str(), ratio, f.resolves, f.cut,
+                   f.in_contact, static_cast<long long>(s.friction->intersecting),
+                   static_cast<long long>(s.friction->checked));
+    text += verdict(met) + " |\n";
+  }
+  if (text.empty()) return text;
+  return "\n### With friction\n\n| scene | mu | median / p99.9, µs | without: median / p99.9, µs | ratio of the "
+         "medians "
+         "(1.5) | programmes | ticks cut | intersecting | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
+         text;
+}
+
 std::string lp_table(const Results& r) {
   if (r.lp.empty()) return "";
   std::string text =
@@ -175,7 +198,7 @@ std::string tables(const Results& r) {
   std::string text;
   if (!r.rows.empty())
     text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
-            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + seat_table(r) +
+            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + friction_table(r) + seat_table(r) +
             "\n### Hierarchies and checks\n\n" + checks_table(r);
   return text + budget_table(r) + lp_table(r);
 }

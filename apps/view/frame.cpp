@@ -18,9 +18,13 @@ void store(const ContactForces& forces, Frame& frame) {
   frame.force_count = static_cast<std::uint64_t>(forces.count);
   for (std::size_t i = 0; i < frame.force_count; ++i) {
     const ContactForce& c = forces.items[i];
-    const Vec3 force = c.force * c.n;
-    std::copy(c.point.data(), c.point.data() + 3, frame.forces[i].point);
-    std::copy(force.data(), force.data() + 3, frame.forces[i].force);
+    const Vec3 normal = c.force * c.n;
+    FrameForce& out = frame.forces[i];
+    std::copy(c.point.data(), c.point.data() + 3, out.point);
+    std::copy(normal.data(), normal.data() + 3, out.normal);
+    std::copy(c.friction.data(), c.friction.data() + 3, out.friction);
+    out.mu = c.mu;
+    out.slides = c.slides ? 1 : 0;
   }
 }
 

@@ -21,8 +21,11 @@ inline constexpr std::size_t kMostPairs = 128;
 
 /// The force of a contact on the held part.
 struct FrameForce {
-  double point[3];  ///< m, world
-  double force[3];  ///< N, world
+  double point[3];     ///< m, world
+  double normal[3];    ///< N, world: along the contact's normal
+  double friction[3];  ///< N, world: across it
+  double mu;           ///< coefficient of friction
+  std::uint64_t slides;
 };
 
 /// What the page shows of one tick of the contact loop. Plain words, so that a ring can carry it.

@@ -61,8 +61,12 @@ void append_pairs(const Frame& frame, std::vector<float>& out) {
 
 void append_forces(const Frame& frame, std::vector<float>& out) {
   for (std::size_t i = 0; i < std::min<std::size_t>(frame.force_count, frame.forces.size()); ++i) {
-    for (const double v : frame.forces[i].point) append(out, v);
-    for (const double v : frame.forces[i].force) append(out, v);
+    const FrameForce& c = frame.forces[i];
+    for (const double v : c.point) append(out, v);
+    for (const double v : c.normal) append(out, v);
+    for (const double v : c.friction) append(out, v);
+    append(out, c.mu);
+    append(out, static_cast<double>(c.slides));
   }
 }
 

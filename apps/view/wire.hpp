@@ -13,7 +13,7 @@ namespace tegotae::view {
 // kForceFloats for each contact force. The page reads them in apps/web/src/view/frame.js.
 inline constexpr std::size_t kFrameFloats = 34;
 inline constexpr std::size_t kPairFloats = 8;
-inline constexpr std::size_t kForceFloats = 6;
+inline constexpr std::size_t kForceFloats = 11;
 
 /// Appends the frame without its pairs and forces.
 void append_frame(const Frame& frame, std::vector<float>& out);

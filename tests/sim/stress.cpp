@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   unsigned seed = 1;
   std::vector<std::string> scenes;
   std::string resolver = "both";
+  double friction = 0;
   StressOptions options;
   app.add_option("--scripts", scripts, "How many, over the scenes in turn")->capture_default_str();
   app.add_option("--seed", seed, "Of the first script; the next ones count up")->capture_default_str();
@@ -45,6 +46,8 @@ int main(int argc, char** argv) {
   app.add_option("--resolver", resolver, "lp, qp or both in turn")
       ->check(CLI::IsMember({"lp", "qp", "both"}))
       ->capture_default_str();
+  app.add_option("--friction", friction, "Coefficients from a fifth of this up to this, by script; with qp alone")
+      ->check(CLI::Range(0.0, 10.0));
   app.add_option("--ticks", options.ticks, "Of a script, 1 ms each")->capture_default_str();
   app.add_option("--between", options.between, "Poses asked inside a piece, on the two readings of its path in turn")
       ->capture_default_str();
@@ -53,6 +56,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   setlinebuf(stdout);
   try {
+    if (friction > 0) resolver = "qp";
     if (scenes.empty()) scenes = stress_scene_names();
     std::map<std::string, std::pair<StressResult, LatencyHistogram>> results;
     StressResult all;
@@ -64,6 +68,7 @@ int main(int argc, char** argv) {
         options.resolver = (i / n) % 2 == 0 ? "qp" : "lp";
       else
         options.resolver = resolver;
+      options.mu = friction * (1 + (i / n) % 5) / 5;
       auto& [sum, cpu] = results[name];
       const StressResult one = run_stress_script(stress_scene(name, seed + i), seed + i, options, cpu);
       if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());

@@ -48,6 +48,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
   result.scripts = 1;
   Scene scene = stress.scene;
   scene.contact.resolver = options.resolver;
+  scene.friction.mu = options.mu;
   scene.contact.tick_budget = options.budget > 0 ? options.budget : std::numeric_limits<double>::infinity();
   HapticLoop loop(scene);
   const FclOracle oracle(scene);

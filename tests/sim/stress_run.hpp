@@ -13,6 +13,7 @@ struct StressOptions {
   std::string resolver = "qp";
   double budget = 0;  ///< s; 0: bounded by work alone
   int ticks = 100;
+  double mu = 0;       ///< coefficient of friction of all parts
   int between = 1;     ///< poses checked inside a piece, on the two readings of its path in turn
   std::string record;  ///< folder for a scene file and a recording; empty: none
 };

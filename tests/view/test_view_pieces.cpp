@@ -146,6 +146,38 @@ TEST_CASE("a page gets the force of each contact, in the coupling's newtons at i
   }
 }
 
+TEST_CASE("a page gets the friction of each contact, and whether it slides") {
+  Scene scene;
+  scene.contact.tick_budget = INFINITY;
+  scene.friction.mu = 0.25;
+  scene.parts.push_back({"floor", test::shared(test::box({0.1, 0.1, 0.01})), {Quat::Identity(), {0, 0, -0.005}}});
+  scene.parts.push_back(
+      {"block", test::shared(test::box({0.02, 0.03, 0.01})), {Quat::Identity(), {0, 0, 0.0051}}, true});
+  HapticLoop loop(scene);
+  const FrameMaker maker(scene);
+  Frame frame;
+  Pose Y{Quat::Identity(), {0, 0, 0.004}};
+  for (int tick = 0; tick < 200; ++tick) {
+    if (tick >= 100) Y.p.x() += 2e-5;
+    loop.step(Y, 1e-3);
+    if (tick != 99 && tick != 199) continue;
+    maker.add_loop(loop, frame);
+    std::vector<float> forces;
+    append_forces(frame, forces);
+    REQUIRE(frame.force_count > 0);
+    REQUIRE(forces.size() == kForceFloats * frame.force_count);
+    double normal = 0, friction = 0;
+    for (std::size_t i = 0; i < frame.force_count; ++i) {
+      const float* at = forces.data() + kForceFloats * i;
+      normal += at[5];
+      friction += at[6];
+      CHECK(at[9] == 0.25F);
+      CHECK(at[10] == (tick == 199 ? 1 : 0));
+    }
+    CHECK(friction == Approx(tick == 199 ? -0.25 * normal : 0).margin(1e-6));
+  }
+}
+
 TEST_CASE("a led hand goes to its goal like a hand") {
   const Pose start{Quat::Identity(), Vec3(0.1, 0, 0)};
   SimulatedDeviceSettings settings;

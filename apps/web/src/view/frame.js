@@ -1,7 +1,7 @@
 // A frame as apps/view/wire.cpp writes it: a row of floats, then its pairs and contact forces.
 export const frameFloats = 34;
 export const pairFloats = 8;
-export const forceFloats = 6;
+export const forceFloats = 11;
 
 // As LagReason (tegotae/core/lag_reason.hpp) numbers them, in the flags from this bit on.
 export const lagReasons = ["", "held by contacts", "out of time", "no motion proved free", "not following the pen"];
@@ -44,7 +44,9 @@ export function readFrame(row, pairs, forces = pairs.subarray(row[31] * pairFloa
   }
   for (let i = 0; i < row[33]; ++i) {
     const at = i * forceFloats;
-    frame.forces.push({ point: Array.from(forces.subarray(at, at + 3)), force: Array.from(forces.subarray(at + 3, at + 6)) });
+    const [point, normal, friction] = [0, 3, 6].map((k) => Array.from(forces.subarray(at + k, at + k + 3)));
+    const force = normal.map((v, k) => v + friction[k]);
+    frame.forces.push({ point, normal, friction, force, mu: forces[at + 9], slides: forces[at + 10] > 0 });
   }
   return frame;
 }

@@ -1,9 +1,10 @@
-// What acts on the held part: contact points with normals, nearest-feature pairs, the force of each contact, force and
-// torque on the pen. Drawn over the parts, for most of it happens between them.
+// What acts on the held part: contact points with normals, nearest-feature pairs, the force of each contact and its cone of
+// friction, force and torque on the pen. Drawn over the parts, for most of it happens between them.
 import * as THREE from "three";
 import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { norm } from "./frame.js";
+import { FrictionCones } from "./friction.js";
 
 const mostPairs = 128;
 const mostForces = 6;
@@ -76,12 +77,13 @@ export class Overlay {
     this.force = new Arrow(false);
     this.torque = new Arrow(true);
     this.exerted = Array.from({ length: mostForces }, () => new Arrow(false));
+    this.cones = new FrictionCones(over);
     this.contacts = dots(9);
     this.normals = segments();
     this.near = dots(5);
     this.links = segments();
     this.group = new THREE.Group();
-    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], forces: this.exerted.map((shape) => shape.group), arrows: [this.force.group, this.torque.group] };
+    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], forces: [...this.exerted.map((shape) => shape.group), this.cones.object], arrows: [this.force.group, this.torque.group] };
     this.enabled = { contacts: true, pairs: true, forces: true, arrows: true };
     for (const object of [this.links, this.near, this.normals, this.contacts]) object.renderOrder = 10;
     this.group.add(...Object.values(this.layers).flat());
@@ -101,6 +103,7 @@ export class Overlay {
     this.force.material.color.set(cssColor("--force"));
     this.torque.material.color.set(cssColor("--torque"));
     for (const shape of this.exerted) shape.material.color.set(cssColor("--contact"));
+    this.cones.object.material.color.set(cssColor("--contact"));
     this.contacts.material.color.set(cssColor("--contact"));
     this.normals.material.color.set(cssColor("--contact"));
     this.near.material.color.set(cssColor("--pair"));
@@ -128,12 +131,13 @@ export class Overlay {
       const { point, force } = frame.forces[i] ?? { point: [0, 0, 0], force: [0, 0, 0] };
       arrow(shape, "forces", new THREE.Vector3(...point), force, this.metersPerNewton);
     });
+    const friction = this.cones.show(frame.forces, this.metersPerNewton, 0.3 * this.unit);
     const touching = frame.pairs.filter((pair) => pair.touching);
     const near = frame.pairs.filter((pair) => !pair.touching);
     fill(this.contacts, touching.flatMap((p) => p.point));
     fill(this.normals, touching.flatMap((p) => [...p.point, ...along(p.point, p.normal, 0.35 * this.unit)]));
     fill(this.near, near.flatMap((p) => p.point));
     fill(this.links, near.flatMap((p) => [...p.point, ...along(p.point, p.normal, -p.gap)]));
-    this.shown = { contacts: touching.length, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length };
+    this.shown = { contacts: touching.length, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length, friction };
   }
 }
