@@ -13,5 +13,6 @@ Outcome hold(const Work& work);
 Outcome widening(const Work& work);
 Outcome wrench(const Work& work);
 Outcome friction(const Work& work);
+Outcome friction_tasks(const Work& work);
 
 }  // namespace tegotae::experiments

@@ -14,9 +14,10 @@ struct Experiment {
   const char* name;
   Outcome (*run)(const Work&);
 };
-constexpr Experiment kExperiments[] = {{"wall", wall},     {"insertion", insertion}, {"task-time", task_time},
-                                       {"ladder", ladder}, {"hold", hold},           {"widening", widening},
-                                       {"wrench", wrench}, {"friction", friction}};
+constexpr Experiment kExperiments[] = {
+    {"wall", wall},     {"insertion", insertion}, {"task-time", task_time},
+    {"ladder", ladder}, {"hold", hold},           {"widening", widening},
+    {"wrench", wrench}, {"friction", friction},   {"friction-tasks", friction_tasks}};
 
 std::string command(const std::string& name, const Options& options) {
   std::string text = "tegotae experiment " + name;

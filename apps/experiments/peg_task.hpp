@@ -16,6 +16,7 @@ class PegTask {
 
   /// Of the resolver "penalty", N/m.
   void set_penalty_stiffness(double stiffness) { scene_.contact.penalty.stiffness = stiffness; }
+  void set_friction(double mu) { scene_.friction.mu = mu; }
   /// The same parts, the held one starting at `start`.
   Scene scene_at(const Pose& start) const;
   /// What an operator is to do: begin 40 mm aside and over the hole, push to the bottom.

@@ -20,3 +20,4 @@ picture hold 1130
 picture widening 1640
 picture wrench 3480
 picture friction 3200
+picture friction-tasks 1700

@@ -134,6 +134,33 @@ json load_plot(const Review& r, const Buckets& buckets, const json& times, bool 
   return plot(title, torque ? "torque (mN·m)" : "force (N)", series);
 }
 
+json depth_plot(const AssemblyForce& f) {
+  json series = json::array();
+  const auto add = [&](const std::string& name, double DepthForce::*value, bool dash) {
+    json x = json::array(), y = json::array();
+    bool any = false;
+    for (const DepthForce& d : f.over_depth) {
+      x.push_back(number(1e3 * d.depth));
+      y.push_back(number(d.*value));
+      any |= std::isfinite(d.*value);
+    }
+    if (!any) return;
+    series.push_back({{"name", name}, {"x", x}, {"y", y}});
+    if (dash) series.back()["dash"] = true;
+  };
+  if (f.band.high > 0) {
+    add(apps::format("mu %.2g", f.band.low), &DepthForce::low, true);
+    add(apps::format("mu %.2g", f.band.high), &DepthForce::high, true);
+  }
+  add("pull-out", &DepthForce::pull_out, false);
+  if (f.rubs) add("of the insertion, friction", &DepthForce::friction, false);
+  add("insertion, largest", &DepthForce::insertion_peak, false);
+  add("insertion", &DepthForce::insertion, false);
+  json out = plot("Force of the assembly over depth", "force (N)", std::move(series));
+  out["x"]["label"] = "depth (mm)";
+  return out;
+}
+
 }  // namespace
 
 json report_plots(const Review& r) {
@@ -144,6 +171,7 @@ json report_plots(const Review& r) {
   json out = json::array({clearance_plot(r, buckets, times), way_plot(r, buckets, times),
                           load_plot(r, buckets, times, false), load_plot(r, buckets, times, true)});
   out[1]["marks"] = marks;
+  if (r.assembly.known) out.push_back(depth_plot(r.assembly));
   return out;
 }
 

@@ -123,10 +123,38 @@ json start(const Review& r) {
   return t;
 }
 
+/// How much force the assembly takes.
+json assembly(const AssemblyForce& f) {
+  json t = table(
+      "Force of the assembly",
+      "The contacts' forces along the way, against the motion. Seating: standing at the deepest. The mean is over "
+      "the way.",
+      {"", "largest", "at depth", "at (s)", "against", "where", "mean"});
+  const auto row = [&t](const char* what, const ForcePeak& p, const std::string& mean) {
+    if (p.force > 0)
+      t["rows"].push_back(
+          {what, newtons(p.force) + " N", length_text(p.depth), seconds(p.t), p.part, place_text(p.place_W), mean});
+  };
+  row("insertion", f.insertion,
+      newtons(f.insertion_mean) + " N" + (f.rubs ? format(", %.0f %% friction", 100 * f.friction_share) : ""));
+  row("seating", f.seating, "");
+  row("pull-out", f.pull_out, "");
+  const auto end = [&](double mu, double mean, double depth) {
+    t["rows"].push_back(
+        {format("insertion, mu %.2g", mu), "", "to " + length_text(depth), "", "", "", newtons(mean) + " N"});
+  };
+  if (f.band.high > 0) {
+    end(f.band.low, f.low_mean, f.low_depth);
+    end(f.band.high, f.high_mean, f.high_depth);
+  }
+  return t;
+}
+
 }  // namespace
 
 json report_tables(const Review& r) {
   json out = json::array({clearances(r), loads(r)});
+  if (r.assembly.known) out.push_back(assembly(r.assembly));
   if (!r.findings.start.pairs.empty()) out.push_back(start(r));
   if (!r.findings.contacts.empty()) out.push_back(contacts(r));
   if (!r.findings.two_sided.empty()) out.push_back(two_sided(r));

@@ -28,8 +28,8 @@ void tell_scene_changes(const RecordingInfo& info, Review& r) {
 }  // namespace
 
 Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
-                        const Progress& progress) {
-  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}};
+                        const ForceBand& band, const Progress& progress) {
+  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}, {}};
   const std::vector<RecordFrame>& rows = r.recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
   for (std::size_t i = 1; i < rows.size(); ++i)
@@ -53,6 +53,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
   tell_scene_changes(r.recording.info, r);
+  r.assembly = assembly_force(r, band, progress);
   return r;
 }
 

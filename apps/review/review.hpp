@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "review/assembly_force.hpp"
 #include "review/findings.hpp"
 #include "review/verdict.hpp"
 
@@ -16,12 +17,14 @@ struct Review {
   Scan scan;
   Findings findings;
   Verdict verdict;
+  AssemblyForce assembly;
 };
 
 /// Looks at `recording`, read from `path`, over the scene `file`. `goal` (X_WF of the held part) replaces where the
-/// scene's script ends. Throws Error for a recording that is empty or does not fit the scene.
+/// scene's script ends; `band` is of assembly_force(). Throws Error for a recording that is empty or does not fit the
+/// scene.
 Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
-                        const Progress& progress);
+                        const ForceBand& band, const Progress& progress);
 
 /// The report, self-contained HTML.
 std::string report_html(const Review& review, const Progress& progress);

@@ -1,5 +1,6 @@
 #include "review/review_command.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
@@ -10,6 +11,7 @@
 #include "review/review.hpp"
 #include "run_options.hpp"
 #include "status_line.hpp"
+#include "tegotae/core/error.hpp"
 #include "view/replay.hpp"
 
 namespace tegotae::review {
@@ -19,12 +21,23 @@ std::string beside(const std::string& recording) {
   return std::filesystem::path(recording).replace_extension().string() + ".review.html";
 }
 
+/// "LOW:HIGH"; empty: none.
+ForceBand parse_band(const std::string& text) {
+  ForceBand band;
+  if (text.empty()) return band;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%lf:%lf%c", &band.low, &band.high, &end) != 2 || !(band.low >= 0) ||
+      !(band.high > band.low) || band.high > 10)
+    throw Error("--mu: \"" + text + "\" is not LOW:HIGH, two coefficients from 0 to 10");
+  return band;
+}
+
 }  // namespace
 
 std::string recording_report(const std::string& recording, const std::string& scene) {
   Recording read = read_recording(recording);
   SceneFile file = view::load_recorded_scene(recording, read.info, scene);
-  return report_html(review_recording(recording, std::move(read), std::move(file), std::nullopt, {}), {});
+  return report_html(review_recording(recording, std::move(read), std::move(file), std::nullopt, {}, {}), {});
 }
 
 CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
@@ -34,6 +47,9 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
   apps::add_pose_option(*review, "--goal", o.goal, "Where the part was to go (where the scene's script ends)");
   review->add_option("--out", o.out, "The report (RECORDING.review.html, beside it)")->type_name("FILE.html");
   review->add_option("--csv", o.csv, "Also write the path, with clearances and forces")->type_name("FILE.csv");
+  review->add_option("--forces", o.forces, "Also write the force of the assembly over depth")->type_name("FILE.csv");
+  review->add_option("--mu", o.mu, "Also with coefficients of friction between these, by the same pen")
+      ->type_name("LOW:HIGH");
   review->add_option("--gltf", o.gltf, "Also write the path as an animation, binary when it ends in .glb")
       ->type_name("FILE.gltf");
   review->add_option("--script", o.script, "Also write the pen's path as a stylus script, for run --script")
@@ -53,19 +69,25 @@ int run_review(const ReviewOptions& o) {
   SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
   std::vector<std::string> inputs = scene.files;
   inputs.insert(inputs.end(), {o.recording, recording_info_path(o.recording)});
-  refuse_to_replace({out, o.csv, o.script, o.gltf}, inputs);
+  refuse_to_replace({out, o.csv, o.forces, o.script, o.gltf}, inputs);
   std::optional<Pose> goal;
   if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
-  const Review r = review_recording(o.recording, std::move(recording), std::move(scene), goal, progress);
+  const Review r =
+      review_recording(o.recording, std::move(recording), std::move(scene), goal, parse_band(o.mu), progress);
   const auto& rows = r.recording.frames;
   write_file(out, report_html(r, progress));
   if (!o.csv.empty()) write_file(o.csv, path_csv(r.file.scene, rows, r.scan));
+  if (!o.forces.empty()) {
+    if (!r.assembly.known) throw Error("--forces: " + o.recording + " has no contact forces (MCAP has those of qp)");
+    write_file(o.forces, assembly_force_csv(r.assembly));
+  }
   if (!o.script.empty()) write_file(o.script, path_script(r.file, rows, r.center));
   if (!o.gltf.empty())
     write_file(o.gltf, path_gltf(r.file.scene, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
   std::cout << r.verdict.headline << "\n";
   for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";
+  for (const std::string& text : assembly_force_text(r.assembly)) std::cout << "  " << text << "\n";
   std::cout << "report: " << out << std::endl;
   return r.verdict.outcome == Outcome::does_not_go ? apps::kRunFailed : apps::kDone;
 }

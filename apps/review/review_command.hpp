@@ -11,6 +11,8 @@ struct ReviewOptions {
   std::string goal;               ///< empty: where the scene's script ends
   std::string out;                ///< report; empty: beside the recording
   std::string csv, gltf, script;  ///< exports of the path; empty: none
+  std::string forces;             ///< the force over depth; empty: none
+  std::string mu;                 ///< "LOW:HIGH", see ForceBand; empty: none
 };
 
 /// The subcommand `review`.

@@ -1,0 +1,224 @@
+#include "review/assembly_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "format.hpp"
+#include "review/review.hpp"
+#include "sim/run_goal.hpp"
+#include "tegotae/sim/haptic_loop.hpp"
+
+namespace tegotae::review {
+namespace {
+
+constexpr std::size_t kStretches = 200;  // of the way
+// A part that goes on by more than this in a tick (m) moves: 0.1 mm/s at 1 kHz.
+constexpr double kMoves = 1e-7;
+// Of the deepest: who stands there is seated.
+constexpr double kSeated = 0.01;
+// Ways that are shorter (m) are none.
+constexpr double kLeastWay = 1e-3;
+constexpr double kPeriod = 1e-3;  // s, of the contact loop in runs
+constexpr std::size_t kTellEvery = 256;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A tick as forces are told of it.
+struct Tick {
+  double t = 0, depth = 0;
+  ContactForces forces;
+};
+
+/// Sum, count and largest of the ticks of a stretch.
+struct Sum {
+  double force = 0, friction = 0, most = 0;
+  int count = 0;
+  void add(double f, double rubs) {
+    force += f;
+    friction += rubs;
+    most = count == 0 ? f : std::max(most, f);
+    ++count;
+  }
+  double mean() const { return count > 0 ? force / count : kNan; }
+};
+
+/// What the ticks of a run say, stretch by stretch.
+struct Profile {
+  std::vector<Sum> in = std::vector<Sum>(kStretches), out = std::vector<Sum>(kStretches);
+  ForcePeak insertion, seating, pull_out;
+  double deepest = 0;
+};
+
+void take_peak(const Tick& tick, double force, const Scene& scene, ForcePeak& peak) {
+  if (!(force > peak.force)) return;
+  peak = {force, tick.depth, tick.t, Vec3::Zero(), ""};
+  double most = 0;
+  for (int i = 0; i < tick.forces.count; ++i) {
+    const ContactForce& c = tick.forces.items[static_cast<std::size_t>(i)];
+    if (c.force <= most || c.part.index >= scene.parts.size()) continue;
+    most = c.force;
+    peak.place_W = c.point;
+    peak.part = scene.parts[c.part.index].name;
+  }
+}
+
+Profile profile(const std::vector<Tick>& ticks, const Vec3& direction, double way, const Scene& scene) {
+  Profile p;
+  for (const Tick& tick : ticks) p.deepest = std::max(p.deepest, tick.depth);
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const Tick& tick = ticks[i];
+    const double moved = tick.depth - ticks[i - 1].depth;
+    Vec3 sum = Vec3::Zero(), rubs = Vec3::Zero();
+    for (int k = 0; k < tick.forces.count; ++k) {
+      const ContactForce& c = tick.forces.items[static_cast<std::size_t>(k)];
+      sum += c.force * c.n + c.friction;
+      rubs += c.friction;
+    }
+    const double against = -sum.dot(direction), friction = -rubs.dot(direction);
+    const double share = std::clamp(tick.depth / way, 0.0, 1.0);
+    const auto stretch = std::min(static_cast<std::size_t>(share * kStretches), kStretches - 1);
+    if (moved > kMoves) {
+      p.in[stretch].add(against, friction);
+      take_peak(tick, against, scene, p.insertion);
+    } else if (moved < -kMoves) {
+      p.out[stretch].add(-against, -friction);
+      take_peak(tick, -against, scene, p.pull_out);
+    } else if (tick.depth > (1 - kSeated) * p.deepest) {
+      take_peak(tick, against, scene, p.seating);
+    }
+  }
+  return p;
+}
+
+double mean_of(const std::vector<Sum>& stretches) {
+  double sum = 0;
+  int count = 0;
+  for (const Sum& s : stretches) {
+    if (s.count == 0) continue;
+    sum += s.mean();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+/// Depth is along the way to the goal, or to where the part came farthest.
+Vec3 direction_of(const Review& r) {
+  const Vec3 from = r.recording.frames.front().x * r.center;
+  const Pose goal = r.file.script.pose(r.file.script.end());
+  Vec3 way = RunGoal(r.file, r.center).way() > kLeastWay ? Vec3(goal * r.center - from) : Vec3::Zero();
+  if (way.norm() > kLeastWay) return way.normalized();
+  for (const RecordFrame& row : r.recording.frames) {
+    const Vec3 gone = row.x * r.center - from;
+    if (gone.norm() > way.norm()) way = gone;
+  }
+  return way.norm() > kLeastWay ? Vec3(way.normalized()) : Vec3::Zero();
+}
+
+/// The last row of each tick.
+std::vector<Tick> recorded(const Review& r, const Vec3& direction) {
+  const auto& rows = r.recording.frames;
+  const Vec3 from = rows.front().x * r.center;
+  std::vector<Tick> out;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (i + 1 == rows.size() || rows[i + 1].tick != rows[i].tick)
+      out.push_back({rows[i].t, direction.dot(rows[i].x * r.center - from), rows[i].forces});
+  return out;
+}
+
+/// The pen of the recording, with another coefficient of friction.
+std::vector<Tick> rerun(const Review& r, const Vec3& direction, double mu, const Progress& progress) {
+  const auto& rows = r.recording.frames;
+  Scene scene = r.file.scene;
+  scene.contact.tick_budget = std::numeric_limits<double>::infinity();
+  scene.friction = {mu, {}};
+  HapticLoop loop(scene);
+  const Vec3 from = rows.front().x * r.center;
+  std::vector<Tick> out;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (progress && i % kTellEvery == 0) progress("with other friction, row", i, rows.size());
+    if (i > 0 && rows[i].tick == rows[i - 1].tick) continue;
+    const TickReport& report = loop.step(rows[i].y, kPeriod);
+    out.push_back({rows[i].t, direction.dot(report.proxy.X * r.center - from), report.forces});
+  }
+  return out;
+}
+
+}  // namespace
+
+AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progress& progress) {
+  AssemblyForce out;
+  const Vec3 direction = direction_of(r);
+  if (direction.isZero()) return out;
+  const std::vector<Tick> ticks = recorded(r, direction);
+  for (const Tick& tick : ticks) {
+    out.way = std::max(out.way, tick.depth);
+    out.known |= tick.forces.count > 0;
+    for (int i = 0; i < tick.forces.count; ++i) out.rubs |= tick.forces.items[static_cast<std::size_t>(i)].mu > 0;
+  }
+  out.known &= out.way > kLeastWay;
+  if (!out.known) return out;
+  const Profile nominal = profile(ticks, direction, out.way, r.file.scene);
+  Profile low, high;
+  if (band.high > 0) {
+    out.band = band;
+    low = profile(rerun(r, direction, band.low, progress), direction, out.way, r.file.scene);
+    high = profile(rerun(r, direction, band.high, progress), direction, out.way, r.file.scene);
+    out.low_mean = mean_of(low.in);
+    out.high_mean = mean_of(high.in);
+    out.low_depth = low.deepest;
+    out.high_depth = high.deepest;
+  }
+  out.insertion = nominal.insertion;
+  out.seating = nominal.seating;
+  out.pull_out = nominal.pull_out;
+  out.insertion_mean = mean_of(nominal.in);
+  double work = 0, rubbed = 0;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const Sum& in = nominal.in[k];
+    DepthForce d;
+    d.depth = (static_cast<double>(k) + 0.5) / kStretches * out.way;
+    d.insertion = in.mean();
+    d.insertion_peak = in.count > 0 ? in.most : kNan;
+    d.friction = in.count > 0 ? in.friction / in.count : kNan;
+    d.pull_out = nominal.out[k].mean();
+    d.low = low.in[k].mean();
+    d.high = high.in[k].mean();
+    out.over_depth.push_back(d);
+    if (in.count == 0) continue;
+    work += in.mean();
+    rubbed += d.friction;
+  }
+  out.friction_share = work > 0 ? rubbed / work : 0;
+  return out;
+}
+
+std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
+  using apps::format;
+  std::vector<std::string> out;
+  if (!f.known) return out;
+  const auto peak = [](const char* what, const ForcePeak& p) {
+    return format("%s: at most %.2f N at %.2f mm, against %s", what, p.force, 1e3 * p.depth, p.part.c_str());
+  };
+  out.push_back(peak("insertion", f.insertion) + format("; %.2f N in the mean over the way", f.insertion_mean) +
+                (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string()));
+  if (f.seating.force > 0) out.push_back(peak("seating", f.seating));
+  if (f.pull_out.force > 0) out.push_back(peak("pull-out", f.pull_out));
+  if (f.band.high > 0)
+    out.push_back(format("insertion with friction of %.2g to %.2g: %.2f to %.2f N in the mean, to %.2f and %.2f mm",
+                         f.band.low, f.band.high, f.low_mean, f.high_mean, 1e3 * f.low_depth, 1e3 * f.high_depth));
+  return out;
+}
+
+std::string assembly_force_csv(const AssemblyForce& force) {
+  std::string text = "depth_mm,insertion_n,insertion_peak_n,friction_n,pull_out_n,low_n,high_n\n";
+  const auto number = [](double x) { return std::isfinite(x) ? apps::format("%.6g", x) : std::string(); };
+  for (const DepthForce& d : force.over_depth) {
+    text += number(1e3 * d.depth);
+    for (const double x : {d.insertion, d.insertion_peak, d.friction, d.pull_out, d.low, d.high})
+      text += "," + number(x);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace tegotae::review

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "review/path_scan.hpp"
+#include "tegotae/core/pose.hpp"
+
+namespace tegotae::review {
+
+struct Review;
+
+/// What resists the part at a depth: the contacts' forces along the way, N, positive against the motion. NaN where the
+/// part was not seen moving so.
+struct DepthForce {
+  double depth = 0;           ///< m along the way from the start; the middle of a stretch
+  double insertion = 0;       ///< mean of the ticks in which it went on
+  double insertion_peak = 0;  ///< the largest of them
+  double friction = 0;        ///< of `insertion`, what is friction
+  double pull_out = 0;        ///< mean of the ticks in which it came back
+  double low = 0, high = 0;   ///< `insertion` with the least and the most friction (ForceBand)
+};
+
+/// The largest force of a kind, and where.
+struct ForcePeak {
+  double force = 0;  ///< N; 0: none
+  double depth = 0;  ///< m
+  double t = 0;      ///< s
+  Vec3 place_W = Vec3::Zero();
+  std::string part;  ///< against which most of it was
+};
+
+/// Coefficients of friction between which the true one may be.
+struct ForceBand {
+  double low = 0, high = 0;
+};
+
+/// How much force the assembly takes, over depth.
+struct AssemblyForce {
+  bool known = false;  ///< the recording has contact forces (MCAP, of `qp`), and the part went some way
+  bool rubs = false;   ///< there is friction in it
+  double way = 0;      ///< m, the deepest that it came
+  std::vector<DepthForce> over_depth;
+  ForcePeak insertion, seating, pull_out;  ///< seating: standing within a hundredth of the deepest
+  double insertion_mean = 0;               ///< N, over the way
+  double friction_share = 0;               ///< of the work of the insertion
+  ForceBand band;                          ///< both 0: none was asked for
+  double low_mean = 0, high_mean = 0;      ///< N, `insertion_mean` at both ends of the band
+  double low_depth = 0, high_depth = 0;    ///< m, how deep the part came there
+};
+
+/// Of the recording, and for `band` of the same pen once more with other coefficients of friction for all pairs.
+AssemblyForce assembly_force(const Review& review, const ForceBand& band, const Progress& progress);
+
+/// What of it is said in a few lines, for people; empty when nothing is known.
+std::vector<std::string> assembly_force_text(const AssemblyForce& force);
+
+/// The forces over depth as CSV: depth_mm and N.
+std::string assembly_force_csv(const AssemblyForce& force);
+
+}  // namespace tegotae::review
