@@ -15,8 +15,8 @@ constexpr double kSumSlack = 1e-9, kLengthSlack = 1e-11;
 constexpr double kUnit = 1 - 1e-6;
 /// What is farther from a piece than this part of its width, or so many motions, needs no plane.
 constexpr double kWantedShare = 0.3, kWantedMotions = 4;
-/// The pieces of B that a cell lists are enough for a new search while the rest is this part of that away.
-constexpr double kKnownShare = 0.3;
+/// The pieces of B that a cell lists are enough for a new search while the rest is this part of what is wanted away.
+constexpr double kKnownShare = 0.5;
 /// Cells looked at between two looks at the clock; nodes of B that count as one search.
 constexpr int kClockStride = 32, kVisitsPerSearch = 8;
 /// So many cells that allow least of the motion are looked at in any case.
@@ -49,6 +49,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       nodes_(2 * std::size_t{capacity} + 2),
       slots_(capacity),
       items_(capacity),
+      listed_(capacity),
       expiry_(capacity),
       root_(fixed_.size(), kNobody),
       asked_(fixed_.size(), 0),
@@ -64,7 +65,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 
 std::size_t CellFront::bytes() const {
   return nodes_.size() * sizeof(Node) +
-         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + 2 * sizeof(Due));
+         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + 2 * sizeof(double) + 2 * sizeof(Due));
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -245,12 +246,11 @@ CellSearch::Outcome CellFront::search(std::uint32_t id) {
   const MovingHull a = hull(node, sweep);
   if (node.face_a)
     for (int k = 0; k < 3; ++k) face_[k] = a_->corner(node.a, k) - center_;
-  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, need_, wanted(a)};
+  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, wanted(a)};
   if (node.children == 0) {
-    // `clear` of a list in the front is a travel.
     const CellItems& items = items_[node.slot];
-    query.clear = items.clear - travel_;
-    if (items.count > 0 && query.clear >= kKnownShare * query.wanted) query.known = &items;
+    query.moved = travel_ - listed_[node.slot];
+    if (items.count > 0 && items.clear - query.moved >= kKnownShare * query.wanted) query.known = &items;
   }
   return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
 }
@@ -260,7 +260,7 @@ void CellFront::keep(std::uint32_t id) {
   Slot& s = slots_[slot];
   s.cell = found_;
   items_[slot] = search_.items();
-  items_[slot].clear = s.clear_until;
+  listed_[slot] = travel_;
   s.clear_until = travel_ + kUnit * found_.clear;
   expiry_[slot] = std::min(s.clear_until, travel_ + kUnit * search_.margin());
 }
@@ -319,6 +319,7 @@ void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& 
   slots_[count_] = inherited;
   slots_[count_].node = id;
   items_[count_] = items;
+  listed_[count_] = travel_;
   expiry_[count_++] = expiry;
 }
 
@@ -327,6 +328,7 @@ void CellFront::leave(std::uint32_t slot) {
   if (slot == last) return;
   slots_[slot] = slots_[last];
   items_[slot] = items_[last];
+  listed_[slot] = listed_[last];
   expiry_[slot] = expiry_[last];
   nodes_[slots_[slot].node].slot = slot;
 }
@@ -345,7 +347,6 @@ bool CellFront::split(std::uint32_t id) {
   // The pieces of B that are listed are of both its parts.
   CellItems items;
   if (of_a) items = search_.items();
-  items.clear = travel_ + kUnit * items.clear;
   const double expiry = expiry_[p.slot];
   leave(p.slot);
   nodes_[id].child = child;

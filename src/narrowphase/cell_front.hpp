@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "narrowphase/cell_search.hpp"
 #include "narrowphase/certify.hpp"
 #include "narrowphase/face_pair.hpp"
-#include "narrowphase/free_cell.hpp"
 #include "narrowphase/patch_tree.hpp"
 
 namespace tegotae {
@@ -116,6 +116,7 @@ class CellFront {
   std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
   std::vector<Slot> slots_;
   std::vector<CellItems> items_;  ///< of each slot
+  std::vector<double> listed_;    ///< of each slot: travel at the search that listed items_
   std::vector<double> expiry_;    ///< of each slot: travel up to which its cell needs no look
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
