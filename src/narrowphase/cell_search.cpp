@@ -33,7 +33,7 @@ Vec3 rounded(const Vec3& n) {
 
 }  // namespace
 
-CellSearch::CellSearch() : boxes_{}, faces_{}, nearness_{} {
+CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lane_{} {
   stack_.reserve(kMostVisits + kMeasured + kCellItems);
   near_.reserve(kMostVisits + kMeasured + kCellItems);
   far_.reserve(kMostVisits + kMeasured + kCellItems);
@@ -116,11 +116,11 @@ bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least
   return true;
 }
 
-void CellSearch::tell_items() {
+void CellSearch::tell_items(bool found) {
   // What was found of the near ones, those that the search had not come to, and the nearest of the others.
   for (const Entry& rest : stack_) list(rest.item, rest.distance);
   items_.clear = beyond_;
-  items_.count = 0;
+  items_.count = items_.near = 0;
   if (near_.size() > kCellItems) {
     items_.clear = 0;
     return;
@@ -133,6 +133,7 @@ void CellSearch::tell_items() {
     items_.clear = std::min(items_.clear, end->distance);
     far_.resize(room);
   }
+  if (found) items_.near = static_cast<std::uint32_t>(near_.size());
   for (const auto* list : {&near_, &far_}) {
     for (const Listed& l : *list) {
       items_.item[items_.count] = l.item;
@@ -146,32 +147,11 @@ void CellSearch::leave_out(std::uint32_t item, double distance) {
   far_.push_back({item, distance});
 }
 
-void CellSearch::take(std::uint32_t item, std::size_t place, std::size_t first) {
-  const double distance = kAxisSlack * std::sqrt(nearness_.distance2[place]);
-  if (distance >= query_.wanted) {
-    leave_out(item, distance);
-    return;
-  }
-  Vec3 n;
-  const auto number = static_cast<std::size_t>(nearness_.number[place]);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto i = static_cast<Eigen::Index>(c);
-    n[i] = nearness_.side[place] * (number < 3                       ? frame_.axis[number][i]
-                                    : (item & CellItems::kFace) != 0 ? nearness_.plane[c][place]
-                                                                     : boxes_.edge[number - 3][c][place]);
-  }
-  stack_.push_back({item, distance, nearness_.gap[place], n});
-  // The nearest is on top.
-  for (std::size_t k = stack_.size() - 1; k > first && stack_[k - 1].distance < stack_[k].distance; --k)
-    std::swap(stack_[k - 1], stack_[k]);
-}
-
-void CellSearch::push(const std::uint32_t* items, int count) {
-  std::array<std::uint32_t, kMeasured> boxes, faces;
+void CellSearch::measure(const std::uint32_t* items, int count) {
   std::size_t box_count = 0, face_count = 0;
   const PatchTree& tree = *query_.tree;
   const Vec3 origin = tree.origin() + frame_.origin;
-  for (int i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const std::uint32_t place = items[i] & ~CellItems::kFace;
     if (place == items[i]) {
       const PatchNode& b = tree.nodes()[place];
@@ -180,7 +160,7 @@ void CellSearch::push(const std::uint32_t* items, int count) {
         boxes_.half[c][box_count] = b.half[c];
         for (std::size_t k = 0; k < 3; ++k) boxes_.edge[k][c][box_count] = b.axis[k][c];
       }
-      boxes[box_count++] = place;
+      lane_[i] = box_count++;
       continue;
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -190,18 +170,83 @@ void CellSearch::push(const std::uint32_t* items, int count) {
         faces_.edge[k][c][face_count] = corner[axis] - origin[axis];
       }
     }
-    faces[face_count++] = items[i];
+    lane_[i] = face_count++;
   }
   visits_ += count;
+  if (box_count > 0) measure_boxes(frame_, boxes_, static_cast<int>(box_count), near_boxes_);
+  if (face_count > 0) measure_triangles(frame_, faces_, static_cast<int>(face_count), near_faces_);
+}
+
+double CellSearch::distance(std::uint32_t item, std::size_t i) const {
+  const Nearness& nearness = (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
+  return kAxisSlack * std::sqrt(nearness.distance2[lane_[i]]);
+}
+
+CellSearch::Side CellSearch::side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const {
+  const auto number = static_cast<std::size_t>(side.number[lane]);
+  Side out{side.gap[lane], Vec3::Zero()};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto axis = static_cast<Eigen::Index>(c);
+    const double n = number < 3                  ? frame_.axis[number][axis]
+                     : &nearness == &near_faces_ ? nearness.plane[c][lane]
+                                                 : boxes_.edge[number - 3][c][lane];
+    out.n[axis] = side.sign[lane] * n;
+  }
+  return out;
+}
+
+CellSearch::Entry CellSearch::entry(std::uint32_t item, std::size_t i, double distance) const {
+  const Nearness& nearness = (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
+  return {item, distance, side(nearness, nearness.any, lane_[i]), side(nearness, nearness.upright, lane_[i])};
+}
+
+void CellSearch::push(const std::uint32_t* items, int count) {
+  measure(items, count);
   const std::size_t first = stack_.size();
-  if (box_count > 0) {
-    measure_boxes(frame_, boxes_, static_cast<int>(box_count), nearness_);
-    for (std::size_t i = 0; i < box_count; ++i) take(boxes[i], i, first);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const double far = distance(items[i], i);
+    if (far >= query_.wanted) {
+      leave_out(items[i], far);
+      continue;
+    }
+    // The nearest is on top.
+    stack_.push_back(entry(items[i], i, far));
+    for (std::size_t k = stack_.size() - 1; k > first && stack_[k - 1].distance < far; --k)
+      std::swap(stack_[k - 1], stack_[k]);
   }
-  if (face_count > 0) {
-    measure_triangles(frame_, faces_, static_cast<int>(face_count), nearness_);
-    for (std::size_t i = 0; i < face_count; ++i) take(faces[i], i, first);
+}
+
+bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
+                       double& clear) noexcept {
+  clear = items.clear - moved;
+  if (items.count == 0 || !(clear >= enough)) return false;
+  query_ = {};
+  query_.tree = &tree;
+  frame_ = HullFrame(a.start);
+  std::array<std::uint32_t, kMeasured> some;
+  std::array<std::uint32_t, kMeasured> place;
+  std::size_t count = 0;
+  for (std::uint32_t i = items.near; i <= items.count; ++i) {
+    if (i < items.count) {
+      const double far = items.distance[i] - moved;
+      if (far >= enough) {
+        clear = std::min(clear, far);
+        continue;
+      }
+      some[count] = items.item[i];
+      place[count++] = i;
+    }
+    if (count < kMeasured && i < items.count) continue;
+    measure(some.data(), static_cast<int>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const double far = distance(some[k], k);
+      items.distance[place[k]] = static_cast<float>(kFloatSlack * (far + moved));
+      if (far < enough) return false;
+      clear = std::min(clear, far);
+    }
+    count = 0;
   }
+  return true;
 }
 
 void CellSearch::open(std::uint32_t node) {
@@ -230,10 +275,10 @@ void CellSearch::open(std::uint32_t node) {
 }
 
 CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
-  if (keeps_off(b, e.n, 0)) return Outcome::found;
+  if (keeps_off(b, e.any.n, 0)) return Outcome::found;
   if (face_of_a_ == nullptr) return Outcome::divide;
   if (under_known_plane(b, 0)) return Outcome::found;
-  Vec3 n = e.n;
+  Vec3 n = e.any.n;
   if (best_of_all_axes(b, n) && keeps_off(b, n, 0)) return Outcome::found;
   if (full_ && !query_.is_face) return Outcome::divide;
   const Vec3& o = query_.tree->origin();
@@ -251,7 +296,10 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
 CellSearch::Outcome CellSearch::settle(const Entry& e) {
   const Hull b = hull_of(e.item);
   const double good = std::min(query_.wanted, kGoodShare * margin_);
-  if (under_known_plane(b, good) || (e.gap >= good && keeps_off(b, e.n, good))) {
+  // What leaves its surface goes against no plane that lies on it.
+  const bool upright = e.upright.gap >= good;
+  if (under_known_plane(b, good) || (upright && keeps_off(b, e.upright.n, good)) ||
+      (e.any.gap >= good && keeps_off(b, e.any.n, good))) {
     list(e.item, e.distance);
     return Outcome::found;
   }
@@ -259,7 +307,7 @@ CellSearch::Outcome CellSearch::settle(const Entry& e) {
     list(e.item, e.distance);
     return settle_face(e, b);
   }
-  if (face_of_a_ == nullptr && !(e.gap > 0) && b.half(0) < kSmallShare * a_->radius) return Outcome::divide;
+  if (face_of_a_ == nullptr && !(e.any.gap > 0) && b.half(0) < kSmallShare * a_->radius) return Outcome::divide;
   open(e.place());
   return Outcome::found;
 }
@@ -300,6 +348,13 @@ void CellSearch::begin(const Query& query) {
   push(some.data(), count);
 }
 
+CellGaps CellSearch::gaps() const {
+  CellGaps out;
+  out.fill(std::numeric_limits<float>::max());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(planes_); ++k) out[k] = known_.low_start[k] - known_.top[k];
+  return out;
+}
+
 void CellSearch::tell(FreeCell& cell) const {
   cell.drop_planes();
   for (std::size_t k = 0; k < static_cast<std::size_t>(planes_); ++k) {
@@ -325,12 +380,12 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
     const Outcome outcome = enough ? Outcome::divide : settle(e);
     if (outcome == Outcome::divide && !blocking_.empty()) return Outcome::blocked;
     if (outcome == Outcome::divide && (near_.empty() || near_.back().item != e.item)) list(e.item, e.distance);
-    if (outcome == Outcome::divide) tell_items();
+    if (outcome == Outcome::divide) tell_items(false);
     if (outcome != Outcome::found) return outcome;
   }
   if (!blocking_.empty()) return Outcome::blocked;
   if (passing_) return Outcome::passing;
-  tell_items();
+  tell_items(true);
   tell(cell);
   return Outcome::found;
 }

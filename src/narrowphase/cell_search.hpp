@@ -34,8 +34,16 @@ class CellSearch {
   Outcome find(const MovingHull& a, const std::array<Vec3, 3>* face_of_a, const Query& query, const Sweep& sweep,
                FreeCell& cell) noexcept;
 
+  /// Whether what is under no plane of a cell is still `enough` (m) from its piece, by a new look at what may have come
+  /// nearer: pieces of B of `items`, which the search for the cell listed and whose distances are set. `moved` (m) is
+  /// how far the piece has come since at most. `clear` is how far the rest is then.
+  bool renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
+             double& clear) noexcept;
+
   /// Of the last find(): least distance of the piece at the start from B that was proved, m.
   double margin() const { return std::min(margin_, clear_); }
+  /// Of the last find() that found a cell: at the start.
+  CellGaps gaps() const;
   /// Of the last find() that found a cell or says to divide: where to begin the next one.
   const CellItems& items() const { return items_; }
   /// Of the last find(): faces of B that stop the triangle.
@@ -44,12 +52,15 @@ class CellSearch {
   std::int64_t visits() const { return visits_; }
 
  private:
+  struct Side {
+    double gap;  ///< along n, m
+    Vec3 n;
+  };
   /// A piece of B, as in CellItems, and how far it is from the piece of A at the start.
   struct Entry {
     std::uint32_t item;
-    double distance;  ///< lower bound, m
-    double gap;       ///< along n, m
-    Vec3 n;
+    double distance;    ///< lower bound, m
+    Side any, upright;  ///< see Nearness
     bool is_face() const { return (item & CellItems::kFace) != 0; }
     std::uint32_t place() const { return item & ~CellItems::kFace; }
   };
@@ -65,7 +76,12 @@ class CellSearch {
   void open(std::uint32_t node);
   /// Measures pieces and puts those within reach on the stack, the nearest last.
   void push(const std::uint32_t* items, int count);
-  void take(std::uint32_t item, std::size_t place, std::size_t first);
+  /// Measures pieces.
+  void measure(const std::uint32_t* items, int count);
+  /// Of the piece that was measured at place i.
+  double distance(std::uint32_t item, std::size_t i) const;
+  Side side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const;
+  Entry entry(std::uint32_t item, std::size_t i, double distance) const;
   void leave_out(std::uint32_t item, double distance);
   Hull hull_of(std::uint32_t item) const;
   bool under_known_plane(const Hull& b, double good);
@@ -73,7 +89,7 @@ class CellSearch {
   bool best_of_all_axes(const Hull& b, Vec3& n) const;
   bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
   void list(std::uint32_t item, double distance) { near_.push_back({item, distance}); }
-  void tell_items();
+  void tell_items(bool found);
   void tell(FreeCell& cell) const;
 
   const MovingHull* a_ = nullptr;
@@ -82,7 +98,8 @@ class CellSearch {
   Query query_;
   HullFrame frame_;
   NearHulls boxes_, faces_;
-  Nearness nearness_;
+  Nearness near_boxes_, near_faces_;
+  std::array<std::size_t, kMeasured> lane_;  ///< of each piece that was measured, among the boxes or the faces
   KnownPlanes known_;
   std::array<double, kCellPlanes> tops_;
   int planes_ = 0;

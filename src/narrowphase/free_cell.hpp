@@ -40,6 +40,7 @@ struct CellItems {
   static constexpr std::uint32_t kFace = 0x80000000u;
   double clear = 0;         ///< the rest of B is at least so far (m) from the piece as it was at the search
   std::uint32_t count = 0;  ///< 0: not known
+  std::uint32_t near = 0;   ///< the first so many are under planes of the cell that was found
   std::array<std::uint32_t, kCellItems> item;
   std::array<float, kCellItems> distance;  ///< at least, at the search, m
 };
@@ -57,11 +58,23 @@ inline bool stays_positive(double alpha, double beta, double b) {
   return std::min(alpha, beta) >= b || 0.5 * (alpha + beta) - 2 * b + std::sqrt(alpha * beta) >= 0;
 }
 
+/// The part of a motion during which a gap stays positive that is `alpha` > 0 at its start and `beta` at its end, and
+/// whose arc takes 4 b s (1 − s) off: up to s it is at least alpha + s (beta − alpha) − 4 b s, and the shorter motion's
+/// reading with a linear file frame leaves its own arc by at most b s² more.
+inline double share_of(double alpha, double beta, double b) {
+  const double used = alpha - beta + 5 * b;
+  return used > alpha ? alpha / used : 1;
+}
+
+/// From a piece of A to each plane of a cell, m; very large for planes that are not there.
+using CellGaps = std::array<double, kCellPlanes>;
+
 /// What a free cell says of a motion.
 struct CellVerdict {
   bool free = false;  ///< the planes keep their sides during the whole motion
   double margin = 0;  ///< least distance from the piece at the start to what the planes stand for, m
   double share = 0;   ///< part of the motion, in [0, 1], during which the planes keep their sides
+  CellGaps gaps;      ///< at the start
 };
 
 /// Whether the planes of `cell` stay below `a` during the motion.

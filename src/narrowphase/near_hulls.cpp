@@ -56,7 +56,7 @@ TEGOTAE_INLINE Lanes3 turned(const Lanes3& v, const HullFrame& a) {
 
 /// The best normal so far; `n` along the axes of the frame, or of B.
 struct Best {
-  Lane gap, side, number;
+  Lane gap = Lane{} - kInfinity, side = Lane{}, number = Lane{};
 
   TEGOTAE_INLINE void offer(Lane up, Lane down, double k) {
     const Lane more = greater(up, down), one = Lane{} + 1, sign = up > down ? one : -one, k_lane = Lane{} + k;
@@ -67,9 +67,11 @@ struct Best {
 };
 
 /// Gaps along the frame's axes to what reaches from `low` to `high`, and the distance of the two upright boxes.
-TEGOTAE_INLINE void offer_axis(const HullFrame& a, int i, Lane low, Lane high, Best& best, Lane& distance2) {
+TEGOTAE_INLINE void offer_axis(const HullFrame& a, int i, Lane low, Lane high, Best& best, Best& upright,
+                               Lane& distance2) {
   const Lane up = a.low[i] - high, down = low - a.high[i];
   best.offer(up, down, i);
+  if (i == 2) upright.offer(up, down, i);
   const Lane apart = greater(greater(up, down), Lane{});
   distance2 += apart * apart;
 }
@@ -86,17 +88,20 @@ TEGOTAE_INLINE void extent(const HullFrame& a, const Lanes3& n, Lane& low, Lane&
   low = -high;
 }
 
-TEGOTAE_INLINE void tell(const Best& best, Lane distance2, int first, Nearness& out) {
-  store(best.gap, out.gap, first);
-  store(best.number, out.number, first);
-  store(best.side, out.side, first);
+TEGOTAE_INLINE void tell(const Best& best, const Best& upright, Lane distance2, int first, Nearness& out) {
+  store(best.gap, out.any.gap, first);
+  store(best.number, out.any.number, first);
+  store(best.side, out.any.sign, first);
+  store(upright.gap, out.upright.gap, first);
+  store(upright.number, out.upright.number, first);
+  store(upright.side, out.upright.sign, first);
   const Lane apart = greater(best.gap, Lane{});
   store(greater(distance2, apart * apart), out.distance2, first);
 }
 
 TEGOTAE_INLINE void measure_four_boxes(const HullFrame& a, const NearHulls& b, int first, Nearness& out) {
   const Lanes3 center = load3(b.center, first), d = turned(center, a);
-  Best best{Lane{} - kInfinity, Lane{}, Lane{}};
+  Best best, upright;
   Lane distance2{};
   const Lanes3 half = load3(b.half, first);
   const Lanes3 own[3] = {load3(b.edge[0], first), load3(b.edge[1], first), load3(b.edge[2], first)};
@@ -104,27 +109,32 @@ TEGOTAE_INLINE void measure_four_boxes(const HullFrame& a, const NearHulls& b, i
   const Lane x = half.x * magnitude(m[0].x) + half.y * magnitude(m[1].x) + half.z * magnitude(m[2].x);
   const Lane y = half.x * magnitude(m[0].y) + half.y * magnitude(m[1].y) + half.z * magnitude(m[2].y);
   const Lane z = half.x * magnitude(m[0].z) + half.y * magnitude(m[1].z) + half.z * magnitude(m[2].z);
-  offer_axis(a, 0, d.x - x, d.x + x, best, distance2);
-  offer_axis(a, 1, d.y - y, d.y + y, best, distance2);
-  offer_axis(a, 2, d.z - z, d.z + z, best, distance2);
+  offer_axis(a, 0, d.x - x, d.x + x, best, upright, distance2);
+  offer_axis(a, 1, d.y - y, d.y + y, best, upright, distance2);
+  offer_axis(a, 2, d.z - z, d.z + z, best, upright, distance2);
   for (int j = 0; j < 3; ++j) {
     Lane low, high;
     extent(a, m[j], low, high);
     const Lane level = center.x * own[j].x + center.y * own[j].y + center.z * own[j].z;
     const Lane width = j == 0 ? half.x : j == 1 ? half.y : half.z;
-    best.offer(low - (level + width), level - width - high, 3 + j);
+    const Lane up = low - (level + width), down = level - width - high;
+    best.offer(up, down, 3 + j);
+    if (j == 2) upright.offer(up, down, 3 + j);
   }
-  tell(best, distance2, first, out);
+  tell(best, upright, distance2, first, out);
 }
 
 TEGOTAE_INLINE void measure_four_triangles(const HullFrame& a, const NearHulls& b, int first, Nearness& out) {
   const Lanes3 corner[3] = {load3(b.edge[0], first), load3(b.edge[1], first), load3(b.edge[2], first)};
   const Lanes3 p[3] = {turned(corner[0], a), turned(corner[1], a), turned(corner[2], a)};
-  Best best{Lane{} - kInfinity, Lane{}, Lane{}};
+  Best best, upright;
   Lane distance2{};
-  offer_axis(a, 0, lesser(lesser(p[0].x, p[1].x), p[2].x), greater(greater(p[0].x, p[1].x), p[2].x), best, distance2);
-  offer_axis(a, 1, lesser(lesser(p[0].y, p[1].y), p[2].y), greater(greater(p[0].y, p[1].y), p[2].y), best, distance2);
-  offer_axis(a, 2, lesser(lesser(p[0].z, p[1].z), p[2].z), greater(greater(p[0].z, p[1].z), p[2].z), best, distance2);
+  offer_axis(a, 0, lesser(lesser(p[0].x, p[1].x), p[2].x), greater(greater(p[0].x, p[1].x), p[2].x), best, upright,
+             distance2);
+  offer_axis(a, 1, lesser(lesser(p[0].y, p[1].y), p[2].y), greater(greater(p[0].y, p[1].y), p[2].y), best, upright,
+             distance2);
+  offer_axis(a, 2, lesser(lesser(p[0].z, p[1].z), p[2].z), greater(greater(p[0].z, p[1].z), p[2].z), best, upright,
+             distance2);
   const Lanes3 e{corner[1].x - corner[0].x, corner[1].y - corner[0].y, corner[1].z - corner[0].z};
   const Lanes3 f{corner[2].x - corner[0].x, corner[2].y - corner[0].y, corner[2].z - corner[0].z};
   Lanes3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
@@ -144,10 +154,11 @@ TEGOTAE_INLINE void measure_four_triangles(const HullFrame& a, const NearHulls& 
   extent(a, turned(n, a), low, high);
   const Lane level = n.x * corner[0].x + n.y * corner[0].y + n.z * corner[0].z;
   best.offer(low - level - lost, level - high - lost, 3);
+  upright.offer(low - level - lost, level - high - lost, 3);
   store(n.x, out.plane[0], first);
   store(n.y, out.plane[1], first);
   store(n.z, out.plane[2], first);
-  tell(best, distance2, first, out);
+  tell(best, upright, distance2, first, out);
 }
 
 }  // namespace

@@ -34,10 +34,15 @@ struct alignas(64) NearHulls {
 /// How far pieces of B are from the piece of A.
 struct alignas(64) Nearness {
   typedef std::array<double, kMeasured> Field;
-  Field distance2;  ///< square of a lower bound of the distance, m²
-  Field gap;        ///< along the best of the normals of both pieces' faces, m; negative: they overlap
-  Field number;     ///< of that normal: 0 to 2 axes of the frame, from 3 on axes of the box of B, or its plane
-  Field side;       ///< 1 or -1: with it the normal goes from B to A
+  /// The best of some normals.
+  struct Side {
+    Field gap;     ///< m; negative: they overlap
+    Field number;  ///< 0 to 2: axes of the frame, from 3 on: axes of the box of B, or its plane
+    Field sign;    ///< 1 or -1: with it the normal goes from B to A
+  };
+  Field distance2;             ///< square of a lower bound of the distance, m²
+  Side any;                    ///< the best of the normals of both pieces' faces
+  Side upright;                ///< the better of the normals of both pieces' surfaces, the faces of boxes that are thin
   std::array<Field, 3> plane;  ///< unit normals of triangles of B, zero where there is none
 };
 
