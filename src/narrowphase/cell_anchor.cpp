@@ -50,41 +50,28 @@ Vec3 vec(const std::array<float, 3>& v) {
 
 }  // namespace
 
-AnchoredMotion::AnchoredMotion(const Pose& X, const Displacement& d, const Vec3& center, double turned)
-    : R_start(X.q.toRotationMatrix()),
-      R_end(rotation(d.dr).toRotationMatrix() * R_start),
-      p_start(X * center),
-      p_end(p_start + d.dp),
-      turn_start(turned),
-      turn_end(turned + d.dr.norm()),
-      bulge(0.125 * kUnitSlack * d.dr.squaredNorm()),
-      center_distance(center.norm()) {}
-
 CellAnchor::CellAnchor() : x{}, turn(0), point{}, radius(0) {
   gap.fill(-std::numeric_limits<float>::infinity());
 }
 
-CellAnchor::CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius_of, const AnchoredMotion& motion)
-    : turn(motion.turn_start),
-      point(floats(middle)),
-      radius(round_up<float>(radius_of + (middle - vec(point)).norm())) {
-  const Vec3 at = motion.R_start * vec(point) + motion.p_start;
+CellAnchor::CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius_of, const Sweep& sweep, double turned)
+    : turn(turned), point(floats(middle)), radius(round_up<float>(radius_of + (middle - vec(point)).norm())) {
+  const Vec3 at = sweep.start.R * vec(point) + sweep.start.t;
   x = {at.x(), at.y(), at.z()};
   for (std::size_t k = 0; k < gaps.size(); ++k) gap[k] = static_cast<float>(kGapSlack * gaps[k]);
 }
 
-AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Mat3& R_WB,
-                         const AnchoredMotion& motion) noexcept {
+AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Sweep& sweep, double turned) noexcept {
   const Vec3 point = vec(anchor.point), x(anchor.x[0], anchor.x[1], anchor.x[2]);
-  const Vec3 start = R_WB.transpose() * (motion.R_start * point + motion.p_start - x);
-  const Vec3 end = R_WB.transpose() * (motion.R_end * point + motion.p_end - x);
+  const Vec3 start = sweep.start.R * point + sweep.start.t - x, end = sweep.end.R * point + sweep.end.t - x;
   Two gaps;
   least_gaps(cell, anchor, floats(start), floats(end), gaps);
   // Points of the piece turn about `point` by as much at most.
-  const double radius = kUnitSlack * double{anchor.radius};
-  return {gaps.one - kLossSlack * start.norm() - radius * (motion.turn_start - anchor.turn),
-          gaps.two - kLossSlack * end.norm() - radius * (motion.turn_end - anchor.turn),
-          motion.bulge * (point.norm() + radius + motion.center_distance)};
+  const double radius = kUnitSlack * double{anchor.radius}, turn = turned - anchor.turn;
+  const double bulge = 0.125 * kUnitSlack * sweep.theta2;
+  return {gaps.one - kLossSlack * start.norm() - radius * turn,
+          gaps.two - kLossSlack * end.norm() - radius * (turn + kUnitSlack * sweep.theta),
+          bulge * (point.norm() + radius + sweep.center_distance)};
 }
 
 }  // namespace tegotae

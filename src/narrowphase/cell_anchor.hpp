@@ -3,34 +3,19 @@
 #include <array>
 
 #include "narrowphase/free_cell.hpp"
-#include "tegotae/core/pose.hpp"
 
 namespace tegotae {
-
-/// A motion of A in the world, for anchors.
-struct AnchoredMotion {
-  AnchoredMotion() = default;
-  /// Of A from `X` by `d` of its center of mass `center` (m, file frame), after it turned by `turned` (rad, all its
-  /// turns added up).
-  AnchoredMotion(const Pose& X, const Displacement& d, const Vec3& center, double turned);
-
-  Mat3 R_start, R_end;
-  Vec3 p_start, p_end;          ///< center of mass
-  double turn_start, turn_end;  ///< rad
-  double bulge;                 ///< θ²/8, rounded up
-  double center_distance;       ///< from the file frame's origin to the center of mass, m
-};
 
 /// Where a piece of A was when its distances from the planes of its free cell were last known. Each plane loses what
 /// the piece has come against it since, and nothing where it went away from it or along it.
 struct CellAnchor {
   CellAnchor();
   /// Of a piece at the start of the motion: its `middle` (A's axes, from the center of mass, m) and `radius` about it
-  /// (m), and its `gaps` to the planes.
-  CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius, const AnchoredMotion& motion);
+  /// (m), and its `gaps` to the planes. A has `turned` (rad) so far, all its turns added up.
+  CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius, const Sweep& sweep, double turned);
 
   std::array<float, kCellPlanes> gap;  ///< along the planes' normals, m; negative infinity: not known
-  std::array<double, 3> x;             ///< of `point`, world, m
+  std::array<double, 3> x;             ///< of `point`, in B as in a Sweep, m
   double turn;                         ///< turns of A added up, rad
   std::array<float, 3> point;          ///< near the middle of the piece, A's axes from the center of mass, m
   float radius;                        ///< largest distance of a point of the piece from `point`, m
@@ -42,8 +27,6 @@ struct AnchoredGap {
   double start, end, bulge;
 };
 
-/// `R_WB` turns the cell into the world.
-AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Mat3& R_WB,
-                         const AnchoredMotion& motion) noexcept;
+AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Sweep& sweep, double turned) noexcept;
 
 }  // namespace tegotae

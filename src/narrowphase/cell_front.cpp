@@ -63,7 +63,6 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       stamped_(fixed_.size(), 0),
       unsorted_(capacity),
       due_(capacity) {
-  for (const FixedPart& part : fixed_) R_WB_.push_back(part.pose.q.toRotationMatrix());
   for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
   stack_.reserve(capacity);
   freed_.reserve(capacity);
@@ -122,7 +121,6 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   const double carried = d.dp.norm() + reach_ * std::sqrt(theta2) + center_.norm() * theta2 / 8;
   motion_ = std::max(kMotionFades * motion_, carried);
   need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
-  anchored_ = AnchoredMotion(X, d, center_, turned_);
   report_.share = 1;
   report_.settled = true;
 }
@@ -194,8 +192,8 @@ double CellFront::wanted(const MovingHull& a) const {
 /// for were when it was looked at last.
 double CellFront::allowed(std::uint32_t slot) {
   const double floor = clearance_ + kLengthSlack, clear = slots_[slot].clear_until - travel_;
-  const AnchoredGap gap =
-      anchored_gap(slots_[slot].cell, anchors_[slot], R_WB_[nodes_[slots_[slot].node].part], anchored_);
+  const Sweep& sweep = sweep_of(nodes_[slots_[slot].node].part);
+  const AnchoredGap gap = anchored_gap(slots_[slot].cell, anchors_[slot], sweep, turned_);
   double& expiry = expiry_[slot];
   expiry = std::max(expiry, std::min(slots_[slot].clear_until, travel_ + kUnit * gap.start));
   const double alpha = gap.start - floor, beta = gap.end - floor;
@@ -310,7 +308,7 @@ void CellFront::anchor(std::uint32_t id, const CellGaps& gaps) {
   } else {
     middle = a_->nodes()[node.a].center_vec() + offset_a_;
   }
-  anchors_[node.slot] = CellAnchor(gaps, middle, radius(node), anchored_);
+  anchors_[node.slot] = CellAnchor(gaps, middle, radius(node), sweep_of(node.part), turned_);
 }
 
 void CellFront::keep(std::uint32_t id) {

@@ -116,7 +116,6 @@ class CellFront {
   Vec3 center_, offset_a_;
   double reach_;  ///< of A about its center of mass, m
   std::vector<FixedPart> fixed_;
-  std::vector<Mat3> R_WB_;  ///< of each part
   std::uint32_t capacity_;
   double clearance_ = 0;
 
@@ -135,9 +134,8 @@ class CellFront {
   Pose X_;
   bool started_ = false;
   Displacement d_;
-  double travel_ = 0;  ///< bound on how far any point of A has come since the front began, m
-  double turned_ = 0;  ///< the same of its turns, rad
-  AnchoredMotion anchored_;
+  double travel_ = 0;          ///< bound on how far any point of A has come since the front began, m
+  double turned_ = 0;          ///< the same of its turns, rad
   double need_ = 0;            ///< bound on how far the motion carries any point, and the clearance, m
   double motion_ = 0;          ///< longest motion of late, m
   std::vector<Sweep> sweeps_;  ///< of each part, valid when stamped with the call
