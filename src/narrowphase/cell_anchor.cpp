@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/wide.hpp"
 
 namespace tegotae {
@@ -44,8 +43,8 @@ std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-Vec3 vec(const std::array<float, 3>& v) {
-  return {double{v[0]}, double{v[1]}, double{v[2]}};
+Vec3 vec(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
 }
 
 }  // namespace
@@ -55,19 +54,19 @@ CellAnchor::CellAnchor() : x{}, turn(0), point{}, radius(0) {
 }
 
 CellAnchor::CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius_of, const Sweep& sweep, double turned)
-    : turn(turned), point(floats(middle)), radius(round_up<float>(radius_of + (middle - vec(point)).norm())) {
-  const Vec3 at = sweep.start.R * vec(point) + sweep.start.t;
+    : turn(turned), point{middle.x(), middle.y(), middle.z()}, radius(kUnitSlack * radius_of) {
+  const Vec3 at = sweep.start.R * middle + sweep.start.t;
   x = {at.x(), at.y(), at.z()};
   for (std::size_t k = 0; k < gaps.size(); ++k) gap[k] = static_cast<float>(kGapSlack * gaps[k]);
 }
 
 AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Sweep& sweep, double turned) noexcept {
-  const Vec3 point = vec(anchor.point), x(anchor.x[0], anchor.x[1], anchor.x[2]);
+  const Vec3 point = vec(anchor.point), x = vec(anchor.x);
   const Vec3 start = sweep.start.R * point + sweep.start.t - x, end = sweep.end.R * point + sweep.end.t - x;
   Two gaps;
   least_gaps(cell, anchor, floats(start), floats(end), gaps);
   // Points of the piece turn about `point` by as much at most.
-  const double radius = kUnitSlack * double{anchor.radius}, turn = turned - anchor.turn;
+  const double radius = anchor.radius, turn = turned - anchor.turn;
   const double bulge = 0.125 * kUnitSlack * sweep.theta2;
   return {gaps.one - kLossSlack * start.norm() - radius * turn,
           gaps.two - kLossSlack * end.norm() - radius * (turn + kUnitSlack * sweep.theta),

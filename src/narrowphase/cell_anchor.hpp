@@ -17,8 +17,8 @@ struct CellAnchor {
   std::array<float, kCellPlanes> gap;  ///< along the planes' normals, m; negative infinity: not known
   std::array<double, 3> x;             ///< of `point`, in B as in a Sweep, m
   double turn;                         ///< turns of A added up, rad
-  std::array<float, 3> point;          ///< near the middle of the piece, A's axes from the center of mass, m
-  float radius;                        ///< largest distance of a point of the piece from `point`, m
+  std::array<double, 3> point;         ///< middle of the piece, A's axes from the center of mass, m
+  double radius;                       ///< largest distance of a point of the piece from `point`, m
 };
 
 /// Least gaps along the normals of the planes, at least, at the two ends of a motion, m; between them they are not less

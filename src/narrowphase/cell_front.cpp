@@ -122,7 +122,7 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   motion_ = std::max(kMotionFades * motion_, carried);
   need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
   report_.share = 1;
-  report_.settled = true;
+  settled_ = true;
 }
 
 const Sweep& CellFront::sweep_of(std::uint32_t part) {
@@ -230,14 +230,14 @@ void CellFront::settle_due() {
   int looked = 0;
   for (auto it = begin; it != end; ++it) {
     // What blocks is known: the others may wait.
-    if (it == first && !blocking_.empty()) report_.settled = false;
-    if (report_.settled && ++looked % kClockStride == 0 && out_of_work(true)) {
-      report_.settled = false;
+    if (it == first && !blocking_.empty()) settled_ = false;
+    if (settled_ && ++looked % kClockStride == 0 && out_of_work(true)) {
+      settled_ = false;
       report_.exhausted = true;
     }
     // A cell for the piece and its neighbors may have taken its place.
     if (nodes_[it->node].due != call_) continue;
-    if (!report_.settled) {
+    if (!settled_) {
       report_.share = std::min(report_.share, it->share);
       continue;
     }
@@ -247,7 +247,7 @@ void CellFront::settle_due() {
     if (outcome == Outcome::free) continue;
     report_.share = std::min(report_.share, std::max(it->share, look.share));
     if (outcome == Outcome::out_of_work) report_.exhausted = true;
-    report_.settled =
+    settled_ =
         outcome == Outcome::blocked && blocking_.size() < limit_.blocking && blocking_.size() < blocking_.capacity();
   }
 }

@@ -153,6 +153,7 @@ class CellFront {
   std::int64_t visits_at_start_ = 0;
   WorkLimit limit_;
   CertifyReport report_;
+  bool settled_ = true;  ///< nothing yet kept the call from looking at all that the motion needs
 };
 
 }  // namespace tegotae

@@ -27,10 +27,6 @@ constexpr double kAxisSlack = 1 - 1e-5;
 /// Distances are listed in single precision, rounded down.
 constexpr double kFloatSlack = 1 - 1e-6;
 
-Vec3 rounded(const Vec3& n) {
-  return n.cast<float>().cast<double>();
-}
-
 }  // namespace
 
 CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lane_{} {
@@ -98,7 +94,7 @@ bool CellSearch::best_of_all_axes(const Hull& b, Vec3& best) const {
 }
 
 bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least) {
-  const Vec3 n = rounded(direction);
+  const Vec3 n = single(direction);
   const double low_start = a_->start.lowest(n), top = b.highest(n), gap = low_start - top;
   if (!(gap >= at_least)) return false;
   const double low_end = a_->end.lowest(n);

@@ -32,6 +32,13 @@ struct FreeCell {
   Vec3 normal(int k) const { return {double{nx[k]}, double{ny[k]}, double{nz[k]}}; }
 };
 
+/// `v` as it is after it was kept in single precision. Written so that no compiler leaves the rounding out: GCC 12
+/// folds pairs of conversions of neighboring numbers away when it vectorizes them.
+inline Vec3 single(const Vec3& v) {
+  const volatile float x = static_cast<float>(v.x()), y = static_cast<float>(v.y()), z = static_cast<float>(v.z());
+  return {double{x}, double{y}, double{z}};
+}
+
 /// Most pieces of B that a cell's list has room for.
 inline constexpr int kCellItems = 31;
 
