@@ -19,8 +19,8 @@ constexpr double kWantedShare = 0.6, kWantedMotions = 4;
 constexpr double kRenewShare = 0.5;
 /// The pieces of B that a cell lists are enough for a new search while the rest is this part of what is wanted away.
 constexpr double kKnownShare = 0.5;
-/// Cells looked at between two looks at the clock; nodes of B that count as one search.
-constexpr int kClockStride = 32, kVisitsPerSearch = 8;
+/// Cells looked at between two looks at the clock, and anchors; nodes of B that count as one search.
+constexpr int kClockStride = 8, kAskStride = 256, kVisitsPerSearch = 8;
 /// So many cells that allow least of the motion are looked at in any case.
 constexpr std::ptrdiff_t kFirst = 64;
 /// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times.
@@ -207,12 +207,15 @@ void CellFront::collect_due() {
   due_count_ = 0;
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
   std::array<std::uint32_t, kGrades + 1> first{};
+  int asked = 0;
+  bool late = false;
   for (std::uint32_t slot = 0; slot < count_; ++slot) {
     if (!(expiry_[slot] < bound)) continue;
     const std::uint32_t id = slots_[slot].node;
     if (asked_[nodes_[id].part] != now_) continue;
     const double straight = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
-    const double share = std::max(straight, allowed(slot));
+    if (++asked % kAskStride == 0) late = late || past(limit_.deadline_ns);
+    const double share = late ? straight : std::max(straight, allowed(slot));
     if (share == 1) continue;
     nodes_[id].due = call_;
     unsorted_[due_count_++] = {id, share};
