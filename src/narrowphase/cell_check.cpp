@@ -43,7 +43,7 @@ TEGOTAE_INLINE double least(FineLane x) {
 /// Gaps to all planes at the two ends of the motion.
 struct Gaps {
   double least_start, least_end;
-  std::array<double, kCellPlanes> start, end;
+  CellGaps start, end;
 };
 
 TEGOTAE_WIDE void measure(const FreeCell& cell, const MovingHull& a, Gaps& out) {
@@ -61,7 +61,7 @@ TEGOTAE_WIDE void measure(const FreeCell& cell, const MovingHull& a, Gaps& out) 
 CellVerdict check_cell(const FreeCell& cell, const MovingHull& a, const Sweep& sweep) noexcept {
   Gaps gaps;
   measure(cell, a, gaps);
-  CellVerdict out{true, gaps.least_start, 1};
+  CellVerdict out{true, gaps.least_start, 1, gaps.start};
   const double most = 0.125 * kUnitSlack * sweep.theta2 * (a.reach + sweep.center_distance);
   if (gaps.least_start - sweep.start_floor >= most && gaps.least_end - sweep.floor >= most) return out;
   for (int k = 0; k < kCellPlanes; ++k) {
@@ -69,10 +69,7 @@ CellVerdict check_cell(const FreeCell& cell, const MovingHull& a, const Sweep& s
     const double b = bulge_along(cell.normal(k), a.reach, sweep);
     if (stays_positive(alpha, beta, b)) continue;
     out.free = false;
-    // Up to s the gap is at least alpha + s (beta − alpha) − 4 b s; the shorter motion's reading with a linear file
-    // frame leaves its own arc by at most b s² more.
-    const double used = alpha - beta + 5 * b;
-    out.share = std::min(out.share, alpha > 0 && used > 0 ? std::min(1.0, alpha / used) : 0.0);
+    out.share = std::min(out.share, alpha > 0 ? share_of(alpha, beta, b) : 0.0);
   }
   return out;
 }

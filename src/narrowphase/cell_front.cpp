@@ -9,16 +9,18 @@ namespace tegotae {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Lengths that were added up are rounded by less (relative, and m).
-constexpr double kSumSlack = 1e-9, kLengthSlack = 1e-11;
+/// Lengths that were added up are rounded by less (relative, m, and rad).
+constexpr double kSumSlack = 1e-9, kLengthSlack = 1e-11, kAngleSlack = 1e-14;
 /// Normals are kept in single precision: a gap along one is no more than this part too long.
 constexpr double kUnit = 1 - 1e-6;
 /// What is farther from a piece than this part of its width, or so many motions, needs no plane.
-constexpr double kWantedShare = 0.3, kWantedMotions = 4;
-/// The pieces of B that a cell lists are enough for a new search while the rest is this part of that away.
-constexpr double kKnownShare = 0.3;
-/// Cells looked at between two looks at the clock; nodes of B that count as one search.
-constexpr int kClockStride = 32, kVisitsPerSearch = 8;
+constexpr double kWantedShare = 0.6, kWantedMotions = 4;
+/// What no plane stands for is far enough away without planes while this part of what is wanted is left.
+constexpr double kRenewShare = 0.5;
+/// The pieces of B that a cell lists are enough for a new search while the rest is this part of what is wanted away.
+constexpr double kKnownShare = 0.5;
+/// Cells looked at between two looks at the clock, and anchors; nodes of B that count as one search.
+constexpr int kClockStride = 8, kAskStride = 256, kVisitsPerSearch = 8;
 /// So many cells that allow least of the motion are looked at in any case.
 constexpr std::ptrdiff_t kFirst = 64;
 /// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times.
@@ -33,8 +35,11 @@ constexpr int kFewestRaises = 4, kSearchesPerRaise = 3, kMostLooks = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the
 /// children's cells last for.
 constexpr double kRaiseMotions = 8, kRaiseShare = 0.5, kMotionFades = 0.9;
-/// Children that could not be put together are tried again after A has come this share of their size.
-constexpr double kRetryShare = 0.1;
+/// Pieces that could not be put together are tried again when they are so many times as far from B, and at least this
+/// share of their size.
+constexpr double kRetryGrowth = 1.4, kRetryShare = 0.01;
+/// So many larger pieces are tried in the place of one whose cell is used up.
+constexpr int kMostGrowths = 2;
 
 }  // namespace
 
@@ -49,6 +54,8 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       nodes_(2 * std::size_t{capacity} + 2),
       slots_(capacity),
       items_(capacity),
+      listed_(capacity),
+      anchors_(capacity),
       expiry_(capacity),
       root_(fixed_.size(), kNobody),
       asked_(fixed_.size(), 0),
@@ -64,7 +71,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 
 std::size_t CellFront::bytes() const {
   return nodes_.size() * sizeof(Node) +
-         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(double) + 2 * sizeof(Due));
+         slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(CellAnchor) + 2 * sizeof(double) + 2 * sizeof(Due));
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -75,8 +82,8 @@ void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
     const std::uint32_t id = allocate();
     if (id == kNobody) continue;
     root_[part] = id;
-    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0};
-    enter(id, Slot{id, -kInfinity, {}}, {}, -kInfinity);
+    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0, 0};
+    enter(id, Slot{id, -kInfinity, {}}, {}, {}, -kInfinity);
   }
 }
 
@@ -104,6 +111,7 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   if (started_ && (X.p != X_.p || X.q.coeffs() != X_.q.coeffs())) {
     const Displacement moved = displacement(X_, X, center_);
     travel_ += (moved.dp.norm() + reach_ * moved.dr.norm()) * (1 + kSumSlack) + kLengthSlack;
+    turned_ += moved.dr.norm() * (1 + kSumSlack) + kAngleSlack;
   }
   started_ = true;
   X_ = X;
@@ -114,7 +122,7 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   motion_ = std::max(kMotionFades * motion_, carried);
   need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
   report_.share = 1;
-  report_.settled = true;
+  settled_ = true;
 }
 
 const Sweep& CellFront::sweep_of(std::uint32_t part) {
@@ -164,26 +172,52 @@ MovingHull CellFront::hull(const Node& node, const Sweep& sweep) const {
   return out;
 }
 
+/// Largest distance of a point of the node's piece of A from its middle, m.
 double CellFront::radius(const Node& node) const {
-  if (node.face_a) return (a_->corner(node.a, 0) - a_->corner(node.a, 1)).norm();
+  if (node.face_a) {
+    const Vec3 &p = a_->corner(node.a, 0), &q = a_->corner(node.a, 1), &r = a_->corner(node.a, 2);
+    const Vec3 middle = (p + q + r) / 3;
+    return std::sqrt(std::max({(p - middle).squaredNorm(), (q - middle).squaredNorm(), (r - middle).squaredNorm()}));
+  }
   const PatchNode& n = a_->nodes()[node.a];
-  return std::hypot(double{n.half[0]}, double{n.half[1]}, double{n.half[2]});
+  return std::sqrt(double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2]) /
+         kUnit;
 }
 
 double CellFront::wanted(const MovingHull& a) const {
   return std::max({2 * need_, kWantedMotions * motion_, kWantedShare * a.width});
 }
 
+/// The share of the motion that the cell allows without a look at it, by how far its planes and what they do not stand
+/// for were when it was looked at last.
+double CellFront::allowed(std::uint32_t slot) {
+  const double floor = clearance_ + kLengthSlack, clear = slots_[slot].clear_until - travel_;
+  const Sweep& sweep = sweep_of(nodes_[slots_[slot].node].part);
+  const AnchoredGap gap = anchored_gap(slots_[slot].cell, anchors_[slot], sweep, turned_);
+  double& expiry = expiry_[slot];
+  expiry = std::max(expiry, std::min(slots_[slot].clear_until, travel_ + kUnit * gap.start));
+  const double alpha = gap.start - floor, beta = gap.end - floor;
+  double planes = 1;
+  if (!(std::min(alpha, beta) >= gap.bulge)) planes = alpha > 0 ? share_of(alpha, beta, gap.bulge) : 0;
+  const double far = clear >= need_ ? 1 : (clear - floor) / (need_ - floor);
+  return std::clamp(std::min(planes, far), 0.0, 1.0);
+}
+
 void CellFront::collect_due() {
   due_count_ = 0;
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
   std::array<std::uint32_t, kGrades + 1> first{};
+  int asked = 0;
+  bool late = false;
   for (std::uint32_t slot = 0; slot < count_; ++slot) {
     if (!(expiry_[slot] < bound)) continue;
     const std::uint32_t id = slots_[slot].node;
     if (asked_[nodes_[id].part] != now_) continue;
+    const double straight = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
+    if (++asked % kAskStride == 0) late = late || past(limit_.deadline_ns);
+    const double share = late ? straight : std::max(straight, allowed(slot));
+    if (share == 1) continue;
     nodes_[id].due = call_;
-    const double share = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
     unsorted_[due_count_++] = {id, share};
     ++first[grade(share) + 1];
   }
@@ -199,24 +233,24 @@ void CellFront::settle_due() {
   int looked = 0;
   for (auto it = begin; it != end; ++it) {
     // What blocks is known: the others may wait.
-    if (it == first && !blocking_.empty()) report_.settled = false;
-    if (report_.settled && ++looked % kClockStride == 0 && out_of_work(true)) {
-      report_.settled = false;
+    if (it == first && !blocking_.empty()) settled_ = false;
+    if (settled_ && ++looked % kClockStride == 0 && out_of_work(true)) {
+      settled_ = false;
       report_.exhausted = true;
     }
     // A cell for the piece and its neighbors may have taken its place.
     if (nodes_[it->node].due != call_) continue;
-    if (!report_.settled) {
+    if (!settled_) {
       report_.share = std::min(report_.share, it->share);
       continue;
     }
     const Look look = look_at(it->node);
-    if (look.free || (look.far && climb(it->node))) continue;
+    if (look.free || (look.far && (grow(it->node, look.margin) || renew(it->node, look.margin)))) continue;
     const Outcome outcome = settle(it->node);
     if (outcome == Outcome::free) continue;
     report_.share = std::min(report_.share, std::max(it->share, look.share));
     if (outcome == Outcome::out_of_work) report_.exhausted = true;
-    report_.settled =
+    settled_ =
         outcome == Outcome::blocked && blocking_.size() < limit_.blocking && blocking_.size() < blocking_.capacity();
   }
 }
@@ -225,13 +259,28 @@ CellFront::Look CellFront::look_at(std::uint32_t id) {
   const Node& node = nodes_[id];
   Slot& s = slots_[node.slot];
   const double clear = s.clear_until - travel_, floor = clearance_ + kLengthSlack;
-  if (!(clear > floor)) return {false, true, 0};
+  if (!(clear > floor)) return {false, true, 0, std::max(0.0, expiry_[node.slot] - travel_)};
   const Sweep& sweep = sweep_of(node.part);
   const CellVerdict v = check_cell(s.cell, hull(node, sweep), sweep);
   double& expiry = expiry_[node.slot];
   expiry = std::max(expiry, std::min(s.clear_until, travel_ + kUnit * v.margin));
+  anchor(id, v.gaps);
   const double far = clear >= need_ ? 1 : (clear - floor) / (need_ - floor);
-  return {v.free && clear >= need_, v.free, std::min(v.share, far)};
+  return {v.free && clear >= need_, v.free, std::min(v.share, far), v.margin};
+}
+
+/// Whether what the cell's planes do not stand for is far enough away for the motion, by a new look at it alone.
+bool CellFront::renew(std::uint32_t id, double margin) {
+  const Node& node = nodes_[id];
+  const MovingHull a = hull(node, sweep_of(node.part));
+  const double enough = std::max(2 * need_, kRenewShare * wanted(a));
+  double clear = 0;
+  if (!search_.renew(a, *fixed_[node.part].tree, travel_ - listed_[node.slot], enough, items_[node.slot], clear))
+    return false;
+  Slot& s = slots_[node.slot];
+  s.clear_until = travel_ + kUnit * clear;
+  expiry_[node.slot] = std::min(s.clear_until, travel_ + kUnit * margin);
+  return true;
 }
 
 bool CellFront::out_of_work(bool look_at_clock) {
@@ -245,14 +294,24 @@ CellSearch::Outcome CellFront::search(std::uint32_t id) {
   const MovingHull a = hull(node, sweep);
   if (node.face_a)
     for (int k = 0; k < 3; ++k) face_[k] = a_->corner(node.a, k) - center_;
-  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, need_, wanted(a)};
+  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, wanted(a)};
   if (node.children == 0) {
-    // `clear` of a list in the front is a travel.
     const CellItems& items = items_[node.slot];
-    query.clear = items.clear - travel_;
-    if (items.count > 0 && query.clear >= kKnownShare * query.wanted) query.known = &items;
+    query.moved = travel_ - listed_[node.slot];
+    if (items.count > 0 && items.clear - query.moved >= kKnownShare * query.wanted) query.known = &items;
   }
   return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
+}
+
+void CellFront::anchor(std::uint32_t id, const CellGaps& gaps) {
+  const Node& node = nodes_[id];
+  Vec3 middle;
+  if (node.face_a) {
+    middle = (a_->corner(node.a, 0) + a_->corner(node.a, 1) + a_->corner(node.a, 2)) / 3 - center_;
+  } else {
+    middle = a_->nodes()[node.a].center_vec() + offset_a_;
+  }
+  anchors_[node.slot] = CellAnchor(gaps, middle, radius(node), sweep_of(node.part), turned_);
 }
 
 void CellFront::keep(std::uint32_t id) {
@@ -260,9 +319,17 @@ void CellFront::keep(std::uint32_t id) {
   Slot& s = slots_[slot];
   s.cell = found_;
   items_[slot] = search_.items();
-  items_[slot].clear = s.clear_until;
+  listed_[slot] = travel_;
   s.clear_until = travel_ + kUnit * found_.clear;
   expiry_[slot] = std::min(s.clear_until, travel_ + kUnit * search_.margin());
+  anchor(id, search_.gaps());
+  // The larger pieces that were just taken apart need it at this distance.
+  for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent) {
+    if (nodes_[up].retry < kInfinity && nodes_[up].split != call_) break;
+    const double before = nodes_[up].retry;
+    needs_parts(up, search_.margin());
+    nodes_[up].retry = std::min(nodes_[up].retry, before);
+  }
 }
 
 CellFront::Outcome CellFront::settle(std::uint32_t top) {
@@ -291,7 +358,8 @@ CellFront::Outcome CellFront::settle(std::uint32_t top) {
           return Outcome::out_of_work;
         }
         ++report_.splits;
-        nodes_[id].retry = travel_ + kRetryShare * radius(nodes_[id]);
+        nodes_[id].retry = kInfinity;
+        nodes_[id].split = call_;
         for (std::uint32_t k = 0; k < nodes_[id].children; ++k) stack_.push_back(nodes_[id].child + k);
     }
   }
@@ -314,11 +382,14 @@ void CellFront::release(std::uint32_t child) {
   free_nodes_ = child;
 }
 
-void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, double expiry) {
+void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellAnchor& anchor,
+                      double expiry) {
   nodes_[id].slot = count_;
   slots_[count_] = inherited;
   slots_[count_].node = id;
   items_[count_] = items;
+  listed_[count_] = travel_;
+  anchors_[count_] = anchor;
   expiry_[count_++] = expiry;
 }
 
@@ -327,6 +398,8 @@ void CellFront::leave(std::uint32_t slot) {
   if (slot == last) return;
   slots_[slot] = slots_[last];
   items_[slot] = items_[last];
+  listed_[slot] = listed_[last];
+  anchors_[slot] = anchors_[last];
   expiry_[slot] = expiry_[last];
   nodes_[slots_[slot].node].slot = slot;
 }
@@ -345,7 +418,7 @@ bool CellFront::split(std::uint32_t id) {
   // The pieces of B that are listed are of both its parts.
   CellItems items;
   if (of_a) items = search_.items();
-  items.clear = travel_ + kUnit * items.clear;
+  const CellAnchor anchor = anchors_[p.slot];
   const double expiry = expiry_[p.slot];
   leave(p.slot);
   nodes_[id].child = child;
@@ -355,13 +428,14 @@ bool CellFront::split(std::uint32_t id) {
     Node c = p;
     c.parent = id;
     c.children = 0;
-    c.retry = travel_;
+    c.retry = 0;
+    c.split = 0;
     c.due = 0;
     const std::uint32_t place = whole.leaf() ? tree.order()[whole.first + k] : whole.first + k;
     (of_a ? c.a : c.b) = place;
     (of_a ? c.face_a : c.face_b) = whole.leaf();
     nodes_[child + k] = c;
-    enter(child + k, known, items, expiry);
+    enter(child + k, known, items, anchor, expiry);
   }
   return true;
 }
@@ -381,37 +455,47 @@ void CellFront::raise() {
 
 bool CellFront::may_raise(std::uint32_t id) const {
   const Node& p = nodes_[id];
-  if (p.retry > travel_) return false;
-  for (std::uint32_t k = 0; k < p.children; ++k)
-    if (nodes_[p.child + k].children > 0) return false;
-  return true;
-}
-
-/// Whether a cell was found for the piece together with its neighbors, the more of them the better: what a part that
-/// leaves needs.
-bool CellFront::climb(std::uint32_t id) {
-  bool found = false;
-  for (int levels = 1;; levels *= 2) {
-    std::uint32_t up = id;
-    for (int k = 0; k < levels && nodes_[up].parent != kNobody; ++k) up = nodes_[up].parent;
-    if (up == id || nodes_[up].retry > travel_ || out_of_work(true) || !merge(up, need_)) return found;
-    id = up;
-    found = true;
+  for (std::uint32_t k = 0; k < p.children; ++k) {
+    const Node& c = nodes_[p.child + k];
+    if (c.children > 0 || expiry_[c.slot] - travel_ < p.retry) return false;
   }
+  return true;
 }
 
 bool CellFront::try_raise(std::uint32_t id) {
   const Node& p = nodes_[id];
   double lasts = kInfinity;
   for (std::uint32_t k = 0; k < p.children; ++k) lasts = std::min(lasts, expiry_[nodes_[p.child + k].slot] - travel_);
-  return merge(id, std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts)));
+  return merge(id, lasts);
 }
 
-/// Puts together all pieces under the node if one cell for all of them lasts for `enough` (m), or none is asked for.
-bool CellFront::merge(std::uint32_t id, double enough) {
+/// Whether a cell was found for the piece together with its neighbors, as many as have come far enough from B since
+/// they were taken apart: what a part that leaves needs. `margin` (m) is what the piece's planes have left.
+bool CellFront::grow(std::uint32_t id, double margin) {
+  std::array<std::uint32_t, kMostGrowths> last{};
+  int count = 0;
+  for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent)
+    if (nodes_[up].retry <= margin) last[static_cast<std::size_t>(count++ % kMostGrowths)] = up;
+  // The largest first.
+  for (int i = count; i-- > std::max(0, count - kMostGrowths);) {
+    if (out_of_work(true)) return false;
+    if (merge(last[static_cast<std::size_t>(i % kMostGrowths)], margin)) return true;
+  }
+  return false;
+}
+
+/// Notes that the node's pieces, of which one has this margin (m), need cells of their own.
+void CellFront::needs_parts(std::uint32_t id, double margin) {
+  nodes_[id].retry = std::max(kRetryGrowth * margin, kRetryShare * radius(nodes_[id]));
+}
+
+/// Puts together all pieces under the node if one cell for all of them lasts as long as is worth it where theirs last
+/// for `lasts` (m), or none is asked for.
+bool CellFront::merge(std::uint32_t id, double lasts) {
   const bool near = asked_[nodes_[id].part] == now_;
+  const double enough = std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts));
   if (near && (search(id) != CellSearch::Outcome::found || search_.margin() < enough)) {
-    nodes_[id].retry = travel_ + kRetryShare * radius(nodes_[id]);
+    needs_parts(id, lasts);
     return false;
   }
   stack_.clear();
@@ -431,7 +515,7 @@ bool CellFront::merge(std::uint32_t id, double enough) {
   }
   for (const std::uint32_t child : freed_) release(child);
   nodes_[id].child = kNobody;
-  enter(id, Slot{id, -kInfinity, {}}, {}, -kInfinity);
+  enter(id, Slot{id, -kInfinity, {}}, {}, {}, -kInfinity);
   if (near) keep(id);
   ++report_.merges;
   return true;

@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "narrowphase/cell_anchor.hpp"
+#include "narrowphase/cell_search.hpp"
 #include "narrowphase/certify.hpp"
 #include "narrowphase/face_pair.hpp"
-#include "narrowphase/free_cell.hpp"
 #include "narrowphase/patch_tree.hpp"
 
 namespace tegotae {
@@ -63,8 +64,9 @@ class CellFront {
     std::uint32_t slot;           ///< of its cell, while it has no children
     std::uint8_t children;
     bool face_a, face_b;
-    double retry;       ///< travel before which the children are not put together again
-    std::uint64_t due;  ///< the call whose motion uses up what its cell is known to last for
+    double retry;         ///< margin (m) below which its parts' cells are not put together again
+    std::uint64_t split;  ///< the call that took it apart
+    std::uint64_t due;    ///< the call whose motion uses up what its cell is known to last for
   };
   struct Slot {
     std::uint32_t node;
@@ -76,30 +78,35 @@ class CellFront {
     double share;  ///< of the motion that its cell allows without a look at it
   };
   struct Look {
-    bool free;     ///< the cell holds for the whole motion
-    bool far;      ///< its planes do
-    double share;  ///< of the motion for which it holds
+    bool free;      ///< the cell holds for the whole motion
+    bool far;       ///< its planes do
+    double share;   ///< of the motion for which it holds
+    double margin;  ///< of its planes at the start, m
   };
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
   void start_motion(const Pose& X, const Displacement& d);
   const Sweep& sweep_of(std::uint32_t part);
+  double allowed(std::uint32_t slot);
   void collect_due();
+  void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
   Look look_at(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id);
   void keep(std::uint32_t id);
   bool split(std::uint32_t id);
-  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, double expiry);
+  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellAnchor& anchor, double expiry);
   void leave(std::uint32_t slot);
   std::uint32_t allocate();
   void release(std::uint32_t child);
   void raise();
   bool may_raise(std::uint32_t id) const;
   bool try_raise(std::uint32_t id);
-  bool climb(std::uint32_t id);
-  bool merge(std::uint32_t id, double enough);
+  bool grow(std::uint32_t id, double margin);
+  bool renew(std::uint32_t id, double margin);
+  void needs_parts(std::uint32_t id, double margin);
+  bool merge(std::uint32_t id, double lasts);
   bool out_of_work(bool look_at_clock);
   MovingHull hull(const Node& node, const Sweep& sweep) const;
   double radius(const Node& node) const;
@@ -115,8 +122,10 @@ class CellFront {
   std::vector<Node> nodes_;
   std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
   std::vector<Slot> slots_;
-  std::vector<CellItems> items_;  ///< of each slot
-  std::vector<double> expiry_;    ///< of each slot: travel up to which its cell needs no look
+  std::vector<CellItems> items_;     ///< of each slot
+  std::vector<double> listed_;       ///< of each slot: travel at the search that listed items_
+  std::vector<CellAnchor> anchors_;  ///< of each slot
+  std::vector<double> expiry_;       ///< of each slot: travel up to which its cell needs no look
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
@@ -125,10 +134,10 @@ class CellFront {
   Pose X_;
   bool started_ = false;
   Displacement d_;
-  double travel_ = 0;  ///< bound on how far any point of A has come since the front began, m
-  double need_ = 0;    ///< bound on how far the motion carries any point, and the clearance, m
-  double motion_ = 0;  ///< longest motion of late, m
-  Pose end_;
+  double travel_ = 0;          ///< bound on how far any point of A has come since the front began, m
+  double turned_ = 0;          ///< the same of its turns, rad
+  double need_ = 0;            ///< bound on how far the motion carries any point, and the clearance, m
+  double motion_ = 0;          ///< longest motion of late, m
   std::vector<Sweep> sweeps_;  ///< of each part, valid when stamped with the call
   std::vector<std::uint64_t> stamped_;
   std::uint64_t call_ = 0;
@@ -144,6 +153,7 @@ class CellFront {
   std::int64_t visits_at_start_ = 0;
   WorkLimit limit_;
   CertifyReport report_;
+  bool settled_ = true;  ///< nothing yet kept the call from looking at all that the motion needs
 };
 
 }  // namespace tegotae

@@ -23,7 +23,6 @@ enum class CertifyStatus : std::uint8_t {
 struct CertifyReport {
   CertifyStatus status = CertifyStatus::certified;
   double share = 0;        ///< part of the motion, from its start, that is certified free; 1 when all of it is
-  bool settled = true;     ///< everything that the motion needs was looked at
   bool overflow = false;   ///< a capacity was exceeded
   bool exhausted = false;  ///< work or time ran out (with `blocked`: the list may lack pairs)
   int pairs = 0;           ///< pairs or cells in the front after the call

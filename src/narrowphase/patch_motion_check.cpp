@@ -21,7 +21,7 @@ constexpr int kMostRounds = 4;
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMostCuts = 6;
-// Cells (about 500 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
+// Cells (about 850 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kFewestCells = 1u << 13;
 constexpr double kCellsPerFace = 1.5;

@@ -26,7 +26,8 @@ struct Sweep {
   Placement start, end;
   Vec3 dp = Vec3::Zero();      ///< of the center of mass, m
   Vec3 dr = Vec3::Zero();      ///< rotation vector, rad
-  double theta2 = 0;           ///< |dr|²
+  double theta = 0;            ///< |dr|
+  double theta2 = 0;           ///< its square
   Vec3 axis = Vec3::Zero();    ///< dr / |dr|, zero without a rotation
   double center_distance = 0;  ///< from the file frame's origin to the center of mass, m
   double floor = 0;            ///< separations below do not count: clearance, at least the rounding, m

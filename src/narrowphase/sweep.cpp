@@ -14,8 +14,8 @@ constexpr double kFloor = 1e-12;
 
 Sweep::Sweep(const Pose& X_BA, const Displacement& d, const Vec3& center, const PatchTree& b, double reach_a,
              double clearance)
-    : dp(d.dp), dr(d.dr), theta2(d.dr.squaredNorm()), center_distance(center.norm()) {
-  if (theta2 > 0) axis = d.dr / std::sqrt(theta2);
+    : dp(d.dp), dr(d.dr), theta(d.dr.norm()), theta2(d.dr.squaredNorm()), center_distance(center.norm()) {
+  if (theta2 > 0) axis = d.dr / theta;
   start.R = X_BA.q.toRotationMatrix();
   start.t = X_BA * center - b.origin();
   const Pose last = displaced(X_BA, center, d);

@@ -133,7 +133,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
   allowed_ = wanted;
-  double made = 0;
+  made_ = 0;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -147,13 +147,13 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     trust_ = std::max(trust_, kLeastTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     int shorter = 0;
-    for (int i = 0; i < kMostMotions && made < travel && !late(); ++i) {
-      const double cap = std::min({trust_, piece_cap_, travel - made});
+    for (int i = 0; i < kMostMotions && made_ < travel && !late(); ++i) {
+      const double cap = std::min({trust_, piece_cap_, travel - made_});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
       // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
       if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMostShorter)) break;
-      made += length;
+      made_ += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
     if (!late()) track();
@@ -167,7 +167,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   report.lag_reason = reason_for(left, report);
   // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
   // took away what it touched it comes back to the pen through the air.
-  comes_ = near_.empty() || made >= kFullShare * travel;
+  comes_ = near_.empty() || made_ >= kFullShare * travel;
   report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > keep_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
@@ -271,9 +271,10 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (free) break;
     if (late() && !blocking_.empty()) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
-      // Out of time or work: what is proved of the motion is made, and the next piece is not much longer.
+      // Out of time or work: what is proved of the motion is made, and the next piece is not much longer, or as long as
+      // all that was proved in this tick.
       scale(trial, at_.check->free_share());
-      trust_ = std::max(kProvedGrowth * size(trial.d), kLeastTrust);
+      trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kLeastTrust});
       X_ = trial.X;
       tracked_ = false;
       allowed_ = std::max(0.0, allowed_ - size(trial.d));

@@ -92,6 +92,7 @@ class ContactLoop final : public ProxyLoop {
   Pose last_Y_;
   double trust_;
   double moved_ = 0;     ///< of X in the last tick, m
+  double made_ = 0;      ///< pieces of this tick, m
   int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;

@@ -44,7 +44,7 @@ const Task kMap[] = {
      "device/channel.hpp coupling/contact_planes.hpp servo/latency_histogram.hpp"},
     {"write a driver in another language", "device/shm.h"},
     {"run a scene file, record it, watch it", "sim/session.hpp record/recorder.hpp record/recording.hpp"},
-    {"bring a resolver", "resolve/resolver.hpp lp/low_rank_matrix.hpp"},
+    {"bring a resolver", "resolve/resolver.hpp lp/low_rank_matrix.hpp lp/friction_problem.hpp"},
     {"poses, errors, clock, version",
      "core/pose.hpp core/error.hpp core/clock.hpp core/constants.hpp core/version.hpp core/export.hpp"},
     {"start large scenes sooner", "narrowphase/hierarchy_cache.hpp"},

@@ -1,6 +1,8 @@
 // Pairs of parts and motions for the tests of the path certificates.
 #pragma once
 
+#include <algorithm>
+
 #include "narrowphase/patch_tree.hpp"
 #include "patch_shapes.hpp"
 
@@ -45,6 +47,20 @@ inline std::vector<std::uint32_t> faces_under(const PatchTree& t, std::uint32_t 
     }
   }
   return out;
+}
+
+/// Is every pair of faces of A and B under exactly one of the pairs that `for_each` calls its argument with, as
+/// f(a, a_is_face, b, b_is_face)?
+template <typename ForEach>
+bool covers_once(const PatchTree& a, const PatchTree& b, ForEach for_each) {
+  const std::size_t nb = b.order().size();
+  std::vector<std::uint8_t> count(a.order().size() * nb, 0);
+  for_each([&](std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
+    const auto fb = faces_under(b, j, face_j);
+    for (const std::uint32_t f : faces_under(a, i, face_i))
+      for (const std::uint32_t g : fb) ++count[f * nb + g];
+  });
+  return std::all_of(count.begin(), count.end(), [](std::uint8_t n) { return n == 1; });
 }
 
 /// Open sheet of n × n fields over a square of side `size`, with waves of `height` both ways, as eggs are packed in.

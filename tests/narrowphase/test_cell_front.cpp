@@ -23,16 +23,11 @@ std::vector<Scene> all_scenes() {
   return out;
 }
 
-/// Every pair of triangles of A and the one part is under exactly one cell.
 void require_cover(const CellFront& front, const PatchTree& a, const PatchTree& b) {
-  const std::size_t nb = b.order().size();
-  std::vector<std::uint8_t> count(a.order().size() * nb, 0);
-  front.for_each_cell([&](std::uint32_t, std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
-    const auto fb = faces_under(b, j, face_j);
-    for (const std::uint32_t f : faces_under(a, i, face_i))
-      for (const std::uint32_t g : fb) ++count[f * nb + g];
-  });
-  REQUIRE(std::all_of(count.begin(), count.end(), [](std::uint8_t n) { return n == 1; }));
+  REQUIRE(covers_once(a, b, [&](auto f) {
+    front.for_each_cell(
+        [&](std::uint32_t, std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) { f(i, face_i, j, face_j); });
+  }));
 }
 
 }  // namespace
@@ -138,6 +133,41 @@ TEST_CASE("a sheet comes down on its die whatever the work that a call may do", 
     INFO("after " << calls << " calls at " << X.p.z());
     CHECK(X.p.z() <= 5e-6);
     CHECK(front.cells() < 4 * static_cast<int>(scene.a->triangles.size()));
+  }
+}
+
+TEST_CASE("small motions in contact are free: pressed, slid, turned and lifted again and again", "[patch]") {
+  // What cells keep from call to call (planes that lose what comes against them, lists, larger pieces) is used up here.
+  const Scene scene = all_scenes().back();
+  const PatchTree a(scene.a), b(scene.b);
+  const Oracle oracle(scene.a, scene.b);
+  constexpr double kClearance = 1e-6;
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    CellFront front = cells_of(scene);
+    front.set_near({0});
+    front.set_clearance(kClearance);
+    std::mt19937 rng(seed);
+    Pose X = scene.start;
+    int made = 0, cut = 0;
+    for (int i = 0; i < 900; ++i) {
+      const int phase = (i / 60) % 4;
+      const double step = std::pow(10.0, uniform(rng, -6, -4));
+      Displacement d{random_in_ball(rng, 0.2 * step), random_in_ball(rng, phase == 2 ? 20 * step : step)};
+      d.dp.z() += phase == 3 ? 2 * step : -step;
+      if (phase == 1) d.dp.x() += (i % 2 == 0 ? 1 : -0.5) * step;
+      const CertifyReport report = front.certify(X, d, {i % 5 == 0 ? 10 : 4000});
+      const Displacement moved = 0.999999 * report.share * d;
+      const bool look = i % 6 == 0;
+      if (look) REQUIRE(oracle.hits(X, scene.center, moved, 4) == 0);
+      X = displaced(X, scene.center, moved);
+      if (look) REQUIRE(oracle.distance(X) >= kClearance * (1 - 1e-5));
+      made += report.share > 0.5;
+      cut += report.status == CertifyStatus::cut;
+    }
+    require_cover(front, a, b);
+    INFO(made << " made, " << cut << " cut");
+    CHECK(made > 200);
+    CHECK(cut > 10);
   }
 }
 

@@ -10,17 +10,8 @@ using namespace tegotae::test;
 
 namespace {
 
-/// Every pair of triangles is under exactly one pair of the front.
 void require_cover(const PatchFront& front, const PatchTree& a, const PatchTree& b) {
-  const std::size_t na = a.order().size(), nb = b.order().size();
-  std::vector<std::uint8_t> count(na * nb, 0);
-  front.for_each_pair([&](std::uint32_t i, bool face_i, std::uint32_t j, bool face_j) {
-    const auto fb = faces_under(b, j, face_j);
-    for (std::uint32_t f : faces_under(a, i, face_i)) {
-      for (std::uint32_t g : fb) ++count[f * nb + g];
-    }
-  });
-  REQUIRE(std::all_of(count.begin(), count.end(), [](std::uint8_t n) { return n == 1; }));
+  REQUIRE(covers_once(a, b, [&](auto f) { front.for_each_pair(f); }));
 }
 
 }  // namespace

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "narrowphase/free_cell.hpp"
+#include "narrowphase/near_hulls.hpp"
+
+namespace tegotae {
+
+/// Looks for free cells between pieces of A and subtrees of B.
+class CellSearch {
+ public:
+  enum class Outcome : std::uint8_t {
+    found,    ///< for the whole motion
+    passing,  ///< the motion is free, but no cell says so: to be searched again for the next one
+    divide,   ///< not as a whole: the piece of A or the subtree of B is to be taken apart
+    blocked   ///< triangles of B, listed, stop the piece, which is a triangle
+  };
+  struct Query {
+    const PatchTree* tree = nullptr;  ///< of B
+    std::uint32_t node = 0;           ///< of `tree`, or face
+    bool is_face = false;
+    double wanted = 0;                 ///< what is farther from the piece (m) needs no plane
+    const CellItems* known = nullptr;  ///< of an earlier search for the piece or for one that it is of; null: none
+    double moved = 0;                  ///< how far the piece has come since that search at most, m
+  };
+
+  CellSearch();
+
+  /// Looks for a cell of `a` (`face_of_a`: its corners, A's axes from the center of mass, when it is a triangle)
+  /// against the subtree. `cell` is set when found; its margin at the start is margin(), its pieces of B items().
+  Outcome find(const MovingHull& a, const std::array<Vec3, 3>* face_of_a, const Query& query, const Sweep& sweep,
+               FreeCell& cell) noexcept;
+
+  /// Whether what is under no plane of a cell is still `enough` (m) from its piece, by a new look at what may have come
+  /// nearer: pieces of B of `items`, which the search for the cell listed and whose distances are set. `moved` (m) is
+  /// how far the piece has come since at most. `clear` is how far the rest is then.
+  bool renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
+             double& clear) noexcept;
+
+  /// Of the last find(): least distance of the piece at the start from B that was proved, m.
+  double margin() const { return std::min(margin_, clear_); }
+  /// Of the last find() that found a cell: at the start.
+  CellGaps gaps() const;
+  /// Of the last find() that found a cell or says to divide: where to begin the next one.
+  const CellItems& items() const { return items_; }
+  /// Of the last find(): faces of B that stop the triangle.
+  const std::vector<std::uint32_t>& blocking() const { return blocking_; }
+  /// Nodes and faces of B measured by all calls.
+  std::int64_t visits() const { return visits_; }
+
+ private:
+  struct Side {
+    double gap;  ///< along n, m
+    Vec3 n;
+  };
+  /// A piece of B, as in CellItems, and how far it is from the piece of A at the start.
+  struct Entry {
+    std::uint32_t item;
+    double distance;    ///< lower bound, m
+    Side any, upright;  ///< see Nearness
+    bool is_face() const { return (item & CellItems::kFace) != 0; }
+    std::uint32_t place() const { return item & ~CellItems::kFace; }
+  };
+
+  struct Listed {
+    std::uint32_t item;
+    double distance;  ///< lower bound, m
+  };
+
+  void begin(const Query& query);
+  Outcome settle(const Entry& e);
+  Outcome settle_face(const Entry& e, const Hull& b);
+  void open(std::uint32_t node);
+  /// Measures pieces and puts those within reach on the stack, the nearest last.
+  void push(const std::uint32_t* items, int count);
+  /// Measures pieces.
+  void measure(const std::uint32_t* items, int count);
+  /// Of the piece that was measured at place i.
+  double distance(std::uint32_t item, std::size_t i) const;
+  Side side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const;
+  Entry entry(std::uint32_t item, std::size_t i, double distance) const;
+  void leave_out(std::uint32_t item, double distance);
+  Hull hull_of(std::uint32_t item) const;
+  bool under_known_plane(const Hull& b, double good);
+  bool keeps_off(const Hull& b, const Vec3& n, double at_least);
+  bool best_of_all_axes(const Hull& b, Vec3& n) const;
+  bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
+  void list(std::uint32_t item, double distance) { near_.push_back({item, distance}); }
+  void tell_items(bool found);
+  void tell(FreeCell& cell) const;
+
+  const MovingHull* a_ = nullptr;
+  const std::array<Vec3, 3>* face_of_a_ = nullptr;
+  const Sweep* sweep_ = nullptr;
+  Query query_;
+  HullFrame frame_;
+  NearHulls boxes_, faces_;
+  Nearness near_boxes_, near_faces_;
+  std::array<std::size_t, kMeasured> lane_;  ///< of each piece that was measured, among the boxes or the faces
+  KnownPlanes known_;
+  std::array<double, kCellPlanes> tops_;
+  int planes_ = 0;
+  double most_bulge_ = 0;  ///< along any normal, m
+  double margin_ = 0, clear_ = 0;
+  double beyond_ = 0;  ///< what is in no list is at least so far, m
+  CellItems items_;
+  std::vector<Listed> near_, far_;  ///< pieces of B that were settled, or are farther away than is wanted
+  bool passing_ = false;
+  bool full_ = false;  ///< a plane more was needed than a cell has
+  std::vector<Entry> stack_;
+  std::vector<std::uint32_t> blocking_;
+  std::int64_t visits_ = 0;
+};
+
+}  // namespace tegotae

@@ -1,0 +1,226 @@
+// What free cells are made of: distances of many pieces at once, planes that lose what comes against them.
+#include "catch.hpp"
+#include "narrowphase/cell_anchor.hpp"
+#include "narrowphase/near_hulls.hpp"
+#include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+std::array<Vec3, 3> random_triangle(std::mt19937& rng, const Vec3& at, double size) {
+  return {at + random_in_ball(rng, size), at + random_in_ball(rng, size), at + random_in_ball(rng, size)};
+}
+
+Hull random_box(std::mt19937& rng, const Vec3& at, double size) {
+  const Mat3 R = rotation(random_in_ball(rng, 3)).toRotationMatrix();
+  return Hull::box(at, {R.col(0), R.col(1), R.col(2)},
+                   {size * uniform(rng, 0.1, 1), size * uniform(rng, 0.01, 1), size * uniform(rng, 0, 0.3)});
+}
+
+/// Corners of a hull.
+std::vector<Vec3> corners(const Hull& h) {
+  if (h.is_triangle()) return {h.corner(0), h.corner(1), h.corner(2)};
+  std::vector<Vec3> out;
+  for (int i = 0; i < 8; ++i) {
+    Vec3 v = h.middle();
+    for (int k = 0; k < 3; ++k) v += ((i >> k & 1) != 0 ? 1 : -1) * h.half(k) * h.axis(k);
+    out.push_back(v);
+  }
+  return out;
+}
+
+/// A surface of the hull, for FCL.
+MeshPtr surface(const Hull& h) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->name = "hull";
+  mesh->vertices = corners(h);
+  if (h.is_triangle()) {
+    mesh->triangles = {{0, 1, 2}};
+  } else {
+    for (const auto& q : {std::array<std::uint32_t, 4>{0, 1, 3, 2},
+                          {4, 5, 7, 6},
+                          {0, 1, 5, 4},
+                          {2, 3, 7, 6},
+                          {0, 2, 6, 4},
+                          {1, 3, 7, 5}}) {
+      mesh->triangles.push_back({q[0], q[1], q[2]});
+      mesh->triangles.push_back({q[0], q[2], q[3]});
+    }
+  }
+  return mesh;
+}
+
+void put(const Hull& b, const Vec3& origin, std::size_t i, NearHulls& out) {
+  for (int c = 0; c < 3; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    for (int e = 0; e < 3; ++e)
+      out.edge[static_cast<std::size_t>(e)][k][i] = b.is_triangle() ? b.corner(e)[c] - origin[c] : b.axis(e)[c];
+    out.center[k][i] = b.middle()[c] - origin[c];
+    out.half[k][i] = b.is_triangle() ? 0 : b.half(c);
+  }
+}
+
+/// The normal that a measure names.
+Vec3 normal(const HullFrame& a, const Hull& b, const Nearness& n, const Nearness::Side& side, std::size_t i) {
+  const int number = static_cast<int>(side.number[i]);
+  if (number < 3) return side.sign[i] * a.axis[static_cast<std::size_t>(number)];
+  if (!b.is_triangle()) return side.sign[i] * b.axis(number - 3);
+  return side.sign[i] * Vec3(n.plane[0][i], n.plane[1][i], n.plane[2][i]);
+}
+
+}  // namespace
+
+TEST_CASE("what is kept in single precision is checked as it is kept", "[patch]") {
+  std::mt19937 rng(2);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 v = random_in_ball(rng, 1), kept = single(v);
+    // 24 bits of a number's mantissa: nothing is left below.
+    for (int c = 0; c < 3; ++c) {
+      int exponent = 0;
+      const double mantissa = std::ldexp(std::frexp(kept[c], &exponent), 24);
+      REQUIRE(mantissa == std::round(mantissa));
+      REQUIRE(std::abs(kept[c] - v[c]) <= std::ldexp(std::abs(v[c]), -24));
+    }
+  }
+}
+
+TEST_CASE("measured distances are lower bounds, and gaps those along the named normals", "[patch]") {
+  std::mt19937 rng(3);
+  int close = 0;
+  for (int round = 0; round < 400; ++round) {
+    const bool a_is_box = round % 2 == 0, b_is_box = round % 4 < 2;
+    const Hull a =
+        a_is_box ? random_box(rng, Vec3::Zero(), 0.01) : Hull::triangle(random_triangle(rng, Vec3::Zero(), 0.01));
+    const HullFrame frame(a);
+    NearHulls near{};
+    std::vector<Hull> b;
+    for (std::size_t i = 0; i < kMeasured; ++i) {
+      const Vec3 at = random_in_ball(rng, 0.04);
+      b.push_back(b_is_box ? random_box(rng, at, 0.008) : Hull::triangle(random_triangle(rng, at, 0.008)));
+      put(b.back(), frame.origin, i, near);
+    }
+    Nearness n;
+    (b_is_box ? measure_boxes : measure_triangles)(frame, near, kMeasured, n);
+    for (std::size_t i = 0; i < kMeasured; ++i) {
+      const double bound = std::sqrt(n.distance2[i]), truth = Oracle(surface(a), surface(b[i])).distance(Pose{});
+      if (bound > 0) REQUIRE(bound <= truth + 1e-12);
+      close += bound > 0.6 * truth;
+      for (const Nearness::Side* side : {&n.any, &n.upright}) {
+        const Vec3 along = normal(frame, b[i], n, *side, i);
+        double low = 1, high = -1;
+        for (const Vec3& p : corners(a)) low = std::min(low, along.dot(p));
+        for (const Vec3& p : corners(b[i])) high = std::max(high, along.dot(p));
+        REQUIRE(side->gap[i] == Approx(low - high).margin(1e-12));
+      }
+      REQUIRE(n.upright.gap[i] <= n.any.gap[i]);
+    }
+  }
+  CHECK(close > 1600);
+}
+
+TEST_CASE("the first plane over a hull is over it", "[patch]") {
+  std::mt19937 rng(9);
+  int found = 0;
+  for (int round = 0; round < 300; ++round) {
+    KnownPlanes planes;
+    planes.clear();
+    const int count = round % (kCellPlanes + 1);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const Vec3 n = random_in_ball(rng, 1).normalized();
+      for (int c = 0; c < 3; ++c) planes.n[static_cast<std::size_t>(c)][k] = n[c];
+      planes.low_start[k] = uniform(rng, -0.01, 0.02);
+      planes.low_end[k] = uniform(rng, -0.01, 0.02);
+    }
+    const Hull b = round % 2 == 0 ? random_box(rng, Vec3::Zero(), 0.008)
+                                  : Hull::triangle(random_triangle(rng, Vec3::Zero(), 0.008));
+    const auto gaps = [&](std::size_t k) {
+      double top = -1;
+      for (const Vec3& p : corners(b))
+        top = std::max(top, planes.n[0][k] * p.x() + planes.n[1][k] * p.y() + planes.n[2][k] * p.z());
+      return std::pair(planes.low_start[k] - top, planes.low_end[k] - top);
+    };
+    std::array<double, kCellPlanes> tops;
+    const int k = first_above(planes, count, b, 1e-3, 2e-3, tops);
+    for (int i = 0; i < std::min(k, count); ++i) {
+      const auto [start, end] = gaps(static_cast<std::size_t>(i));
+      REQUIRE((start < 1e-3 + 1e-12 || end < 2e-3 + 1e-12));
+    }
+    if (k == kCellPlanes) continue;
+    ++found;
+    const auto i = static_cast<std::size_t>(k);
+    const auto [start, end] = gaps(i);
+    REQUIRE(start >= 1e-3 - 1e-12);
+    REQUIRE(end >= 2e-3 - 1e-12);
+    REQUIRE(planes.low_start[i] - tops[i] == Approx(start).margin(1e-12));
+  }
+  CHECK(found > 100);
+}
+
+TEST_CASE("anchored gaps are no larger than the planes' own, wherever the piece has come", "[patch]") {
+  std::mt19937 rng(21);
+  const auto tree = std::make_shared<PatchTree>(box({0.1, 0.1, 0.1}));
+  const Vec3 center(0.03, -0.02, 0.01);
+  double tightest = 1;
+  for (int round = 0; round < 300; ++round) {
+    // A triangle of A (axes of A, from the center of mass), and planes under it.
+    const Vec3 at = random_in_ball(rng, 0.1);
+    const auto corner = random_triangle(rng, at, 0.005);
+    const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
+    double radius = 0;
+    for (const Vec3& p : corner) radius = std::max(radius, (p - middle).norm());
+    Pose X{rotation(random_in_ball(rng, 3)), random_in_ball(rng, 0.1)};
+    double turned = uniform(rng, 0, 100);
+    FreeCell cell;
+    const int count = 1 + round % kCellPlanes;
+    std::vector<double> offset;
+    CellGaps gaps;
+    gaps.fill(std::numeric_limits<float>::max());
+    const auto sweep_of = [&](const Displacement& d) { return Sweep(X, d, center, *tree, 0.2, 0); };
+    const Sweep first = sweep_of({});
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const Vec3 n = random_in_ball(rng, 1).normalized();
+      cell.nx[k] = static_cast<float>(n.x());
+      cell.ny[k] = static_cast<float>(n.y());
+      cell.nz[k] = static_cast<float>(n.z());
+      double low = 1;
+      for (const Vec3& p : corner)
+        low = std::min(low, cell.normal(static_cast<int>(k)).dot(first.start.R * p + first.start.t));
+      gaps[k] = std::pow(10.0, uniform(rng, -6, -3));
+      offset.push_back(low - gaps[k]);
+    }
+    const CellAnchor anchor(gaps, middle, radius, first, turned);
+    const auto true_gap = [&](const Mat3& R, const Vec3& t) {
+      double least = 1;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+        for (const Vec3& p : corner)
+          least = std::min(least, cell.normal(static_cast<int>(k)).dot(R * p + t) - offset[k]);
+      return least;
+    };
+    for (int i = 0; i < 30; ++i) {
+      const double size = std::pow(10.0, uniform(rng, -7, -3));
+      const Displacement d{random_in_ball(rng, size), random_in_ball(rng, (i % 3) * 10 * size)};
+      const Sweep sweep = sweep_of(d);
+      const AnchoredGap g = anchored_gap(cell, anchor, sweep, turned);
+      REQUIRE(g.start <= true_gap(sweep.start.R, sweep.start.t));
+      REQUIRE(g.end <= true_gap(sweep.end.R, sweep.end.t));
+      if (i == 0 && d.dr.isZero(0)) tightest = std::min(tightest, true_gap(sweep.end.R, sweep.end.t) - g.end);
+      const Pose end = displaced(X, center, d);
+      for (int s = 1; s < 8; ++s) {
+        const double u = s / 8.0, line = (1 - u) * g.start + u * g.end - 4 * g.bulge * u * (1 - u);
+        const Placement arc = sweep.at(u);
+        REQUIRE(line <= true_gap(arc.R, arc.t) + 1e-15);
+        // The file frame's origin moves linearly.
+        Pose P = displaced(X, center, u * d);
+        P.p = X.p + u * (end.p - X.p);
+        REQUIRE(line <= true_gap(P.q.toRotationMatrix(), P * center - tree->origin()) + 1e-15);
+      }
+      X = end;
+      turned += d.dr.norm();
+    }
+  }
+  // Nothing but rounding is lost where nothing turns.
+  CHECK(tightest < 1e-8);
+}
