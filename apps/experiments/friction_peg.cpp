@@ -80,16 +80,19 @@ Planar balance(const PegLead& lead, const PlanarPeg& peg, const std::vector<Plan
   return p;
 }
 
-/// The contact loop's mesh peg slides when the load, which stays what it is wherever the peg goes, carries it on.
+/// Whether the mesh peg goes on in the contact loop, under a load that stays what it is wherever the peg goes. At first
+/// it comes into contact on both sides: over its play it turns, and its center sinks by the turn times the radius.
 bool slides(LoadRig& rig, const Wrench& load) {
-  constexpr int kTicks = 12;
-  constexpr double kWay = 5e-5;  // m, more than a peg needs to come into contact
+  constexpr int kComing = 40, kWatched = 20;
+  constexpr double kFar = 1e-3, kGoesOn = 1e-5;  // m
   const double from = rig.X().p.z();
-  for (int i = 0; i < kTicks; ++i) {
-    rig.step(rig.pen_for(load));
-    if (from - rig.X().p.z() > kWay) return true;
-  }
-  return false;
+  const auto sunk_since = [&](int ticks) {
+    const double begin = rig.X().p.z();
+    for (int i = 0; i < ticks && from - rig.X().p.z() < kFar; ++i) rig.step(rig.pen_for(load));
+    return begin - rig.X().p.z();
+  };
+  sunk_since(kComing);
+  return from - rig.X().p.z() >= kFar || sunk_since(kWatched) > kGoesOn;
 }
 
 }  // namespace
@@ -99,7 +102,7 @@ bool whitney_slides(double lambda, double mu, double side, double moment) {
 }
 
 std::vector<JamPoint> jam_map(double lambda, double mu, int grid) {
-  constexpr double kPlay = 5e-6, kPush = 0.4;
+  constexpr double kPlay = 3.2e-6, kPush = 0.4;
   const double depth = 2 * kPegRadius * mu * lambda;
   std::vector<JamPoint> out;
   for (int i = 0; i < grid; ++i)
