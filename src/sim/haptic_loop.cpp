@@ -38,6 +38,7 @@ struct HapticLoop::State {
   TickReport report;
   ContactList contacts;
   LagCounter lag;
+  Pose last_X;                            // after the last tick
   Mailbox<std::array<double, 7>> latest;  // p, q
 
   explicit State(const Scene& scene)
@@ -63,10 +64,12 @@ struct HapticLoop::State {
 
   /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
   const TickReport& finish() noexcept {
-    const Displacement d = displacement(report.proxy.X, target(), now->mass.center);
+    const auto size = [this](const Displacement& d) { return d.dp.norm() + now->radius * d.dr.norm(); };
+    const double moved = size(displacement(last_X, report.proxy.X, now->mass.center));
+    last_X = report.proxy.X;
     report.proxy.weight = carried * now->weight.force;
-    report.lag = d.dp.norm() + now->radius * d.dr.norm();
-    lag.add(report.lag, tegotae::lag_bound(now->radius), report.lag_reason);
+    report.lag = size(displacement(report.proxy.X, target(), now->mass.center));
+    lag.add(report.lag, moved, tegotae::lag_bound(now->radius), report.lag_reason);
     report.unexplained_lag_ticks = lag.ticks();
     return report;
   }
@@ -81,7 +84,7 @@ struct HapticLoop::State {
   void begin() noexcept {
     reset(report);
     report.pieces.push_back(now->loop->pose());
-    report.proxy.X = now->loop->pose();
+    report.proxy.X = last_X = now->loop->pose();
     tell();
     for (const StartPair& pair : now->loop->start().pairs) {
       report.suspended += pair.state == PairState::suspended ? 1 : 0;

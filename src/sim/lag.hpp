@@ -32,9 +32,10 @@ inline LagReason lag_reason(const TickEnd& end) {
 /// Counts TickReport::unexplained_lag_ticks.
 class LagCounter {
  public:
-  /// After each tick.
-  void add(double lag, double bound, LagReason reason) noexcept {
-    const bool explained = lag <= bound || reason == LagReason::none || reason == LagReason::contact;
+  /// After each tick, in which the part came `moved` (m). A part on its way is not held back: a pen that jumps is far
+  /// ahead of it for a while.
+  void add(double lag, double moved, double bound, LagReason reason) noexcept {
+    const bool explained = lag <= bound || moved > bound || reason == LagReason::none || reason == LagReason::contact;
     row_ = explained ? 0 : std::min(row_ + 1, kLagPatience + 1);
     if (row_ > kLagPatience) ++ticks_;
   }

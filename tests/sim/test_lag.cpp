@@ -67,8 +67,8 @@ TEST_CASE("a contact explains a lag only when it stands in its way", "[lag]") {
 
 TEST_CASE("lags without a contact count from the twenty-first tick in a row on", "[lag]") {
   LagCounter counter;
-  const auto add = [&counter](int ticks, double lag, LagReason reason) {
-    for (int i = 0; i < ticks; ++i) counter.add(lag, kBound, reason);
+  const auto add = [&counter](int ticks, double lag, LagReason reason, double moved = 0.9 * kBound) {
+    for (int i = 0; i < ticks; ++i) counter.add(lag, moved, kBound, reason);
   };
   add(20, 2 * kBound, LagReason::time);
   CHECK(counter.ticks() == 0);
@@ -82,6 +82,10 @@ TEST_CASE("lags without a contact count from the twenty-first tick in a row on",
   CHECK(counter.ticks() == 3);
   add(100, 2 * kBound, LagReason::contact);
   add(25, 2 * kBound, LagReason::time);
+  CHECK(counter.ticks() == 8);
+  // On its way to a pen that jumped.
+  add(100, 100 * kBound, LagReason::time, 1.1 * kBound);
+  add(20, 2 * kBound, LagReason::time);
   CHECK(counter.ticks() == 8);
 }
 

@@ -50,8 +50,8 @@ struct TickReport {
   double lag = 0;
   LagReason lag_reason = LagReason::none;  ///< why
   /// Ticks since the loop began in which X was held back without a contact that explains it: the lag was over
-  /// kMaxUnexplainedLag (scaled, see lag_bound) for a reason other than contact, as it had been in the kLagPatience
-  /// ticks before without a break.
+  /// kMaxUnexplainedLag (scaled, see lag_bound) for a reason other than contact, and the part came less far than that
+  /// in the tick, as it had been in the kLagPatience ticks before without a break.
   std::int64_t unexplained_lag_ticks = 0;
 };
 
