@@ -10,7 +10,7 @@ constexpr double kExact = 1e-7;
 
 }  // namespace
 
-FrictionSolver::FrictionSolver(int capacity) : frictionless_(capacity), active_set_(capacity) {
+FrictionSolver::FrictionSolver(int capacity) : frictionless_(capacity), active_set_(capacity), cone_(capacity) {
   result_.forces.reserve(static_cast<std::size_t>(std::max(FrictionActiveSet::most_forces(), SparseRows::kMax)));
 }
 

@@ -18,37 +18,59 @@ constexpr int kMaxChanges = 300;
 
 }  // namespace
 
-bool RelaxedCone::most_violated(double tolerance, Row& out) const noexcept {
+RelaxedCone::RelaxedCone(int capacity)
+    : products_(static_cast<std::size_t>(capacity + kRowLanes)), reach_(static_cast<std::size_t>(capacity)) {}
+
+bool RelaxedCone::most_violated(double tolerance, Row& out) noexcept {
   const FrictionProblem& p = *problem_;
+  const int rows = p.normals.rows();
+  for (int begin = 0; begin < rows; begin += kRowLanes) {
+    const RowBlock& block = p.normals.blocks()[begin / kRowLanes];
+    double product[kRowLanes] = {};
+    for (int k = 0; k < 6; ++k)
+      for (int lane = 0; lane < kRowLanes; ++lane) product[lane] += block.g[k][lane] * z_[k];
+    std::copy(product, product + kRowLanes, products_.begin() + begin);
+  }
+  const double far = z_.norm();
   double worst = tolerance;
   int found = -1;
-  double d0 = 0, d1 = 0;
-  for (int i = 0; i < p.normals.rows(); ++i) {
-    const double short_by = p.bounds[i] - p.normals.row(i).dot(z_);
-    double slip = 0, s0 = 0, s1 = 0;
-    if (p.mu[i] > 0) {
-      s0 = p.tangents[i].row[0].dot(z_);
-      s1 = p.tangents[i].row[1].dot(z_);
-      slip = std::hypot(s0, s1);
+  for (int i = 0; i < rows; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double short_by = p.bounds[i] - products_[at];
+    if (!(short_by + reach_[at] * far > worst)) continue;
+    double slip2 = 0;
+    for (int k = 0; k < 2 && p.mu[i] > 0; ++k) {
+      const double s = p.tangents[i].row[k].dot(z_);
+      slip2 += s * s;
     }
-    if (!(short_by + p.mu[i] * slip > worst)) continue;
-    worst = short_by + p.mu[i] * slip;
+    const double by = short_by + p.mu[i] * std::sqrt(slip2);
+    if (!(by > worst)) continue;
+    worst = by;
     found = i;
-    d0 = slip > 0 ? s0 / slip : 0;
-    d1 = slip > 0 ? s1 / slip : 0;
   }
   if (found < 0) return false;
-  out.contact = found;
-  out.direction[0] = d0;
-  out.direction[1] = d1;
-  out.unit = p.normals.row(found);
-  if (p.mu[found] > 0)
-    out.unit -= p.mu[found] * (d0 * p.tangents[found].row[0] + d1 * p.tangents[found].row[1]);
+  make_row(found, out);
+  return out.length > 0;
+}
+
+void RelaxedCone::make_row(int contact, Row& out) const noexcept {
+  const FrictionProblem& p = *problem_;
+  out.contact = contact;
+  out.unit = p.normals.row(contact);
+  out.direction[0] = out.direction[1] = 0;
+  if (p.mu[contact] > 0) {
+    const TangentRows& t = p.tangents[contact];
+    const double s0 = t.row[0].dot(z_), s1 = t.row[1].dot(z_), slip = std::sqrt(s0 * s0 + s1 * s1);
+    if (slip > 0) {
+      out.direction[0] = s0 / slip;
+      out.direction[1] = s1 / slip;
+    }
+    out.unit -= p.mu[contact] * (out.direction[0] * t.row[0] + out.direction[1] * t.row[1]);
+  }
   out.length = out.unit.norm();
-  if (!(out.length > 0)) return false;
+  if (!(out.length > 0)) return;
   out.unit /= out.length;
-  out.target = p.bounds[found] / out.length - out.unit.dot(p.wanted);
-  return true;
+  out.target = p.bounds[contact] / out.length - out.unit.dot(p.wanted);
 }
 
 void RelaxedCone::drop(int position) noexcept {
@@ -103,6 +125,11 @@ bool RelaxedCone::solve(const FrictionProblem& problem) noexcept {
   size_ = changes_ = 0;
   z_ = problem.wanted;
   const double scale = problem.wanted.norm();
+  for (int i = 0; i < problem.normals.rows(); ++i) {
+    const TangentRows& t = problem.tangents[i];
+    reach_[static_cast<std::size_t>(i)] =
+        problem.mu[i] > 0 ? problem.mu[i] * std::sqrt(t.row[0].squaredNorm() + t.row[1].squaredNorm()) : 0;
+  }
   Row row;
   while (most_violated(kTolerance * scale, row)) {
     if (take(row)) continue;

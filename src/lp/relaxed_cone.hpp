@@ -9,9 +9,12 @@ namespace tegotae {
 
 /// The convex neighbor of a friction problem: the motion nearest to the wanted one with N_i z - μ_i |T_i z| >= b_i. It
 /// always has an answer, which is Coulomb's wherever nothing slides; a contact that slides opens meanwhile. Goldfarb
-/// and Idnani's method with a row made for each contact where it is needed. Allocates nothing.
+/// and Idnani's method with a row made for each contact where it is needed. `solve` allocates nothing.
 class RelaxedCone {
  public:
+  /// For at most `capacity` rows; allocates.
+  explicit RelaxedCone(int capacity);
+
   /// False when precision is lost, which leaves standing still.
   bool solve(const FrictionProblem& problem) noexcept;
 
@@ -31,13 +34,16 @@ class RelaxedCone {
   };
 
   /// The row that z_ violates most, by more than `tolerance`.
-  bool most_violated(double tolerance, Row& out) const noexcept;
+  bool most_violated(double tolerance, Row& out) noexcept;
+  void make_row(int contact, Row& out) const noexcept;
   /// Raises the row's multiplier until it holds; false when it cannot.
   bool take(const Row& row) noexcept;
   void drop(int position) noexcept;
   void solve_active() noexcept;
 
   const FrictionProblem* problem_ = nullptr;
+  std::vector<double> products_;  ///< N z of each row, by eights
+  std::vector<double> reach_;     ///< the most that μ |T z| can be by |z|
   SpanBasis span_;
   Row rows_[6];
   double lambda_[6] = {};
