@@ -76,8 +76,9 @@ TEGOTAE_C_EXPORT int tegotae_scene_move(tegotae_scene* scene, uint32_t part, con
 /** Rigs that were made of it go on. NULL is let be. */
 TEGOTAE_C_EXPORT void tegotae_scene_destroy(tegotae_scene* scene);
 
-/** A rig of the scene as it is now; `clock` is an enum tegotae_clock. `device`: "shm:NAME", that of another process, with TEGOTAE_CLOCK_REAL; or NULL: a
- * simulated pen, whose hand tegotae_rig_lead() leads, from where the held part starts. */
+/** A rig of the scene as it is now; `clock` is an enum tegotae_clock. `device`: "shm:NAME", that of another process,
+ * with TEGOTAE_CLOCK_REAL; or NULL: a simulated pen, whose hand tegotae_rig_lead() leads, from where the held part
+ * starts. */
 TEGOTAE_C_EXPORT tegotae_rig* tegotae_rig_create(const tegotae_scene* scene, const char* device, int clock);
 /** Stops. NULL is let be. */
 TEGOTAE_C_EXPORT void tegotae_rig_destroy(tegotae_rig* rig);

@@ -21,9 +21,9 @@ struct FrictionResult {
   LpStatus status = LpStatus::stalled;  ///< optimal; or that of the problem without friction
   Vec6 z = Vec6::Zero();                ///< zero unless optimal
   FrictionMethod method = FrictionMethod::frictionless;
-  bool exact = false;                ///< Coulomb's law holds to 1e-7 of the wanted motion
-  double residual = 0;               ///< coulomb_residual(), m; of an exact frictionless answer 0
-  int iterations = 0;                ///< changes and rounds of all methods
+  bool exact = false;                 ///< Coulomb's law holds to 1e-7 of the wanted motion
+  double residual = 0;                ///< coulomb_residual(), m; of an exact frictionless answer 0
+  int iterations = 0;                 ///< changes and rounds of all methods
   std::vector<FrictionForce> forces;  ///< that are not zero
 };
 

@@ -8,8 +8,8 @@
 namespace tegotae {
 
 /// What a loading process sends back: this head, then `text_bytes` of text (the mesh's name or the error), then
-/// `note_bytes` of notes (each ends with a line feed), then the vertices (3 doubles each) and the triangles (3 indices of
-/// 32 bits each), in the machine's byte order.
+/// `note_bytes` of notes (each ends with a line feed), then the vertices (3 doubles each) and the triangles (3 indices
+/// of 32 bits each), in the machine's byte order.
 struct MeshPipeHead {
   static constexpr std::uint64_t kMagic = 0x3248534D47455431;  // tells a helper of another version
   std::uint64_t magic = kMagic;

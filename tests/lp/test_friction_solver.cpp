@@ -189,8 +189,9 @@ TEST_CASE("V-groove, collar and spin stick up to their closed forms", "[friction
     FrictionCase c;
     for (const double z : {-0.5 * length, 0.5 * length})
       for (const double s : {-1.0, 1.0}) c.add({0.01 * s, 0, z}, {s, 0, 0}, mu);
-    const double arm =
-        threshold(0, 1, [&](double x) { return !sticks(c, FrictionCase::load({0, 0, -5}, {0, 5 * x, 0})); });
+    const double arm = threshold(0, 1, [&](double x) {
+      return !sticks(c, FrictionCase::load({0, 0, -5}, {0, 5 * x, 0}));
+    });
     CHECK(arm == Approx(length / (2 * mu)).epsilon(1e-3));
   }
   FrictionCase c;
@@ -198,8 +199,7 @@ TEST_CASE("V-groove, collar and spin stick up to their closed forms", "[friction
     const double a = 0.3 + i * M_PI / 2;
     c.add({0.01 * std::cos(a), 0.01 * std::sin(a), -0.01}, Vec3::UnitZ(), 0.3);
   }
-  const double spin =
-      threshold(0, 1, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t})); });
+  const double spin = threshold(0, 1, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t})); });
   CHECK(spin == Approx(0.3 * 0.01 * 5).epsilon(1e-3));
 }
 
@@ -215,8 +215,7 @@ TEST_CASE("a flat ring spins at the friction of its whole face", "[friction]") {
       c.add({r * std::cos(a), r * std::sin(a), -0.01}, Vec3::UnitZ(), mu);
     }
   }
-  const double spin =
-      threshold(0, 1, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t})); });
+  const double spin = threshold(0, 1, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t})); });
   CHECK(spin == Approx(mu * 5 * sum).epsilon(1e-3));  // the load is shared by all 64 points
   const double whole = 2.0 / 3 * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);
   CHECK(spin == Approx(mu * 5 * whole).epsilon(0.01));
@@ -227,15 +226,19 @@ TEST_CASE("a loaded screw holds itself from tan(lead) cos(flank) on, and turns a
     const double lambda = std::atan(pitch / (M_PI * d2));
     const double flank = std::atan(std::tan(30 * kDegree) * std::cos(lambda));
     const double critical = std::tan(lambda) * std::cos(flank);
-    const double found = threshold(
-        0, 0.2, [&](double mu) { return !sticks(screw(pitch, d2, mu), FrictionCase::load({0, 0, -5})); });
+    const double found = threshold(0, 0.2, [&](double mu) {
+      return !sticks(screw(pitch, d2, mu), FrictionCase::load({0, 0, -5}));
+    });
     CHECK(found == Approx(critical).epsilon(0.002));
     for (const double mu : {0.1, 0.2}) {
       const FrictionCase c = screw(pitch, d2, mu);
       const double phi = std::atan(mu / std::cos(flank)), arm = 5 * d2 / 2;
-      const double up = threshold(0, 0.2, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t})); });
-      const double down =
-          threshold(0, 0.2, [&](double t) { return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, -t})); });
+      const double up = threshold(0, 0.2, [&](double t) {
+        return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, t}));
+      });
+      const double down = threshold(0, 0.2, [&](double t) {
+        return sticks(c, FrictionCase::load({0, 0, -5}, {0, 0, -t}));
+      });
       CHECK(up == Approx(arm * std::tan(phi + lambda)).epsilon(0.002));
       CHECK(down == Approx(arm * std::tan(phi - lambda)).epsilon(0.002));
     }
@@ -251,7 +254,8 @@ TEST_CASE("a peg in two-point contact jams where Whitney says", "[friction]") {
       const FrictionCase c = peg(round, r, 2 * r * mu * lambda, tip, mu);
       for (int i = 0; i < 40; ++i)
         for (int j = 0; j < 40; ++j) {
-          const double side = (-1.5 + 3 * (i + 0.5) / 40) / mu, moment = (-1.3 + 2.6 * (j + 0.5) / 40) * (1 + 2 * lambda);
+          const double side = (-1.5 + 3 * (i + 0.5) / 40) / mu,
+                       moment = (-1.3 + 2.6 * (j + 0.5) / 40) * (1 + 2 * lambda);
           const Vec3 force(side * push, 0, -push);
           const Vec3 torque = Vec3(0, -moment * r * push, 0) + Vec3(0, 0, -tip).cross(force);
           const bool slides = std::abs(side) < 1 / mu && std::abs(moment + mu * (1 + lambda) * side) < lambda;
