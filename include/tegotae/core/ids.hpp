@@ -11,9 +11,9 @@ namespace tegotae TEGOTAE_EXPORT {
 struct PartId {
   std::uint32_t index = 0;  ///< into Scene::parts
 
-  bool operator==(PartId other) const noexcept { return index == other.index; }
-  bool operator!=(PartId other) const noexcept { return index != other.index; }
-  bool operator<(PartId other) const noexcept { return index < other.index; }  ///< by index
+  bool operator==(PartId other) const noexcept { return index == other.index; }  ///< the same part
+  bool operator!=(PartId other) const noexcept { return index != other.index; }  ///< another part
+  bool operator<(PartId other) const noexcept { return index < other.index; }    ///< by index
 };
 
 /// What a feature of a mesh is.
@@ -21,13 +21,14 @@ enum class FeatureKind : std::uint8_t { vertex, edge, face };
 
 /// A vertex, edge or face of a mesh.
 struct Feature {
-  FeatureKind kind = FeatureKind::vertex;
+  FeatureKind kind = FeatureKind::vertex;  ///< what it is
   /// Into TriangleMesh::vertices or TriangleMesh::triangles; edges are numbered by the library, the same way each time
   /// for the same mesh.
   std::uint32_t index = 0;
 
+  /// The same feature, of the same mesh.
   bool operator==(const Feature& o) const noexcept { return kind == o.kind && index == o.index; }
-  bool operator!=(const Feature& o) const noexcept { return !(*this == o); }
+  bool operator!=(const Feature& o) const noexcept { return !(*this == o); }  ///< another feature
 };
 
 }  // namespace tegotae

@@ -70,8 +70,9 @@ struct ContactSettings {
 
 /// Coulomb friction of one pair of parts, whichever of them is held.
 struct PairFriction {
-  std::string a, b;  ///< names of the parts; a pair of which one is not in the scene says nothing
-  double mu = 0;     ///< coefficient, sticking and sliding alike, 0 to 10
+  std::string a;  ///< name of one part
+  std::string b;  ///< and of the other; a pair of which one is not in the scene says nothing
+  double mu = 0;  ///< coefficient, sticking and sliding alike, 0 to 10
 };
 
 /// Coulomb friction between the held part and the others (resolver "qp"). Where nothing rubs, everything is as without.
