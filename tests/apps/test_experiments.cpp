@@ -52,9 +52,7 @@ void check_experiment(const std::string& name, const std::string& options) {
 }  // namespace
 
 TEST_CASE("the short form of each experiment holds its claims", "[experiment]") {
-  check_experiment(
-      GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench", "friction", "friction-tasks"),
-      "--quick");
+  check_experiment(GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench"), "--quick");
 }
 
 // The short ladder is for the default resolver; with the rivals, which may jam, it takes minutes.
