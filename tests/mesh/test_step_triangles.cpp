@@ -185,7 +185,8 @@ TEST_CASE("STEP: a shape that is shown exactly and by triangles is read once, ex
   // The exact shape is of no product.
   StepText s(kSchema);
   const int block = s.block();
-  check_tip(read_text_of(with(s, solid(s, "10.", r(block))).text()));
+  const int item = solid(s, "10.", r(block));
+  check_tip(read_text_of(with(s, item).text()));
 }
 
 TEST_CASE("STEP: a tessellated part has its color", "[step]") {
@@ -255,7 +256,8 @@ TEST_CASE("STEP: texts and comments with signs of the language in them change no
 
 TEST_CASE("STEP: damaged triangles refuse the file with the entity's number", "[step]") {
   StepText whole(kSchema);
-  const std::string text = with(whole, solid(whole)).text();
+  const int item = solid(whole);
+  const std::string text = with(whole, item).text();
   const std::pair<const char*, const char*> damages[] = {{"((1,3,2)", "((1,3,5)"},
                                                          {"((1,3,2)", "((0,3,2)"},
                                                          {"((1,3,2)", "((1,3)"},
