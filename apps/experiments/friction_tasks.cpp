@@ -11,9 +11,8 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHole = 0.02, kChamfer = 0.001;      // m
-constexpr double kMostTilt = 5 * 0.0174532925199433;  // rad
-constexpr double kGiveUp = 15;                        // s after the tip's reaching the surface
+constexpr double kHole = 0.02;  // m
+constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
 const std::vector<double> kMus = {0, 0.1, 0.3};
 
 /// One operator's try on a rung.
@@ -26,17 +25,6 @@ struct Try {
   double force = 0;     ///< the most that the hand felt, N
   bool wedged = false;  ///< what stayed out: the hand's push is one that jams by Whitney's condition
 };
-
-/// As the ladder without friction begins: tilted and off center, the last start as far as it may be.
-InsertionTask start(const PegTask& peg, std::size_t person, int i, int n) {
-  InsertionTask task = peg.task();
-  const double share = static_cast<double>(i + 1) / n;
-  const double a = 2.4 * i + 1.3 * static_cast<double>(person), b = 1.1 * i + 2.1 * static_cast<double>(person);
-  task.own_errors = false;
-  task.tilt = share * kMostTilt * Vec3(std::cos(a), std::sin(a), 0);
-  task.offset = share * kChamfer * Vec3(std::cos(b), std::sin(b), 0);
-  return task;
-}
 
 /// Whether the pen's push at the end is one under which a peg in two-point contact jams, in the plane of its moment.
 bool is_wedged(const PegTask& peg, const Sample& s, double mu) {
@@ -64,7 +52,7 @@ std::vector<Try> try_all(const Work& work, const std::vector<double>& ratios, in
     Try& t = all[static_cast<std::size_t>(i)];
     PegTask peg = pegs[static_cast<std::size_t>(std::find(ratios.begin(), ratios.end(), t.ratio) - ratios.begin())];
     peg.set_friction(t.mu);
-    t.attempt = attempt(peg, operator_profiles()[t.person], start(peg, t.person, t.start, starts),
+    t.attempt = attempt(peg, operator_profiles()[t.person], peg.tilted_task(t.person, t.start, starts),
                         static_cast<std::uint64_t>(t.start), kGiveUp, false);
     for (const Sample& s : t.attempt.samples) t.force = std::max(t.force, s.wrench.force.norm());
     if (!t.attempt.samples.empty()) {

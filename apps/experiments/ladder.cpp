@@ -11,9 +11,8 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHole = 0.02, kChamfer = 0.001;      // m
-constexpr double kMostTilt = 5 * 0.0174532925199433;  // rad
-constexpr double kGiveUp = 15;                        // s after the tip's reaching the surface
+constexpr double kHole = 0.02;  // m
+constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
 
 // Every so many of the starts are tried with a rival too: a wedged impulse run takes forty times as long as one of
 // `qp`.
@@ -60,17 +59,6 @@ Plan plan(const Work& work) {
   return p;
 }
 
-/// Start number `i` of `n`: the last one is tilted and off center as far as it may be, directions go around.
-InsertionTask start(const PegTask& peg, std::size_t person, int i, int n) {
-  InsertionTask task = peg.task();
-  const double share = static_cast<double>(i + 1) / n;
-  const double a = 2.4 * i + 1.3 * static_cast<double>(person), b = 1.1 * i + 2.1 * static_cast<double>(person);
-  task.own_errors = false;
-  task.tilt = share * kMostTilt * Vec3(std::cos(a), std::sin(a), 0);
-  task.offset = share * kChamfer * Vec3(std::cos(b), std::sin(b), 0);
-  return task;
-}
-
 double clearance_um(double ratio) {
   return 1e6 * kHole * (1 - ratio);
 }
@@ -103,7 +91,7 @@ std::vector<Attempt> try_all(const Work& work, const Plan& p) {
     const Job& j = p.jobs[static_cast<std::size_t>(i)];
     const PegTask& peg = pegs[j.resolver * p.ratios.size() + j.rung];
     Attempt& a = attempts[static_cast<std::size_t>(i)];
-    a = attempt(peg, operator_profiles()[j.person], start(peg, j.person, j.start, p.starts),
+    a = attempt(peg, operator_profiles()[j.person], peg.tilted_task(j.person, j.start, p.starts),
                 static_cast<std::uint64_t>(j.start), kGiveUp, false);
     a.samples = {};
   });

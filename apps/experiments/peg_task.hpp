@@ -21,6 +21,9 @@ class PegTask {
   Scene scene_at(const Pose& start) const;
   /// What an operator is to do: begin 40 mm aside and over the hole, push to the bottom.
   InsertionTask task() const;
+  /// The same, from start `i` of `n`: the last one is tilted (5°) and off center (1 mm, the chamfer) as far as it may
+  /// be, directions go around.
+  InsertionTask tilted_task(std::size_t person, int i, int n) const;
   Vec3 tip() const;      ///< of the peg, m, its file frame
   double depth() const;  ///< of the hole, m
 
