@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 or 13, apt), configures and builds: setup.sh [--browser] [--checks] [TARGET...]
-# (everything without targets). --browser adds what the tests need that are not daily: a browser, doxygen. --checks adds
+# (everything without targets), or setup.sh --demo: what apps/demo.sh needs alone, in a build folder of its own.
+# --browser adds what the tests need that are not daily: a browser, doxygen. --checks adds
 # the tools of tests/checks.sh; without them its checks are skipped, so that one that cannot be had is no error.
 # Shared by apps/demo.sh and tests/run.sh; a second call only builds what changed.
 set -euo pipefail
@@ -13,8 +14,16 @@ packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-de
 
 browser=false
 tools=()
+preset=release
+options=(-DTEGOTAE_BUILD_APPS=ON -DTEGOTAE_BUILD_TESTS=ON)
 for _ in 1 2; do
   case ${1:-} in
+    --demo)
+      packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev)
+      preset=demo
+      options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF)
+      set -- demo
+      break ;;
     --browser)
       browser=true
       packages+=(doxygen)
@@ -82,7 +91,15 @@ if $browser && [ ! -d tests/view/node_modules ]; then
 fi
 
 # A build tree that exists keeps its generator.
+build=build/$preset
 generator=()
-[ -e build/release/CMakeCache.txt ] || generator=(-G Ninja)
-cmake --preset release "${generator[@]}" --log-level=WARNING -DTEGOTAE_BUILD_APPS=ON -DTEGOTAE_BUILD_TESTS=ON >/dev/null
-cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$@"}
+[ -e $build/CMakeCache.txt ] || generator=(-G Ninja)
+cmake -S . -B $build "${generator[@]}" --log-level=WARNING -DCMAKE_BUILD_TYPE=Release "${options[@]}" >/dev/null
+
+# How much there is to do. A source takes some four seconds of one processor, less with a warm compiler cache.
+if [ -e $build/build.ninja ]; then
+  sources=$(ninja -C $build -n -v ${1:+"$@"} | grep -c ' -c ' || true)
+  [ "$sources" = 0 ] ||
+    echo "setup: compiling $sources sources on $(nproc) processors: about $((sources * 4 / $(nproc) / 60 + 1)) minutes, less with a compiler cache"
+fi
+cmake --build $build --parallel "$(nproc)" ${1:+--target "$@"}

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# The demo: installs what is missing, builds, and carries a peg into its hole in real time.
-# `bash apps/demo.sh` shows the fits 0.94 and 0.99; arguments go to the program (see peg_in_hole --help).
+# The demo: installs what is missing, builds, and carries a peg into its hole in real time: the fits 0.94 and 0.99.
+# `bash apps/demo.sh` compiles what that needs and no more, in a build folder of its own. With arguments it builds and runs
+# the program peg_in_hole, which also records and serves a page (see peg_in_hole --help): `bash apps/demo.sh --view`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-bash .ci/setup.sh peg_in_hole tegotae_cli
 if [ $# -gt 0 ]; then
+  bash .ci/setup.sh peg_in_hole
   exec build/release/bin/peg_in_hole "$@"
 fi
-build/release/bin/peg_in_hole --ratio 0.94
-echo
-build/release/bin/peg_in_hole --ratio 0.99
+bash .ci/setup.sh --demo
+exec build/demo/bin/demo

@@ -6,8 +6,8 @@
 
 #include "bench/results.hpp"
 #include "narrowphase/patch_tree.hpp"
-#include "run_options.hpp"
-#include "status_line.hpp"
+#include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae::bench {
@@ -57,7 +57,7 @@ SceneFigures measure_scene(const std::string& name, const BenchOptions& options,
   const int jams = options.quick ? kQuickJams : kJams;
   progress.say(name + ": building");
   BenchScene scene = make_scene(name, jams);
-  if (!options.resolver.empty()) scene.scene.contact.resolver = options.resolver;
+  if (!options.resolver.empty()) scene.scene.contact.resolver = resolver_kind(options.resolver);
   SceneFigures f;
   f.scene = name;
   f.targets = scene.targets;
@@ -114,7 +114,7 @@ int run_bench(const BenchOptions& options) {
       for (const BudgetFigures& b : row.budgets) free = free && b.intersecting == 0;
       free = free && !(row.friction && row.friction->intersecting > 0);
     }
-    progress.say("linear programmes");
+    progress.say("linear programs");
     results.lp = measure_lp(options.quick);
   }
   results.seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);

@@ -24,16 +24,16 @@ bool GlpkSolver::available() {
   return true;
 }
 
-GlpkSolver::GlpkSolver(const programmes::Programme& programme) : problem_(std::make_unique<Problem>()) {
+GlpkSolver::GlpkSolver(const programs::Program& program) : problem_(std::make_unique<Problem>()) {
   glp_prob* p = problem_->p;
-  const int n = static_cast<int>(programme.d.size());
-  const Eigen::MatrixXd a = programme.g * programme.g.transpose();
+  const int n = static_cast<int>(program.d.size());
+  const Eigen::MatrixXd a = program.g * program.g.transpose();
   glp_add_rows(p, n);
   glp_add_cols(p, n);
   std::vector<int> column(n + 1);
   std::vector<double> value(n + 1);
   for (int i = 1; i <= n; ++i) {
-    glp_set_row_bnds(p, i, GLP_LO, programme.d[i - 1], 0);
+    glp_set_row_bnds(p, i, GLP_LO, program.d[i - 1], 0);
     glp_set_col_bnds(p, i, GLP_LO, 0, 0);
     glp_set_obj_coef(p, i, 1);
     for (int j = 1; j <= n; ++j) {

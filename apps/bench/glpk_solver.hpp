@@ -3,17 +3,17 @@
 #include <memory>
 #include <optional>
 
-#include "bench/contact_programmes.hpp"
+#include "bench/contact_programs.hpp"
 
 namespace tegotae::bench {
 
-/// GLPK's dual simplex on a contact programme with its dense matrix A = G Gᵀ, loaded when made. Only in builds that
+/// GLPK's dual simplex on a contact program with its dense matrix A = G Gᵀ, loaded when made. Only in builds that
 /// have GLPK.
 class GlpkSolver {
  public:
   static bool available();
 
-  explicit GlpkSolver(const programmes::Programme& p);
+  explicit GlpkSolver(const programs::Program& p);
   ~GlpkSolver();
   GlpkSolver(const GlpkSolver&) = delete;
   GlpkSolver& operator=(const GlpkSolver&) = delete;

@@ -1,5 +1,5 @@
 #include "bench/results.hpp"
-#include "latency_json.hpp"
+#include "shared/latency_json.hpp"
 
 namespace tegotae::bench {
 namespace {

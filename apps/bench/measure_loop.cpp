@@ -39,16 +39,16 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
         for (const Pose& X : r.pieces) trace.committed.add(X);
         trace.checked += static_cast<std::int64_t>(r.pieces.size());
       }
-      if (r.contacts == 0 && !r.cut) continue;
+      if (r.contacts == 0 && !r.flags.timed_out) continue;
       wall.push_back(wall1 - wall0);
       cpu.push_back(cpu1 - cpu0);
       f.contacts += r.contacts;
       f.contacts_max = std::max(f.contacts_max, r.contacts);
-      f.limits += r.limits;
+      f.limits += r.constraints;
       f.resolves += r.resolves;
       f.candidate_parts += r.candidate_parts;
-      f.cut += r.cut;
-      f.overflow += r.overflow;
+      f.cut += r.flags.timed_out;
+      f.overflow += r.flags.overflow;
       if (k % stride == 0) {
         trace.X.push_back(r.proxy.X);
         trace.Y.push_back(Y);

@@ -3,11 +3,11 @@
 #include <memory>
 #include <vector>
 
+#include "bench/path.hpp"
 #include "bench/scenes.hpp"
 #include "bench/timing.hpp"
-#include "bench/way.hpp"
-#include "sim/pose_check.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "session/pose_check.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::bench {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bench/contact_programmes.hpp"
+#include "bench/contact_programs.hpp"
 #include "bench/glpk_solver.hpp"
 #include "bench/timing.hpp"
 #include "lp/least_distance.hpp"
@@ -13,23 +13,23 @@
 namespace tegotae::bench {
 namespace {
 
-using namespace tegotae::programmes;
+using namespace tegotae::programs;
 
 constexpr int kInstances = 16;
-// Gap (m) that the contacts of the programmes keep.
+// Gap (m) that the contacts of the programs keep.
 constexpr double kLMin = 1e-5;
 // Each figure is measured for about this long, s.
 constexpr double kSeconds = 0.3, kQuickSeconds = 0.01;
 // GLPK's dense matrix of 10 000 rows would take gigabytes.
 constexpr int kMostGlpkRows = 1000;
 
-std::vector<Programme> instances(int rows, bool on_ball) {
+std::vector<Program> instances(int rows, bool on_ball) {
   Random random(5);
-  std::vector<Programme> all;
+  std::vector<Program> all;
   while (all.size() < kInstances) {
     const int facets = std::max(rows / 16, 4);
     const Contacts c = on_ball ? ball(random, rows) : peg(random, facets, rows / facets, 1e-4);
-    Programme p = programme(c, Body{}, wanted(random), kLMin);
+    Program p = program(c, Body{}, wanted(random), kLMin);
     if (p.d.maxCoeff() > 0) all.push_back(std::move(p));
   }
   return all;
@@ -50,9 +50,9 @@ double mean_us(double seconds, Solve solve) {
 }
 
 LpTimes measure(int rows, bool on_ball, double seconds) {
-  const std::vector<Programme> all = instances(rows, on_ball);
+  const std::vector<Program> all = instances(rows, on_ball);
   std::vector<LowRankMatrix> g;
-  for (const Programme& p : all) g.push_back(p.matrix());
+  for (const Program& p : all) g.push_back(p.matrix());
 
   LpTimes t;
   LpSolver lp(rows);
@@ -70,7 +70,7 @@ LpTimes measure(int rows, bool on_ball, double seconds) {
   if (!GlpkSolver::available() || rows > kMostGlpkRows) return t;
 
   std::vector<std::unique_ptr<GlpkSolver>> solvers;
-  for (const Programme& p : all) solvers.push_back(std::make_unique<GlpkSolver>(p));
+  for (const Program& p : all) solvers.push_back(std::make_unique<GlpkSolver>(p));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto value = solvers[k]->solve();
     if (!value) return t;

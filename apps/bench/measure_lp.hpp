@@ -5,12 +5,12 @@
 
 namespace tegotae::bench {
 
-/// Times for one kind of programme, µs of CPU time a solve, mean over the instances; NaN where not measured.
+/// Times for one kind of program, µs of CPU time a solve, mean over the instances; NaN where not measured.
 struct LpTimes {
-  double us = std::numeric_limits<double>::quiet_NaN();       ///< the paper's linear programme
-  double qp_us = std::numeric_limits<double>::quiet_NaN();    ///< the least-constraint programme over the same rows
-  double glpk_us = std::numeric_limits<double>::quiet_NaN();  ///< GLPK on the linear programme
-  double iterations = 0;                                      ///< pivots of the linear programme, mean
+  double us = std::numeric_limits<double>::quiet_NaN();       ///< the paper's linear program
+  double qp_us = std::numeric_limits<double>::quiet_NaN();    ///< the least-constraint program over the same rows
+  double glpk_us = std::numeric_limits<double>::quiet_NaN();  ///< GLPK on the linear program
+  double iterations = 0;                                      ///< pivots of the linear program, mean
   double gap = 0;                                             ///< largest relative duality gap |primal - dual| / primal
   double glpk_differs = 0;                                    ///< largest relative difference of GLPK's objective
   int failed = 0;                                             ///< instances that did not end optimal

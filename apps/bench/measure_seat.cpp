@@ -110,10 +110,10 @@ SeatFigures measure_seat(const BenchScene& scene, HapticLoop& loop, LoopTrace& t
       const TickReport& r = loop.step(Y, kPeriod);
       const std::int64_t took = monotonic_ns() - start;
       watch.look(now, Y, r.proxy.X);
-      f.cut += r.cut;
+      f.cut += r.flags.timed_out;
       if (now > t.rest - kSettled * kRest && now <= t.rest)
         rest.push_back(took);
-      else if (r.contacts > 0 || r.cut)
+      else if (r.contacts > 0 || r.flags.timed_out)
         moving.push_back(took);
       if (k % kStride != 0) continue;
       trace.committed.add(r.proxy.X);

@@ -9,7 +9,7 @@ bool GlpkSolver::available() {
   return false;
 }
 
-GlpkSolver::GlpkSolver(const programmes::Programme&) {}
+GlpkSolver::GlpkSolver(const programs::Program&) {}
 GlpkSolver::~GlpkSolver() = default;
 
 std::optional<double> GlpkSolver::solve() {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <random>
 
+#include "bench/path.hpp"
 #include "bench/seat_scenes.hpp"
-#include "bench/way.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::bench {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "bench/way.hpp"
+#include "bench/path.hpp"
 #include "models/height_field.hpp"
 #include "models/revolved.hpp"
 #include "models/shapes.hpp"

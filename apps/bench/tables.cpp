@@ -1,14 +1,14 @@
 #include <cmath>
 
 #include "bench/results.hpp"
-#include "format.hpp"
+#include "shared/format.hpp"
 
 namespace tegotae::bench {
 namespace {
 
 // Of a tick's budget, for what ends after the last look at the clock, µs.
 constexpr double kBudgetSlack = 100;
-// The paper-sized programmes are to beat GLPK by this much at this many contacts.
+// The paper-sized programs are to beat GLPK by this much at this many contacts.
 constexpr int kGlpkRows = 64;
 constexpr double kGlpkRatio = 25;
 // Hierarchies: µs and bytes a triangle.
@@ -73,7 +73,7 @@ void add_run(const std::string& scene, const char* speed, const LoopFigures& f, 
 std::string runs_table(const Results& r) {
   std::string text =
       "| scene | pen | wall: median / p99 / p99.9 / max, µs | CPU: the same, µs | contacts mean / max | limits | "
-      "programmes | ticks cut | depth, mm |\n|---|---|---|---|---|---|---|---|---|\n";
+      "programs | ticks cut | depth, mm |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const SceneFigures& s : r.rows) {
     add_run(s.scene, "hand", s.hand, text);
     add_run(s.scene, "fast", s.fast, text);
@@ -170,14 +170,14 @@ std::string friction_table(const Results& r) {
   if (text.empty()) return text;
   return "\n### With friction\n\n| scene | mu | median / p99.9, µs | without: median / p99.9, µs | ratio of the "
          "medians "
-         "(1.5) | programmes | ticks cut | intersecting | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
+         "(1.5) | programs | ticks cut | intersecting | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
          text;
 }
 
 std::string lp_table(const Results& r) {
   if (r.lp.empty()) return "";
   std::string text =
-      "\n### Linear programme\n\n| contacts | lp peg / ball (target), µs | pivots | qp peg / ball, µs | GLPK peg / "
+      "\n### Linear program\n\n| contacts | lp peg / ball (target), µs | pivots | qp peg / ball, µs | GLPK peg / "
       "ball, "
       "µs | faster than GLPK | relative duality gap | verdict |\n|---|---|---|---|---|---|---|---|\n";
   for (const LpFigures& f : r.lp) {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "tegotae/servo/latency_histogram.hpp"
+#include "tegotae/core/latency_histogram.hpp"
 
 namespace tegotae::bench {
 

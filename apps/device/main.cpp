@@ -2,7 +2,7 @@
 #include "device/options.hpp"
 #include "device/run_device.hpp"
 #include "device/status.hpp"
-#include "guarded_main.hpp"
+#include "shared/guarded_main.hpp"
 #include "tegotae/core/error.hpp"
 
 using namespace tegotae;

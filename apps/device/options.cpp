@@ -12,7 +12,7 @@ void add_device_options(CLI::App& app, DeviceOptions& o) {
                           ->type_name("TYPE");
   app.add_option("--script", o.script, "Stylus script (CSV) of the simulated hand; begins when an application attaches")
       ->type_name("FILE");
-  app.add_option("--pen", o.pen, "Name of the pen in the vendor's set-up (openhaptics; its default pen unless told)")
+  app.add_option("--pen", o.pen, "Name of the pen in the vendor's set-up (openhaptics; default: its default pen)")
       ->type_name("PEN");
   app.add_option("--name", o.name, "Name of the shared-memory segment, one a device")
       ->capture_default_str()

@@ -6,10 +6,10 @@
 
 #include "device/make_device.hpp"
 #include "device/status.hpp"
-#include "guarded_main.hpp"
+#include "shared/guarded_main.hpp"
 #include "tegotae/coupling/stability.hpp"
-#include "tegotae/device/channel.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/channel.hpp"
 
 namespace tegotae::apps {
 

@@ -3,12 +3,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "format.hpp"
-#include "guarded_main.hpp"
-#include "latency_json.hpp"
+#include "shared/format.hpp"
+#include "shared/guarded_main.hpp"
+#include "shared/latency_json.hpp"
 #include "tegotae/core/clock.hpp"
-#include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
+#include "tegotae/transport/channel.hpp"
 
 namespace tegotae::apps {
 

@@ -15,7 +15,7 @@ using namespace tegotae;
 namespace {
 
 /// A hand that goes to and fro by 25 mm about where the part starts.
-class ToAndFro final : public HandIntent {
+class ToAndFro final : public InputSource {
  public:
   explicit ToAndFro(const Pose& start) : start_(start) {}
   double begin() const noexcept override { return 0; }

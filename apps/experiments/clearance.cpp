@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::experiments {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::experiments {
 

@@ -4,7 +4,7 @@
 
 #include "experiments/experiment_list.hpp"
 #include "experiments/trial.hpp"
-#include "run_options.hpp"
+#include "shared/run_options.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae::experiments {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::experiments {
 

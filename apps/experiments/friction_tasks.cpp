@@ -6,7 +6,7 @@
 #include "experiments/friction_peg.hpp"
 #include "experiments/peg_task.hpp"
 #include "experiments/statistics.hpp"
-#include "peg_scene.hpp"
+#include "peg_in_hole/peg_scene.hpp"
 
 namespace tegotae::experiments {
 namespace {

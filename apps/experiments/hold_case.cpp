@@ -6,7 +6,7 @@
 
 #include "experiments/trial.hpp"
 #include "models/random_bodies.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -27,7 +27,7 @@ struct Range {
 Held hold_case(const std::string& resolver, unsigned seed) {
   std::mt19937 rng(seed);
   Scene scene;
-  scene.contact.resolver = resolver;
+  scene.contact.resolver = resolver_kind(resolver);
   scene.contact.tick_budget = INFINITY;
   const bool convex = seed % 2 == 1;
   const auto body = [&](double size) {

@@ -6,8 +6,8 @@
 #include "experiments/experiment_list.hpp"
 #include "experiments/statistics.hpp"
 #include "experiments/trial.hpp"
-#include "peg_scene.hpp"
-#include "tegotae/sim/session.hpp"
+#include "peg_in_hole/peg_scene.hpp"
+#include "tegotae/session/session.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -30,7 +30,7 @@ struct Run {
 
 Run measure(const SceneFile& file, const std::string& resolver) {
   Scene scene = file.scene;
-  scene.contact.resolver = resolver;
+  scene.contact.resolver = resolver_kind(resolver);
   ScriptHand hand(file.script);
   Run r;
   r.samples = run_trial(scene, file.device, hand, nullptr, file.script.end() + kSettleTime, nullptr);
@@ -135,7 +135,7 @@ Outcome insertion(const Work& work) {
   out.title = "Insertion: one script, every resolver";
   out.intro =
       "The path of the peg's center of mass while a scripted hand carries it into its hole (20 mm), as in the paper's "
-      "figure 10. The paper found its linear programme smooth and the impulse method vibrating and slow. Vibration is "
+      "figure 10. The paper found its linear program smooth and the impulse method vibrating and slow. Vibration is "
       "what "
       "is above 30 Hz, root mean square, from the tip's reaching the surface on; stalled is the time at less than 1 "
       "mm/s "

@@ -6,7 +6,7 @@
 #include "experiments/experiment_list.hpp"
 #include "experiments/peg_task.hpp"
 #include "experiments/statistics.hpp"
-#include "peg_scene.hpp"
+#include "peg_in_hole/peg_scene.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kHole = 0.02;  // m
 constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
 
-// Every so many of the starts are tried with a rival too: a wedged impulse run takes forty times as long as one of
+// Every so many of the starts are tried with a baseline too: a wedged impulse run takes forty times as long as one of
 // `qp`.
 constexpr int kRivalEvery = 4;
 
@@ -173,7 +173,7 @@ Outcome ladder(const Work& work) {
       "A hole of 20 mm and pegs down to 10 µm of diametral clearance, an H7/g6 fit. Three modeled operators begin "
       "tilted by up to 5° and off center by up to the chamfer's millimeter, " +
       std::to_string(p.starts) + (p.starts == 1 ? " start" : " starts") +
-      " each, and push to the bottom. The rivals impulse and penalty get every fourth of the same starts, the most "
+      " each, and push to the bottom. The baselines impulse and penalty get every fourth of the same starts, the most "
       "tilted one among them. Who is not there 15 s after the tip has reached the surface did not finish. The deepest "
       "penetration is measured in closed form on every tenth pose, and FCL is asked about sixty poses a run. Jitter is "
       "that of "

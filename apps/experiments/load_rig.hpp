@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::experiments {
 

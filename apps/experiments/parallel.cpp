@@ -1,6 +1,6 @@
 #include "experiments/parallel.hpp"
 
-#include "parallel_for.hpp"
+#include "shared/parallel_for.hpp"
 
 namespace tegotae::experiments {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "experiments/experiments.hpp"
-#include "status_line.hpp"
+#include "shared/status_line.hpp"
 
 namespace tegotae::experiments {
 

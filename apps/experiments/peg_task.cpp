@@ -6,8 +6,8 @@
 
 #include "experiments/statistics.hpp"
 #include "models/shapes.hpp"
-#include "peg_scene.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "peg_in_hole/peg_scene.hpp"
+#include "tegotae/import/load.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -39,7 +39,7 @@ PegTask::PegTask(double ratio, const std::string& resolver, int segments) {
   peg.diameter = ratio * block.hole_diameter;
   scene_.parts.push_back({"hole", shared(shapes::block_with_hole(block)), Pose{}, false});
   scene_.parts.push_back({"peg", shared(shapes::peg(peg)), Pose{Quat::Identity(), {0, 0, 0.05}}, true});
-  scene_.contact.resolver = resolver;
+  scene_.contact.resolver = resolver_kind(resolver);
 
   for (int i = 0; i < block.segments; ++i) {
     const double angle = 2 * kPi * (i + 0.5) / block.segments;

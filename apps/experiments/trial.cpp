@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/pose_check.hpp"
+#include "session/pose_check.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/resolve/resolver.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kPeriod = 1e-9 * kPeriodNs;
 
 }  // namespace
 
-std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_settings, HandIntent& hand, Operator* op,
+std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_settings, InputSource& hand, Operator* op,
                               double seconds, const std::function<bool(const Sample&)>& done) {
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   HapticLoop loop(scene);
@@ -63,11 +63,7 @@ std::atomic<std::int64_t>& unexplained_lag_ticks() {
 }
 
 std::vector<std::string> resolvers() {
-  std::vector<std::string> out;
-  const std::vector<std::string>& known = resolver_names();
-  for (const char* name : {"qp", "lp", "impulse", "penalty"})
-    if (std::find(known.begin(), known.end(), name) != known.end()) out.emplace_back(name);
-  return out;
+  return resolver_names();
 }
 
 std::int64_t count_intersecting(const Scene& scene, const std::vector<Sample>& samples, std::size_t most) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/device/operator.hpp"
 #include "tegotae/device/simulated_device.hpp"
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
+#include "tegotae/operator/operator.hpp"
 
 namespace tegotae::experiments {
 
@@ -25,13 +25,13 @@ struct Sample {
 /// Runs the scene in virtual time with servo, safety chain and simulated pen, 1 kHz, as `tegotae run` does, but with
 /// any hand. `op` is shown the held part in every tick when it is not null. Ends after `seconds` or when `done` says
 /// so.
-std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen, HandIntent& hand, Operator* op,
+std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen, InputSource& hand, Operator* op,
                               double seconds, const std::function<bool(const Sample&)>& done);
 
 /// Sum of TickReport::unexplained_lag_ticks over all loops that experiments have run in this process. Any thread adds.
 std::atomic<std::int64_t>& unexplained_lag_ticks();
 
-/// Names of the resolvers that the library knows, the default first, then the paper's, then its rivals.
+/// Names of the resolvers that the library knows, the default first, then the paper's, then its baselines.
 std::vector<std::string> resolvers();
 
 /// How many poses X of `samples`, about `most` of them evenly spread, intersect a fixed part by FCL's word.

@@ -31,7 +31,7 @@ Scene cube_scene(double tilt, const std::string& resolver) {
     return Part{name, std::make_shared<const TriangleMesh>(std::move(mesh)), X, held};
   };
   Scene scene;
-  scene.contact.resolver = resolver;
+  scene.contact.resolver = resolver_kind(resolver);
   constexpr double kThick = 0.02, kWide = 0.16;
   const double wall_x = kWallX + kEdge / 2 + kThick / 2, floor_z = kFloorZ - kEdge / 2 - kThick / 2;
   scene.parts.push_back(part("wall", shapes::box({kThick, kWide, kWide}, {1, 8, 8}),

@@ -5,7 +5,7 @@
 #include "experiments/clearance.hpp"
 #include "experiments/experiment_list.hpp"
 #include "experiments/peg_task.hpp"
-#include "peg_scene.hpp"
+#include "peg_in_hole/peg_scene.hpp"
 
 namespace tegotae::experiments {
 namespace {

@@ -9,8 +9,8 @@
 #include "experiments/trial.hpp"
 #include "experiments/wrench_cages.hpp"
 #include "experiments/wrench_scenes.hpp"
-#include "sim/scene_parts.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "loop/scene_parts.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -43,7 +43,7 @@ void compare(const Vec3& expected, const Vec3& measured, Reading& r) {
 
 Reading read(const WrenchScene& w, const Probe& probe, const std::string& resolver) {
   Scene scene = w.scene;
-  scene.contact.resolver = resolver;
+  scene.contact.resolver = resolver_kind(resolver);
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   HapticLoop loop(scene);
   const Pose from = held_part(scene).pose;
@@ -106,7 +106,7 @@ Worst worst_of(const std::vector<Reading>& r) {
 }  // namespace
 
 Outcome wrench(const Work& work) {
-  // The rivals answer no such question: one bounces, the other yields by design.
+  // The baselines answer no such question: one bounces, the other yields by design.
   const std::vector<std::string> names = {"qp", "lp"};
   std::vector<WrenchScene> scenes = wrench_scenes(work.seeds(8, 2));
   for (WrenchScene& cage : cage_scenes(work.seeds(8, 2))) scenes.push_back(std::move(cage));

@@ -12,7 +12,7 @@
 #include "models/random_bodies.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/coupling/coupling.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/mass.hpp"
 
 namespace tegotae::experiments {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "models/shapes.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 
 namespace tegotae::experiments {
 namespace {

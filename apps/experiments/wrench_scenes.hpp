@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::experiments {
 

@@ -9,7 +9,7 @@
 
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
-#include "process.hpp"
+#include "shared/process.hpp"
 
 namespace {
 

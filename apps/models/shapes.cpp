@@ -10,7 +10,7 @@
 #include "models/mesh_builder.hpp"
 #include "models/revolved.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 
 namespace tegotae::shapes {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/simulated_device.hpp"
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/servo/contact_link.hpp"
+#include "tegotae/import/load.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 using namespace tegotae;
 
@@ -131,8 +131,8 @@ void contacts() {
   Table poses("contacts_poses", "x,z,qw,qy");
   for (const Pose& p : {X, pressed}) poses.row({p.p.x(), p.p.z(), p.q.w(), p.q.y()});
   Table table("contacts", "x,y,z,nx,ny,nz,gap");
-  for (const Contact& c : loop.limits()) {
-    if (c.age == kCutAge) continue;
+  for (const Contact& c : loop.constraints()) {
+    if (c.age == kOneShotAge) continue;
     const Vec3 p = X * loop.center() + c.r;
     table.row({p.x(), p.y(), p.z(), c.n.x(), c.n.y(), c.n.z(), c.gap});
   }
@@ -193,7 +193,7 @@ void deadline() {
       const double s = std::min(ms, 300) / 300.0;
       const Pose pen = at(0.6 * std::sin(20 * s), 30 - 45 * s, 1.7 * std::sin(12 * s));
       const TickReport& tick = loop.step(pen, 1e-3);
-      table.row({budget, 1e-3 * ms, (tick.proxy.X.p - pen.p).norm(), tick.cut ? 1.0 : 0.0});
+      table.row({budget, 1e-3 * ms, (tick.proxy.X.p - pen.p).norm(), tick.flags.timed_out ? 1.0 : 0.0});
     }
   }
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "format.hpp"
 #include "review/review.hpp"
-#include "sim/run_goal.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "session/run_goal.hpp"
+#include "shared/format.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::review {
 namespace {

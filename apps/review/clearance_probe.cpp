@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "feature/simplex_distance.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
 
 namespace tegotae::review {
 namespace {

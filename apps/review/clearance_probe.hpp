@@ -5,7 +5,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "narrowphase/fcl_pairs.hpp"
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::review {
 

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "loop/scene_parts.hpp"
 #include "review/spans.hpp"
-#include "sim/run_goal.hpp"
-#include "sim/scene_parts.hpp"
+#include "session/run_goal.hpp"
 
 namespace tegotae::review {
 namespace {

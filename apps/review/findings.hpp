@@ -6,7 +6,7 @@
 
 #include "review/path_scan.hpp"
 #include "review/start_findings.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::review {
 

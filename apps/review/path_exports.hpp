@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "review/path_scan.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::review {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
 #include "view/follower.hpp"
 
 namespace tegotae::review {
@@ -31,8 +31,8 @@ void add_contacts(const view::Follower& follower, ScannedRow& out) {
   for (const Clearance& c : out.clearances)
     if (c.distance > 0 && c.distance <= out.contact_gap) add((c.on_held_W - c.on_other_W) / c.distance, c.on_held_W);
   const Vec3 center = loop.report().proxy.X * loop.center();
-  for (const Contact& c : loop.limits())
-    if (!follower.astray() && c.age != kCutAge && c.gap <= out.contact_gap) add(c.n, center + c.r);
+  for (const Contact& c : loop.constraints())
+    if (!follower.astray() && c.age != kOneShotAge && c.gap <= out.contact_gap) add(c.n, center + c.r);
   out.two_sided = holds_from_two_sides(normals);
   if (out.two_sided) out.contact_W = sum / static_cast<double>(normals.size());
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "review/clearance_probe.hpp"
+#include "tegotae/loop/initial_contacts.hpp"
+#include "tegotae/loop/scene.hpp"
 #include "tegotae/record/recording.hpp"
-#include "tegotae/sim/scene.hpp"
-#include "tegotae/sim/start.hpp"
 
 namespace tegotae::review {
 
@@ -30,12 +30,12 @@ struct ScannedRow {
 
 struct Scan {
   std::vector<ScannedRow> rows;
-  std::size_t every = 1;      ///< of the recording's rows, every so many-th
-  double reach = 0;           ///< m; distances to parts that are not the nearest are known below it
-  std::size_t astray = 0;     ///< rows at which contacts could not be found
-  Vec3 center;                ///< of mass of the held part, m, file frame
-  CouplingSettings coupling;  ///< of the contact loop: what the held part was felt with
-  StartReport start;          ///< of the contact loop, before the first row
+  std::size_t every = 1;       ///< of the recording's rows, every so many-th
+  double reach = 0;            ///< m; distances to parts that are not the nearest are known below it
+  std::size_t astray = 0;      ///< rows at which contacts could not be found
+  Vec3 center;                 ///< of mass of the held part, m, file frame
+  CouplingSettings coupling;   ///< of the contact loop: what the held part was felt with
+  InitialContactReport start;  ///< of the contact loop, before the first row
 };
 
 /// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the

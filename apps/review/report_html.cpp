@@ -3,11 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "loop/scene_parts.hpp"
 #include "review/report_plots.hpp"
 #include "review/report_tables.hpp"
 #include "review/review.hpp"
 #include "review/surface_clearance.hpp"
-#include "sim/scene_parts.hpp"
 #include "view/bundle.hpp"
 #include "web/page.hpp"
 

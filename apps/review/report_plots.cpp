@@ -4,8 +4,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "format.hpp"
-#include "sim/run_goal.hpp"
+#include "session/run_goal.hpp"
+#include "shared/format.hpp"
 
 namespace tegotae::review {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "format.hpp"
+#include "shared/format.hpp"
 
 namespace tegotae::review {
 namespace {
@@ -106,14 +106,15 @@ json start(const Review& r) {
                  {"part", "", "gap or depth", "relieved by", "until (s)", "where"});
   for (const StartFinding& f : r.findings.start.pairs) {
     const Clash& c = f.pair.clash;
-    const bool relieved = f.pair.state == PairState::relieved, active = f.pair.state == PairState::active;
+    const bool relieved = f.pair.state == InitialContactState::shrunk,
+               active = f.pair.state == InitialContactState::active;
     t["rows"].push_back({r.file.scene.parts[f.pair.part].name,
                          active     ? "touching"
                          : relieved ? "touching, relieved"
                                     : "overlapping, suspended",
-                         c.gap > 0             ? "gap " + length_text(c.gap)
-                         : std::isnan(c.depth) ? "open surfaces cross"
-                                               : "depth " + length_text(c.depth),
+                         c.gap > 0  ? "gap " + length_text(c.gap)
+                         : !c.depth ? "open surfaces cross"
+                                    : "depth " + length_text(*c.depth),
                          relieved ? length_text(f.pair.relief) : "–",
                          active                   ? "–"
                          : std::isfinite(f.until) ? seconds(f.until)

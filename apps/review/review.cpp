@@ -2,7 +2,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 #include "view/follower.hpp"
 #include "view/replay.hpp"
 

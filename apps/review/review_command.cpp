@@ -6,11 +6,10 @@
 
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
-#include "pose_option.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
-#include "run_options.hpp"
-#include "status_line.hpp"
+#include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
 #include "view/replay.hpp"
 

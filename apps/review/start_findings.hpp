@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "review/path_scan.hpp"
-#include "tegotae/sim/start.hpp"
+#include "tegotae/loop/initial_contacts.hpp"
 
 namespace tegotae::review {
 
 /// A part that the held one touched or overlapped at the start.
 struct StartFinding {
-  StartPair pair;  ///< as it was at the start
+  InitialContact pair;  ///< as it was at the start
   /// When a relieved or suspended pair had come free, s; infinite: not in this recording.
   double until = std::numeric_limits<double>::infinity();
   /// Poses before that reach into the part by more than it was relieved of; of a suspended one poses that intersect it.
@@ -20,7 +20,7 @@ struct StartFinding {
 
 struct StartFindings {
   std::vector<StartFinding> pairs;
-  double shift = 0;               ///< StartReport::shift
+  double shift = 0;               ///< InitialContactReport::shift
   std::int64_t intersecting = 0;  ///< poses that intersect a part after it had come free, or one that was free
 };
 

@@ -9,8 +9,8 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "feature/signed_distance.hpp"
-#include "parallel_for.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
+#include "shared/parallel_for.hpp"
 #include "view/display_mesh.hpp"
 
 namespace tegotae::review {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format.hpp"
+#include "shared/format.hpp"
 
 namespace tegotae::review {
 
@@ -87,8 +87,8 @@ class Judge {
   }
 
   const std::string& name(const StartFinding& f) const { return scene_.parts[f.pair.part].name; }
-  static bool is_too_deep(const StartFinding& f) { return f.pair.state == PairState::relieved && f.deeper > 0; }
-  static bool was_active(const StartFinding& f) { return f.pair.state == PairState::active; }
+  static bool is_too_deep(const StartFinding& f) { return f.pair.state == InitialContactState::shrunk && f.deeper > 0; }
+  static bool was_active(const StartFinding& f) { return f.pair.state == InitialContactState::active; }
 
   void tell_intersections() {
     const auto& pairs = f_.start.pairs;
@@ -110,10 +110,10 @@ class Judge {
     for (const StartFinding& f : f_.start.pairs) {
       const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
       const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
-      if (f.pair.state == PairState::suspended)
+      if (f.pair.state == InitialContactState::filtered)
         bad(format("Suspended%s, because the part began in it: %s. Nothing kept the part out of it; %s intersect it.",
                    until.c_str(), name(f).c_str(), poses.c_str()));
-      if (f.pair.state == PairState::relieved)
+      if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
             "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +
                 (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");

@@ -7,12 +7,12 @@
 #include <random>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/run_goal.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
+#include "session/run_goal.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
-#include "tegotae/sim/session.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+#include "tegotae/session/session.hpp"
 
 namespace tegotae::tries {
 namespace {
@@ -27,7 +27,7 @@ constexpr double kLegEnd = 1e-3, kLegEndAngle = 0.1;
 constexpr double kLooksBack = 0.5;  // s, for what is in the way at the end
 
 /// Does the tasks of a route one after the other.
-class RouteHand final : public HandIntent {
+class RouteHand final : public InputSource {
  public:
   RouteHand(const OperatorProfile& profile, const Route& route, const Vec3& center, std::mt19937_64& rng)
       : center_(center), legs_(route.legs) {
@@ -107,8 +107,8 @@ class Watcher final : public RunObserver {
     const TickReport& report = tick.loop.report();
     const Vec3 center = report.proxy.X * tick.loop.center();
     std::map<PartId, std::pair<Vec3, int>> sums;
-    for (const Contact& c : tick.loop.limits()) {
-      if (c.age == kCutAge || c.gap > report.contact_gap) continue;
+    for (const Contact& c : tick.loop.constraints()) {
+      if (c.age == kOneShotAge || c.gap > report.contact_gap) continue;
       auto& [sum, n] = sums.try_emplace(c.part, Vec3::Zero(), 0).first->second;
       sum += center + c.r;
       ++n;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 #include "tries/routes.hpp"
 
 namespace tegotae::tries {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "loop/scene_parts.hpp"
 #include "review/clearance_probe.hpp"
-#include "sim/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::tries {

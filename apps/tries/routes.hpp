@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/device/operator.hpp"
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
+#include "tegotae/operator/operator.hpp"
 
 namespace tegotae::tries {
 

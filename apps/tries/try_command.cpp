@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/same_file.hpp"
-#include "format.hpp"
-#include "parallel_for.hpp"
-#include "pose_option.hpp"
-#include "run_options.hpp"
-#include "status_line.hpp"
+#include "shared/format.hpp"
+#include "shared/parallel_for.hpp"
+#include "shared/pose_option.hpp"
+#include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
 #include "tries/try_report.hpp"
 #include "tries/try_table.hpp"
@@ -65,7 +65,7 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->type_name("N");
-  tries->add_option("--jobs", o.jobs, "At the same time (all processors unless told); no result depends on it")
+  tries->add_option("--jobs", o.jobs, "At the same time (default: all processors); no result depends on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");
   tries->add_option("--seed", o.seed, "Of all that is random")->capture_default_str()->type_name("N");

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/output_file.hpp"
-#include "format.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
+#include "shared/format.hpp"
 #include "web/page.hpp"
 
 namespace tegotae::tries {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/output_file.hpp"
-#include "format.hpp"
-#include "sim/scene_text.hpp"
+#include "scene_file/scene_text.hpp"
+#include "shared/format.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
 
@@ -125,13 +125,14 @@ std::string fingerprint(const Task& task) {
     for (const auto& t : part.mesh->triangles) hash.add(t.data(), sizeof t);
   }
   const Scene& s = task.file.scene;
-  hash.add(s.contact.resolver);
-  hash.add(s.contact.narrowphase);
+  hash.add(to_string(s.contact.resolver));
+  hash.add(std::string(s.contact.narrowphase == NarrowPhase::fcl ? "fcl" : "patch"));
   for (const double x :
-       {s.contact.l_min, s.contact.l_0, s.contact.density, s.coupling.stiffness, s.coupling.damping,
-        s.coupling.torsional_stiffness, s.coupling.torsional_damping, s.torsional_stiffness_most.value_or(-1),
-        task.file.safety.limits.force, task.file.safety.limits.torque, task.file.safety.continuous_force, task.seconds})
-    hash.add(std::isnan(x) ? -1 : x);
+       {s.contact.l_min.value_or(-1), s.contact.l_0.value_or(-1), s.contact.density, s.coupling.stiffness,
+        s.coupling.damping, s.coupling.torsional_stiffness, s.coupling.torsional_damping,
+        s.max_torsional_stiffness.value_or(-1), task.file.safety.limits.force, task.file.safety.limits.torque,
+        task.file.safety.continuous_force, task.seconds})
+    hash.add(x);
   hash.add(scene_settings(task.file));  // whatever the file sets, known here or not
   hash.add(task.file.script.pose(task.file.script.end()));
   return apps::format("tegotae %s, seed %llu, task %016llx", TEGOTAE_VERSION_STRING,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::view {
 

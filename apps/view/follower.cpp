@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::view {

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/record/recording.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
 
 namespace tegotae::view {
 

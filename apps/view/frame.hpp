@@ -48,7 +48,7 @@ struct Frame {
   std::uint32_t reason = 0;      ///< ForceOff: why the force went off, never `engage`
   std::uint64_t generation = 0;  ///< of the parts that it is of
   std::uint64_t force_count = 0;
-  std::array<FrameForce, ContactForces::kMost> forces;  ///< the first `force_count` hold
+  std::array<FrameForce, ContactForces::kMax> forces;  ///< the first `force_count` hold
   std::uint64_t pair_count = 0;
   std::array<FramePair, kMostPairs> pairs;  ///< what lies behind `pair_count` is not transported
 };

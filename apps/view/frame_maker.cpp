@@ -1,23 +1,25 @@
 #include "view/frame_maker.hpp"
 
+#include <limits>
+
 namespace tegotae::view {
 
 void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   const TickReport& report = loop.report();
-  const auto& limits = loop.limits();
+  const auto& limits = loop.constraints();
   store(report.proxy.X, frame.x);
   frame.contacts = static_cast<std::uint32_t>(report.contacts);
   frame.limits = static_cast<std::uint32_t>(limits.size());
   frame.gap = report.gap;
-  frame.flags = (report.proxy.touching ? Frame::touching : 0u) | (report.cut ? Frame::cut : 0u) |
-                (report.overflow ? Frame::overflow : 0u) |
+  frame.flags = (report.proxy.touching ? Frame::touching : 0u) | (report.flags.timed_out ? Frame::cut : 0u) |
+                (report.flags.overflow ? Frame::overflow : 0u) |
                 static_cast<std::uint32_t>(report.lag_reason) << Frame::kLagShift;
   store(report.forces, frame);
   frame.pair_count = 0;
   const Vec3 center = report.proxy.X * loop.center();
   for (const bool touching : {true, false})
     for (const Contact& c : limits) {
-      if ((c.age != kCutAge && c.gap <= report.contact_gap) != touching) continue;
+      if ((c.age != kOneShotAge && c.gap <= report.contact_gap) != touching) continue;
       if (frame.pair_count == kMostPairs) return;
       FramePair& p = frame.pairs[frame.pair_count++];
       for (int i = 0; i < 3; ++i) {
@@ -51,7 +53,7 @@ void FrameMaker::fill(const TickView& tick, Frame& frame) {
   store(tick.pen.state.pose, frame.y);
   store(tick.pen.wrench, frame.wrench);
   frame.tick_us = tick.tick_us;
-  frame.servo_late_us = tick.servo_late_us;
+  frame.servo_late_us = tick.servo_late_us.value_or(std::numeric_limits<double>::quiet_NaN());
   if (tick.pen.status == DeviceStatus::enabled) frame.flags |= Frame::force_on;
   if (tick.pen.reason == ForceOff::engage) frame.flags |= Frame::waiting;
   frame.reason = static_cast<std::uint32_t>(reason_);

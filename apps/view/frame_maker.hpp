@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tegotae/sim/session.hpp"
+#include "tegotae/session/session.hpp"
 #include "view/frame.hpp"
 
 namespace tegotae::view {

@@ -47,8 +47,8 @@ Pose pose_of(const std::array<double, 7>& v) {
 
 }  // namespace
 
-struct LiveView::Stretch {
-  Stretch(const PageParts& parts, std::uint64_t generation_in)
+struct LiveView::Segment {
+  Segment(const PageParts& parts, std::uint64_t generation_in)
       : generation(generation_in),
         numbers(parts.numbers()),
         maker(numbers),
@@ -80,21 +80,21 @@ LiveView::~LiveView() = default;
 
 void LiveView::begin() {
   PageParts parts(file_.scene);
-  auto stretch = std::make_shared<Stretch>(parts, generation_ + 1);
-  by_number_[0] = looped_ = stretch.get();
+  auto segment = std::make_shared<Segment>(parts, generation_ + 1);
+  by_number_[0] = looped_ = segment.get();
   paced_ns_ = 0;
   const std::lock_guard<std::mutex> lock(mutex_);
   session_ = std::make_shared<Session>();
-  show(std::move(parts), std::move(stretch));
+  show(std::move(parts), std::move(segment));
 }
 
 /// With mutex_ held.
-void LiveView::show(PageParts parts, std::shared_ptr<Stretch> stretch) {
+void LiveView::show(PageParts parts, std::shared_ptr<Segment> segment) {
   const std::size_t held = parts.held();
   if (generation_ == 0 || held != parts_.held()) center_ = center_of(parts.all()[held], file_.scene.contact.density);
   parts_ = std::move(parts);
-  stretch_ = std::move(stretch);
-  bundle_.about["generation"] = generation_ = stretch_->generation;
+  segment_ = std::move(segment);
+  bundle_.about["generation"] = generation_ = segment_->generation;
   bundle_.about["center"] = {center_.x(), center_.y(), center_.z()};
   for (std::size_t i = 0; i < parts_.all().size(); ++i) {
     const Part& part = parts_.all()[i];
@@ -131,18 +131,18 @@ void LiveView::before_tick(double t) {
   paced_t_ = t;
 }
 
-void LiveView::started(const StartReport& start) noexcept {
+void LiveView::started(const InitialContactReport& start) noexcept {
   looped_->suspended_count = 0;
-  for (const StartPair& pair : start.pairs) {
-    const bool suspended = pair.state == PairState::suspended;
+  for (const InitialContact& pair : start.pairs) {
+    const bool suspended = pair.state == InitialContactState::filtered;
     looped_->suspended[looped_->numbers[pair.part]] = suspended;
     looped_->suspended_count += suspended ? 1 : 0;
   }
 }
 
 void LiveView::after_tick(const TickView& tick) noexcept {
-  looped_ = by_number_[tick.stretch % kSlots].load(std::memory_order_acquire);
-  if (tick.loop.report().suspended != looped_->suspended_count) started(tick.loop.start());
+  looped_ = by_number_[tick.segment % kSlots].load(std::memory_order_acquire);
+  if (tick.loop.report().filtered != looped_->suspended_count) started(tick.loop.start());
   looped_->maker.fill(tick, frame_);
   frame_.generation = looped_->generation;
   ring_.push(frame_);
@@ -169,7 +169,7 @@ std::string LiveView::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   json suspended = json::array();
   for (std::size_t i = 0; i < parts_.all().size(); ++i)
-    if (stretch_->suspended[i]) suspended.push_back(parts_.all()[i].name);
+    if (segment_->suspended[i]) suspended.push_back(parts_.all()[i].name);
   return json{{"generation", generation_},
               {"suspended", suspended},
               {"paused", paused_.load()},
@@ -234,10 +234,10 @@ void LiveView::edit(const json& command) {
   const std::uint64_t generation = generation_ + 1;
   lock.unlock();
   parts.edit(command);
-  auto stretch = std::make_shared<Stretch>(parts, generation);
+  auto segment = std::make_shared<Segment>(parts, generation);
   try {
     parts.place(session->edits.change(parts.in_scene(), [&](std::uint64_t number) {
-      by_number_[number % kSlots].store(stretch.get(), std::memory_order_release);
+      by_number_[number % kSlots].store(segment.get(), std::memory_order_release);
       changing_ = true;
     }));
   } catch (const std::exception& e) {
@@ -246,7 +246,7 @@ void LiveView::edit(const json& command) {
   }
   changing_ = false;
   lock.lock();
-  if (session == session_) show(std::move(parts), std::move(stretch));
+  if (session == session_) show(std::move(parts), std::move(segment));
 }
 
 void LiveView::restart() {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "device/mailbox.hpp"
-#include "tegotae/sim/session.hpp"
+#include "tegotae/session/session.hpp"
 #include "view/bundle.hpp"
 #include "view/frame_maker.hpp"
 #include "view/frame_ring.hpp"
@@ -28,11 +28,11 @@ class LiveView final : public RunObserver, public ViewSource {
   /// Another session of the scene begins.
   void begin();
   /// What leads the hand in the session now.
-  const HandGuide& guide() const { return session_->guide; }
+  const InputGuide& guide() const { return session_->guide; }
   /// What changes its scene.
   RunEdits& edits() const { return session_->edits; }
   /// How the held part starts in it; which pairs are suspended goes to the page.
-  void started(const StartReport& start) noexcept;
+  void started(const InitialContactReport& start) noexcept;
   /// Whether the page asked for another session. Asking takes the request away.
   bool take_request();
 
@@ -48,11 +48,11 @@ class LiveView final : public RunObserver, public ViewSource {
  private:
   /// What belongs to one session.
   struct Session {
-    HandGuide guide;
+    InputGuide guide;
     RunEdits edits;
   };
-  /// What belongs to a stretch of it.
-  struct Stretch;
+  /// What belongs to a segment of it.
+  struct Segment;
   /// How the newest pose of the pen and of where it wants the part belong together.
   struct PenSpace {
     std::array<double, 7> raw, Y;
@@ -60,10 +60,10 @@ class LiveView final : public RunObserver, public ViewSource {
     double scale;
     std::uint64_t generation;
   };
-  // A stretch that begins, the one that ends, and room.
+  // A segment that begins, the one that ends, and room.
   static constexpr std::size_t kSlots = 4;
 
-  void show(PageParts parts, std::shared_ptr<Stretch> stretch);
+  void show(PageParts parts, std::shared_ptr<Segment> segment);
   void lead(const nlohmann::json& command);
   void edit(const nlohmann::json& command);
   void restart();
@@ -87,9 +87,9 @@ class LiveView final : public RunObserver, public ViewSource {
   std::mutex editing_;        // one edit at a time
   mutable std::mutex mutex_;  // of the server's threads and of begin(); no loop takes it
   std::shared_ptr<Session> session_;
-  std::shared_ptr<Stretch> stretch_;
-  std::array<std::atomic<Stretch*>, kSlots> by_number_{};
-  Stretch* looped_ = nullptr;  // of the contact loop's thread
+  std::shared_ptr<Segment> segment_;
+  std::array<std::atomic<Segment*>, kSlots> by_number_{};
+  Segment* looped_ = nullptr;  // of the contact loop's thread
   PageParts parts_;
   Bundle bundle_;
   Vec3 center_;                                       // of mass of the held part, file frame

@@ -12,10 +12,10 @@
 
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
-#include "sim/scene_parts.hpp"
+#include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 #include "view/bundle.hpp"
 #include "view/follower.hpp"
 #include "view/frame_maker.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tegotae/record/recording.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 #include "view/address.hpp"
 
 namespace tegotae::view {

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <functional>
 
-#include "tegotae/sim/session.hpp"
+#include "tegotae/session/session.hpp"
 #include "view/address.hpp"
 
 namespace tegotae::view {

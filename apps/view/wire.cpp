@@ -72,7 +72,7 @@ void append_forces(const Frame& frame, std::vector<float>& out) {
 
 std::string frame_message(const Frame& frame) {
   std::vector<float> values;
-  values.reserve(kFrameFloats + kPairFloats * kMostPairs + kForceFloats * ContactForces::kMost);
+  values.reserve(kFrameFloats + kPairFloats * kMostPairs + kForceFloats * ContactForces::kMax);
   append_frame(frame, values);
   append_pairs(frame, values);
   append_forces(frame, values);

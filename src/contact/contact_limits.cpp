@@ -24,7 +24,7 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
     const AxisLimit axis = least_limiting_axis(a, b, motion, clearance);
     if (!axis.found) continue;
     const Feature face_a{FeatureKind::face, t.a}, face_b{FeatureKind::face, t.b};
-    if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kCutAge, face_a, face_b}, limits_)) continue;
+    if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kOneShotAge, face_a, face_b}, limits_)) continue;
     owners_.push_back(kNone);
     ++added;
   }

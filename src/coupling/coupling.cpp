@@ -7,7 +7,7 @@ namespace tegotae {
 
 namespace {
 
-// A part of a tenth of a millimeter, and one of a house: beyond, the programme would be badly scaled.
+// A part of a tenth of a millimeter, and one of a house: beyond, the program would be badly scaled.
 constexpr double kLeastRadius = 1e-4, kMostRadius = 10;
 
 }  // namespace

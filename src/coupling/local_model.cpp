@@ -43,7 +43,7 @@ Mat3 left_jacobian(const Vec3& r) {
 }  // namespace
 
 LocalModel::LocalModel()
-    : solver_(kMostActive), friction_(ContactPlanes::kMost), rows_(ContactPlanes::kMost), active_rows_(kMostActive) {}
+    : solver_(kMostActive), friction_(ContactPlanes::kMax), rows_(ContactPlanes::kMax), active_rows_(kMostActive) {}
 
 Vec6 LocalModel::whiten(const Displacement& d) const noexcept {
   Vec6 z;
@@ -127,7 +127,7 @@ bool LocalModel::slide(const Vec6& pen, Vec6& velocity) noexcept {
 
 bool LocalModel::update(const ContactPlanes& planes, double radius, const Vec3& center, const Pose& Y,
                         const Twist& Y_velocity, ProxyState& x) noexcept {
-  if (planes.count <= 0 || planes.count > ContactPlanes::kMost || !(radius > 0) || !planes.taken_at(x.X)) return false;
+  if (planes.count <= 0 || planes.count > ContactPlanes::kMax || !(radius > 0) || !planes.taken_at(x.X)) return false;
   const double since = displacement(planes.pen, Y, center).dr.norm();
   const double error = displacement(x.X, Y, center).dr.norm();
   if (!(since < kMostTurn && error < kMostError)) return false;

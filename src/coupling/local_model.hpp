@@ -40,14 +40,14 @@ class LocalModel {
     bool sticks;
   };
   /// Rows of a plane that carries: its normal, or normal and both tangents to and fro where it sticks.
-  static constexpr int kMostActive = 6 * ContactPlanes::kMost;
+  static constexpr int kMostActive = 6 * ContactPlanes::kMax;
 
   LeastDistanceSolver solver_;
   FrictionSolver friction_;
   LowRankMatrix rows_, active_rows_;
-  double bounds_[ContactPlanes::kMost] = {};
-  TangentRows tangents_[ContactPlanes::kMost];
-  double mu_[ContactPlanes::kMost] = {};
+  double bounds_[ContactPlanes::kMax] = {};
+  TangentRows tangents_[ContactPlanes::kMax];
+  double mu_[ContactPlanes::kMax] = {};
   bool rubs_ = false;  ///< one of the planes has friction
   Carrying carrying_[SparseRows::kMax] = {};
   int carrying_count_ = 0;

@@ -9,9 +9,9 @@ namespace tegotae {
 
 namespace {
 
-/// The largest stiffness that leaves a sampled wall passive; NaN when the device's damping is not known.
-double sampling_limit(double device_damping, double damping, double rate_hz) {
-  if (!(device_damping > 0)) return std::numeric_limits<double>::quiet_NaN();
+/// The largest stiffness that leaves a sampled wall passive; none when the device's damping is not known.
+std::optional<double> sampling_limit(double device_damping, double damping, double rate_hz) {
+  if (!(device_damping > 0)) return std::nullopt;
   return std::max(0.0, 2 * (device_damping - std::abs(damping)) * rate_hz);
 }
 
@@ -21,10 +21,10 @@ constexpr double kStableShare = 0.5;
 // such steps a stiffer coupling keeps a hand that rests between two of them going to and fro.
 constexpr double kLeastFullTurn = 0.05;
 
-std::string limit_text(double limit, const char* unit) {
-  if (std::isnan(limit)) return "limit not known";
+std::string limit_text(std::optional<double> limit, const char* unit) {
+  if (!limit) return "limit not known";
   char text[64];
-  std::snprintf(text, sizeof text, "limit %.3g %s", limit, unit);
+  std::snprintf(text, sizeof text, "limit %.3g %s", *limit, unit);
   return text;
 }
 
@@ -37,15 +37,14 @@ StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coup
   r.sampling_limit = sampling_limit(device.damping, coupling.damping, rate_hz);
   r.quantization_limit = device.position_resolution > 0 ? 2 * device.friction / device.position_resolution
                                                         : std::numeric_limits<double>::infinity();
-  r.stiffness_limit =
-      std::isnan(r.sampling_limit) ? r.sampling_limit : std::min(r.sampling_limit, r.quantization_limit);
+  if (r.sampling_limit) r.stiffness_limit = std::min(*r.sampling_limit, r.quantization_limit);
   r.torsional_stiffness_limit = sampling_limit(device.torsional_damping, coupling.torsional_damping, rate_hz);
   return r;
 }
 
-double torsional_stiffness_bound(double limit, double torque) noexcept {
-  if (!(limit > 0)) return CouplingSettings().torsional_stiffness;
-  return std::min(kStableShare * limit, torque / kLeastFullTurn);
+double torsional_stiffness_bound(std::optional<double> limit, double torque) noexcept {
+  if (!(limit.value_or(0) > 0)) return CouplingSettings().torsional_stiffness;
+  return std::min(kStableShare * *limit, torque / kLeastFullTurn);
 }
 
 std::string StabilityReport::text() const {
@@ -54,7 +53,9 @@ std::string StabilityReport::text() const {
   std::string line = std::string(text) + " (" + limit_text(stiffness_limit, "N/m") + ")";
   std::snprintf(text, sizeof text, ", %.4g N·m/rad", coupling.torsional_stiffness);
   line += std::string(text) + " (" + limit_text(torsional_stiffness_limit, "N·m/rad") + ")";
-  const bool above = coupling.stiffness > stiffness_limit || coupling.torsional_stiffness > torsional_stiffness_limit;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const bool above = coupling.stiffness > stiffness_limit.value_or(kNone) ||
+                     coupling.torsional_stiffness > torsional_stiffness_limit.value_or(kNone);
   return above ? line + ": above the limit, only the hand and the passivity controller keep it quiet" : line;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFullDeflection = 32767.0;
 constexpr Uint32 kWaitMs = 4;  // a pad reports every 4 to 8 ms
 
-class Gamepad final : public InputSource {
+class Gamepad final : public InputDriver {
  public:
   ~Gamepad() override {
     Gamepad::close();

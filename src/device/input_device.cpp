@@ -27,7 +27,7 @@ struct Message {
 
 class InputDevice final : public Device {
  public:
-  InputDevice(const std::string& name, std::unique_ptr<InputSource> source, const RateControlSettings& settings)
+  InputDevice(const std::string& name, std::unique_ptr<InputDriver> source, const RateControlSettings& settings)
       : name_(name), source_(std::move(source)), control_(settings) {}
   ~InputDevice() override { stop(); }
 
@@ -79,7 +79,7 @@ class InputDevice final : public Device {
 
   void write(const Wrench&) noexcept override {}
   void set_center(const Vec3&) noexcept override {}  // the pen turns about its own point
-  void set_lead(const Displacement& lead) noexcept override {
+  void set_tracking_error(const Displacement& lead) noexcept override {
     lead_ = lead;
     led_ = true;
   }
@@ -140,7 +140,7 @@ class InputDevice final : public Device {
   }
 
   std::string name_;
-  std::unique_ptr<InputSource> source_;  // the thread's
+  std::unique_ptr<InputDriver> source_;  // the thread's
   std::thread thread_;
   std::atomic<bool> stopping_{false};
   std::atomic<bool> connected_{false};
@@ -156,7 +156,7 @@ class InputDevice final : public Device {
 
 }  // namespace
 
-std::unique_ptr<Device> make_input_device(const std::string& name, std::unique_ptr<InputSource> source,
+std::unique_ptr<Device> make_input_device(const std::string& name, std::unique_ptr<InputDriver> source,
                                           const RateControlSettings& settings) {
   return std::make_unique<InputDevice>(name, std::move(source), settings);
 }

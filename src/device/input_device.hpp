@@ -15,9 +15,9 @@ struct InputState {
 };
 
 /// Where deflections come from. Made, used and destroyed in one thread, which may wait.
-class InputSource {
+class InputDriver {
  public:
-  virtual ~InputSource() = default;
+  virtual ~InputDriver() = default;
   /// Throws Error when there is no such device.
   virtual void open() = 0;
   virtual void close() noexcept = 0;
@@ -26,7 +26,7 @@ class InputSource {
 };
 
 /// A device without force that integrates what `source` says.
-std::unique_ptr<Device> make_input_device(const std::string& name, std::unique_ptr<InputSource> source,
+std::unique_ptr<Device> make_input_device(const std::string& name, std::unique_ptr<InputDriver> source,
                                           const RateControlSettings& settings);
 
 }  // namespace tegotae

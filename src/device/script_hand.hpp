@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "tegotae/device/hand_intent.hpp"
+#include "tegotae/device/input_source.hpp"
 #include "tegotae/device/script.hpp"
 
 namespace tegotae {
 
 /// A hand that does what a script says, whatever it feels.
-class ScriptHand final : public HandIntent {
+class ScriptHand final : public InputSource {
  public:
   explicit ScriptHand(StylusScript script) : script_(std::move(script)) {}
 

@@ -26,7 +26,9 @@ constexpr std::int64_t kMaxCatchUpNs = 50'000'000;
 constexpr double kHandLag = 0.03, kHandSpeed = 0.4, kHandTurning = 6.0;
 
 void require(bool good, const char* setting) {
-  if (!good) throw Error(std::string("simulated device: ") + setting + " is out of range");
+  if (!good)
+    throw Error(ErrorKind::setting, std::string("simulated device: ") + setting + " is out of range",
+                {{}, 0, setting, {}});
 }
 
 bool positive(double x) {
@@ -76,21 +78,21 @@ Vec3 rounded(const Vec3& value, double resolution) {
 }  // namespace
 
 struct SimulatedDevice::Impl {
-  Impl(const SimulatedDeviceSettings& settings_in, HandIntent& hand_in, std::unique_ptr<HandIntent> owned_in)
+  Impl(const SimulatedDeviceSettings& settings_in, InputSource& hand_in, std::unique_ptr<InputSource> owned_in)
       : settings(settings_in),
         owned(std::move(owned_in)),
         hand(hand_in),
         body_constants(body_settings(settings)),
         velocity(settings.velocity_cutoff_hz, settings.position_resolution, settings.rotation_resolution) {}
 
-  static std::unique_ptr<Impl> with(const SimulatedDeviceSettings& settings, std::unique_ptr<HandIntent> hand) {
-    HandIntent& it = *hand;
+  static std::unique_ptr<Impl> with(const SimulatedDeviceSettings& settings, std::unique_ptr<InputSource> hand) {
+    InputSource& it = *hand;
     return std::make_unique<Impl>(settings, it, std::move(hand));
   }
 
   SimulatedDeviceSettings settings;
-  std::unique_ptr<HandIntent> owned;  // null when the caller owns the hand
-  HandIntent& hand;
+  std::unique_ptr<InputSource> owned;  // null when the caller owns the hand
+  InputSource& hand;
   PenBodySettings body_constants;
   PenBody body;
   Quat encoder_zero = Quat::Identity();  // rotations are counted from where the pen started
@@ -106,7 +108,7 @@ struct SimulatedDevice::Impl {
   VelocityFilter velocity;
   std::uint64_t sequence = 0;
 
-  const HandGuide* guide = nullptr;
+  const InputGuide* guide = nullptr;
   bool led = false;     // by the guide; until then the hand goes where it wants
   Pose goal, led_hand;  // where the guide leads, and where the led hand is
   Twist led_rate;       // `v` of the file frame
@@ -174,7 +176,7 @@ SimulatedDevice::SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center)
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center)
     : SimulatedDevice(Impl::with(settings, std::make_unique<ScriptHand>(std::move(script))), center) {}
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center)
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings, InputSource& hand, const Vec3& center)
     : SimulatedDevice(std::make_unique<Impl>(settings, hand, nullptr), center) {}
 
 SimulatedDevice::~SimulatedDevice() = default;
@@ -241,11 +243,11 @@ void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
   Device::set_center(center_now);
 }
 
-void SimulatedDevice::follow(const HandGuide& guide) noexcept {
+void SimulatedDevice::follow(const InputGuide& guide) noexcept {
   impl_->guide = &guide;
 }
 
-void SimulatedDevice::set_lead(const Displacement&) noexcept {
+void SimulatedDevice::set_tracking_error(const Displacement&) noexcept {
   impl_->waiting = false;
 }
 

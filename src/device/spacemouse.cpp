@@ -18,7 +18,7 @@ constexpr double kFullDeflection = 350.0;  // counts that the daemon sends when 
 constexpr int kEventBytes = 32;            // eight 32-bit numbers on the daemon's socket
 constexpr int kWaitMs = 10;
 
-class SpaceMouse final : public InputSource {
+class SpaceMouse final : public InputDriver {
  public:
   ~SpaceMouse() override { SpaceMouse::close(); }
 

@@ -25,14 +25,14 @@ struct LpResult {
   double reach = std::numeric_limits<double>::infinity();
 };
 
-/// The linear programme of the paper (equations 5 to 7 in the form of docs: A = J M⁻¹ Jᵀ = G Gᵀ) by the dual simplex
+/// The linear program of the paper (equations 5 to 7 in the form of docs: A = J M⁻¹ Jᵀ = G Gᵀ) by the dual simplex
 /// method. The basis is at most six forces and as many tight rows because A has rank six; a pivot costs two passes over
 /// the rows, and A is never formed.
 /// Starts from f = 0, which is dual feasible. Deterministic: the same input gives the
 /// same bits on every CPU. `solve` allocates nothing.
 class LpSolver {
  public:
-  /// For programmes of at most `capacity` rows.
+  /// For programs of at most `capacity` rows.
   explicit LpSolver(int capacity) : rows_(capacity) {}
 
   /// `d` has g.rows() entries. Non-finite input and too many rows give `stalled`. The result lives until the next call.

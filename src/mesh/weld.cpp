@@ -5,7 +5,7 @@
 
 #include "mesh/precision.hpp"
 #include "mesh/topology.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/mesh/weld.hpp"
 
 namespace tegotae {
 namespace {

@@ -111,7 +111,7 @@ json forces_message(const ContactForces& forces) {
 ContactForces forces(const json& message) {
   ContactForces out;
   for (const json& c : message.at("forces")) {
-    if (out.count == ContactForces::kMost) break;
+    if (out.count == ContactForces::kMax) break;
     ContactForce& f = out.items[static_cast<std::size_t>(out.count++)];
     f = {};
     f.part = PartId{whole_number<std::uint32_t>(c.at("part"))};

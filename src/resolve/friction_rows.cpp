@@ -21,7 +21,7 @@ bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metr
   for (std::size_t i = 0; i < std::min(contacts.size(), mu_.size()); ++i) {
     const Contact& c = contacts[i];
     // A plane between two triangles is no surface that could rub.
-    mu_[i] = c.age == kCutAge || c.part.index >= mu_of_part_.size() ? 0 : mu_of_part_[c.part.index];
+    mu_[i] = c.age == kOneShotAge || c.part.index >= mu_of_part_.size() ? 0 : mu_of_part_[c.part.index];
     if (!(mu_[i] > 0)) continue;
     found = true;
     for (int k = 0; k < 2; ++k) tangents_[i].row[k] = metric.row(c, tangent(c.n, k));

@@ -7,7 +7,7 @@ namespace tegotae {
 namespace {
 
 // A needle's inertia about its own axis is nearly nothing; below this share of the largest radius of gyration a turn
-// about that axis would count for less than a step of rounding and the programme would be badly scaled.
+// about that axis would count for less than a step of rounding and the program would be badly scaled.
 constexpr double kLeastRadiusShare = 0.02;
 
 }  // namespace

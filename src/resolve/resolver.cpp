@@ -21,7 +21,7 @@ ResolveStatus status_of(LpStatus s) {
   }
 }
 
-/// The paper's programme (equations 5 to 7): contact forces of least sum that push the wanted motion out of every
+/// The paper's program (equations 5 to 7): contact forces of least sum that push the wanted motion out of every
 /// limit. Taken as it is, it follows a target in a limit cycle: the push may overshoot what the error asks for. So the
 /// motion is scaled to the point on its line that is nearest to the target; the limits hold there too, because they
 /// hold at both ends of the line.
@@ -80,15 +80,10 @@ class QpResolver final : public Resolver {
 
 }  // namespace
 
-const std::vector<std::string>& resolver_names() {
-  static const std::vector<std::string> names{"lp", "qp", "impulse", "penalty"};
-  return names;
-}
-
-std::unique_ptr<Resolver> make_resolver(const std::string& name, int capacity) {
-  if (name == "lp") return std::make_unique<LpResolver>(capacity);
-  if (name == "qp") return std::make_unique<QpResolver>(capacity);
-  throw Error("unknown resolver \"" + name + "\"; known are lp, qp, impulse, penalty");
+std::unique_ptr<Resolver> make_resolver(ResolverKind kind, int capacity) {
+  if (kind == ResolverKind::lp) return std::make_unique<LpResolver>(capacity);
+  if (kind == ResolverKind::qp) return std::make_unique<QpResolver>(capacity);
+  throw Error("the resolver " + to_string(kind) + " is a loop of its own; set ContactSettings::resolver");
 }
 
 }  // namespace tegotae

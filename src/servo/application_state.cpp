@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/proper_pose.hpp"
-#include "servo/shm_convert.hpp"
+#include "transport/shm_convert.hpp"
 
 namespace tegotae {
 
@@ -23,7 +23,7 @@ bool sane(const tegotae_shm_application& in) noexcept {
   return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
          vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) && vector(in.weight).allFinite() &&
          constant(in.stiffness) && constant(in.damping) && constant(in.torsional_stiffness) &&
-         constant(in.torsional_damping) && in.scale >= kLeastScale && in.scale <= kMostScale &&
+         constant(in.torsional_damping) && in.scale >= kMinScale && in.scale <= kMaxScale &&
          in.clutch <= TEGOTAE_SHM_CLUTCH_ALL && (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
 }
 
@@ -46,7 +46,7 @@ ProxyState proxy_of(const tegotae_shm_application& in) noexcept {
 
 ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
   ContactPlanes out;
-  if (in.plane_count > ContactPlanes::kMost || !placed(in.pen_position, in.pen_orientation)) return out;
+  if (in.plane_count > ContactPlanes::kMax || !placed(in.pen_position, in.pen_orientation)) return out;
   out.count = static_cast<int>(in.plane_count);
   for (std::size_t i = 0; i < in.plane_count; ++i)
     out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room, in.planes[i].mu};

@@ -43,7 +43,7 @@ bool PenMapping::update(const DeviceState& pen, const Vec3& pen_center, const Ma
 
   const bool turns = clutch_ != Clutch::all;
   const bool moves = clutch_ == Clutch::none;
-  const Quat q = turns ? (P.q * pen_anchor_q_.conjugate() * part_anchor_q_).normalized() : part_anchor_q_;
+  const Quat q = turns ? Quat((P.q * pen_anchor_q_.conjugate() * part_anchor_q_).normalized()) : part_anchor_q_;
   const Vec3 at = moves ? Vec3(part_anchor_ + scale_ * (P * pen_center - pen_anchor_)) : part_anchor_;
   Y_ = {q, at - q * center_};
   velocity_ = {moves ? Vec3(scale_ * pen.velocity.v) : Vec3::Zero(), turns ? pen.velocity.w : Vec3::Zero()};

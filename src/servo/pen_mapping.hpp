@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tegotae/device/device.hpp"
-#include "tegotae/servo/mapping.hpp"
+#include "tegotae/transport/mapping.hpp"
 
 namespace tegotae {
 

@@ -13,7 +13,8 @@ namespace {
 constexpr double kLongestStep = 0.005;
 
 void require(bool good, const char* setting, const char* range) {
-  if (!good) throw Error(std::string("safety: ") + setting + " must be " + range);
+  if (!good)
+    throw Error(ErrorKind::setting, std::string("safety: ") + setting + " must be " + range, {{}, 0, setting, {}});
 }
 
 bool not_negative(double x) {
@@ -32,7 +33,7 @@ Wrench operator*(double s, const Wrench& w) {
 void check(const SafetySettings& s) {
   require(not_negative(s.limits.force), "the force limit", "at least 0 N");
   require(not_negative(s.limits.torque), "the torque limit", "at least 0 N·m");
-  const auto timeout = [](double t) { return t > 0 && t <= kLongestTimeout; };
+  const auto timeout = [](double t) { return t > 0 && t <= kMaxTimeout; };
   require(timeout(s.heartbeat_timeout), "heartbeat_timeout", "above 0 and at most 1 s");
   require(timeout(s.silence_timeout), "silence_timeout", "above 0 and at most 1 s");
   require(timeout(s.fade_time), "fade_time", "above 0 and at most 1 s");

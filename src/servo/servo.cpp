@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "servo/servo_tick.hpp"
-#include "servo/shm_convert.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
+#include "transport/shm_convert.hpp"
 
 namespace tegotae {
 
@@ -174,20 +174,6 @@ std::int64_t Servo::newest_late_ns() const noexcept {
 ServoStatistics Servo::statistics() const noexcept {
   // The thread owns its counters while it runs.
   return impl_->thread.joinable() ? servo_statistics(impl_->channel) : impl_->statistics();
-}
-
-ServoStatistics servo_statistics(const ChannelReader& channel) noexcept {
-  tegotae_shm_statistics s;
-  if (!channel.read(s)) return {};
-  ServoStatistics out;
-  out.ticks = s.ticks;
-  out.missed = s.missed;
-  out.rate_hz = s.rate_hz;
-  out.late_us = latencies(s.late_us);
-  out.compute_us = latencies(s.compute_us);
-  out.recent_late_us = s.recent_late_us;
-  std::copy(std::begin(s.force_off), std::end(s.force_off), out.force_off.begin());
-  return out;
 }
 
 }  // namespace tegotae

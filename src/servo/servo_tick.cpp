@@ -6,12 +6,12 @@
 
 #include "core/proper_pose.hpp"
 #include "servo/application_state.hpp"
-#include "servo/shm_convert.hpp"
 #include "tegotae/coupling/stability.hpp"
+#include "transport/shm_convert.hpp"
 
 namespace tegotae {
 
-static_assert(TEGOTAE_SHM_PLANES == ContactPlanes::kMost, "one number of planes");
+static_assert(TEGOTAE_SHM_PLANES == ContactPlanes::kMax, "one number of planes");
 
 namespace {
 
@@ -42,8 +42,9 @@ PassivitySettings passivity_settings(const DeviceInfo& device, double bound) {
   return s;
 }
 
-double known(double limit) {
-  return std::isfinite(limit) ? limit : 0;
+/// 0 stands for a limit that is not known.
+double known(std::optional<double> limit) {
+  return limit && std::isfinite(*limit) ? *limit : 0;
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ void ServoTick::tell_lead(std::int64_t now_ns) noexcept {
   if (!attached_ || !sane_ || !started_ || !chain_.alive(application_.heartbeat_ns, now_ns)) return;
   Displacement lead = displacement(proxy_of(application_).X, mapping_.Y(), command_.center);
   lead.dp /= mapping_.scale();  // in the pen's meters
-  device_.set_lead(lead);
+  device_.set_tracking_error(lead);
 }
 
 void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {

@@ -9,8 +9,8 @@
 #include "coupling/pen_steps.hpp"
 #include "servo/pen_mapping.hpp"
 #include "servo/safety_chain.hpp"
-#include "tegotae/device/channel.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/channel.hpp"
 
 namespace tegotae {
 

@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the order in which they build on each other.
-const std::vector<std::string> kParts = {"core", "mesh",    "device",   "record", "narrowphase", "contact",
-                                         "lp",   "resolve", "coupling", "servo",  "sim"};
+const std::vector<std::string> kParts = {"core",       "mesh",     "contact",     "resolve", "loop",    "coupling",
+                                         "device",     "operator", "transport",   "servo",   "session", "import",
+                                         "scene_file", "record",   "narrowphase", "lp"};
 
 /// What one wants to do, and the headers for it.
 struct Task {
@@ -24,27 +25,29 @@ struct Task {
   const char* headers;  ///< with spaces between them
 };
 const Task kMap[] = {
-    {"feel a scene with a pen: all that most programs need", "tegotae.hpp sim/rig.hpp"},
+    {"feel a scene with a pen: all that most programs need", "tegotae.hpp session/rig.hpp"},
     {"the same from C, C#, Rust, Unity", "tegotae.h"},
-    {"describe a scene", "sim/scene.hpp mesh/triangle_mesh.hpp mesh/load.hpp sim/scene_file.hpp mesh/assembly.hpp"},
+    {"describe a scene",
+     "loop/scene.hpp mesh/triangle_mesh.hpp mesh/weld.hpp mesh/color.hpp import/load.hpp scene_file/scene_file.hpp "
+     "import/assembly.hpp"},
     {"know a mesh before it is used",
-     "mesh/report.hpp mesh/mass.hpp sim/clash.hpp mesh/isolated_load.hpp mesh/write.hpp"},
+     "mesh/report.hpp mesh/mass.hpp loop/clash.hpp import/isolated_load.hpp import/write.hpp"},
     {"use contacts", "contact/contact_point.hpp core/ids.hpp core/contact_force.hpp contact/contact.hpp"},
-    {"change a scene while it runs", "sim/scene_change.hpp sim/start.hpp"},
-    {"know what a tick did, and why a part lags", "sim/haptic_loop.hpp core/lag_reason.hpp resolve/status.hpp"},
+    {"change a scene while it runs", "loop/scene_change.hpp loop/initial_contacts.hpp"},
+    {"know what a tick did, and why a part lags", "loop/haptic_loop.hpp core/lag_reason.hpp resolve/status.hpp"},
     {"bring a device",
      "device/device.hpp device/simulated_device.hpp device/openhaptics_device.hpp device/input_devices.hpp "
      "device/limits.hpp"},
     {"be the hand of a simulated pen",
-     "device/script.hpp device/hand_intent.hpp device/hand_guide.hpp device/operator.hpp"},
+     "device/script.hpp device/input_source.hpp device/input_guide.hpp operator/operator.hpp"},
     {"set the feel and the safety chain",
-     "coupling/coupling.hpp coupling/stability.hpp servo/safety.hpp servo/mapping.hpp"},
+     "coupling/coupling.hpp coupling/stability.hpp servo/safety.hpp transport/mapping.hpp"},
     {"wire servo and contact loop by hand",
-     "servo/servo.hpp servo/contact_link.hpp servo/attachment.hpp servo/realtime.hpp "
-     "device/channel.hpp coupling/contact_planes.hpp servo/latency_histogram.hpp"},
+     "servo/servo.hpp transport/contact_link.hpp transport/attachment.hpp servo/realtime.hpp "
+     "transport/channel.hpp coupling/contact_planes.hpp transport/servo_statistics.hpp core/latency_histogram.hpp"},
     {"write a driver in another language", "device/shm.h"},
-    {"run a scene file, record it, watch it", "sim/session.hpp record/recorder.hpp record/recording.hpp"},
-    {"bring a resolver", "resolve/resolver.hpp lp/low_rank_matrix.hpp lp/friction_problem.hpp"},
+    {"run a scene file, record it, watch it", "session/session.hpp record/recorder.hpp record/recording.hpp"},
+    {"bring a resolver", "resolve/kind.hpp resolve/resolver.hpp lp/low_rank_matrix.hpp lp/friction_problem.hpp"},
     {"poses, errors, clock, version",
      "core/pose.hpp core/error.hpp core/clock.hpp core/constants.hpp core/version.hpp core/export.hpp"},
     {"start large scenes sooner", "narrowphase/hierarchy_cache.hpp"},

@@ -12,7 +12,7 @@
 #include "fcl_oracle.hpp"
 #include "mesh/step_assembly.hpp"
 #include "recording.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -13,7 +13,7 @@
 #include "spawn.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/pose.hpp"
-#include "tegotae/device/channel.hpp"
+#include "tegotae/transport/channel.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

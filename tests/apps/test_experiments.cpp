@@ -55,7 +55,7 @@ TEST_CASE("the short form of each experiment holds its claims", "[experiment]") 
   check_experiment(GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench"), "--quick");
 }
 
-// The short ladder is for the default resolver; with the rivals, which may jam, it takes minutes.
+// The short ladder is for the default resolver; with the baselines, which may jam, it takes minutes.
 TEST_CASE("every rung with all resolvers", "[.][experiment_long]") {
   check_experiment("ladder", "--seeds 1");
 }

@@ -14,7 +14,7 @@
 #endif
 #include "recording.hpp"
 #include "tegotae/mesh/report.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -116,7 +116,7 @@ TEST_CASE("the torsional stiffness fits the part, within what is felt and what i
   CHECK(torsional_stiffness_bound(72, 0.188) == Approx(3.76));
   CHECK(torsional_stiffness_bound(4, 0.188) == Approx(2));
   CHECK(torsional_stiffness_bound(0, 0.188) == 0.3);
-  CHECK(torsional_stiffness_bound(std::nan(""), 0.188) == 0.3);
+  CHECK(torsional_stiffness_bound(std::nullopt, 0.188) == 0.3);
   CHECK(coupling_radius({800, 5, 0.32, 0}) == Approx(0.02));
   CHECK(coupling_radius({800, 5, 0.32, 0}, 3) == Approx(0.06));
   for (const CouplingSettings& k : {CouplingSettings{0, 0, 0, 0}, CouplingSettings{0, 0, 1, 0}, {1, 0, 0, 0}})

@@ -148,7 +148,7 @@ TEST_CASE("for small turns the answer is that of every set of planes tried", "[c
   LocalModel model;
   int touched = 0;
   for (int round = 0; round < 500; ++round) {
-    RandomCase c = random_case(rng, 1 + round % ContactPlanes::kMost, 1e-4);
+    RandomCase c = random_case(rng, 1 + round % ContactPlanes::kMax, 1e-4);
     // A shift of a millimeter turns a part on one corner by 0.05 rad: all of it so small that flat is exact.
     c.error.dp *= 1e-3;
     for (auto& plane : c.planes.planes) plane.room *= 1e-3;
@@ -177,7 +177,7 @@ TEST_CASE("for large turns no neighbor that the planes allow stores less energy"
   };
   int touched = 0;
   for (int round = 0; round < 500; ++round) {
-    RandomCase c = random_case(rng, 1 + round % ContactPlanes::kMost, 0.1);
+    RandomCase c = random_case(rng, 1 + round % ContactPlanes::kMax, 0.1);
     const Vec3 center_W = c.x.X * c.center;
     ProxyState x = c.x;
     if (!model.update(c.planes, kRadius, c.center, c.Y, {}, x)) continue;  // it would turn too far

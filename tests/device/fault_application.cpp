@@ -7,8 +7,8 @@
 #include "device/press_scene.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/servo/attachment.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+#include "tegotae/transport/attachment.hpp"
 
 using namespace tegotae;
 

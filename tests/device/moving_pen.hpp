@@ -12,7 +12,7 @@ namespace tegotae::test {
 /// Reads every millisecond, a part following at once, until `wanted`; false after ten seconds.
 inline bool read_until(Device& device, const std::function<bool(const DeviceState&)>& wanted) {
   for (int i = 0; i < 10'000; ++i) {
-    device.set_lead({});
+    device.set_tracking_error({});
     if (wanted(device.read())) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "tegotae/loop/scene.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
-#include "tegotae/sim/scene.hpp"
 
 namespace tegotae::test {
 

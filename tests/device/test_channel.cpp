@@ -14,7 +14,7 @@
 #include "child_process.hpp"
 #include "shm_reader.h"
 #include "tegotae/core/error.hpp"
-#include "tegotae/device/channel.hpp"
+#include "tegotae/transport/channel.hpp"
 
 using namespace tegotae;
 

@@ -7,7 +7,7 @@
 #include "spawn.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/servo/attachment.hpp"
+#include "tegotae/transport/attachment.hpp"
 
 using namespace tegotae;
 using test::Program;

@@ -11,9 +11,9 @@
 
 #include "catch.hpp"
 #include "device/press_scene.hpp"
-#include "tegotae/servo/contact_link.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/servo/servo.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 using namespace tegotae;
 
@@ -29,6 +29,7 @@ class Pen final : public Device {
   Wrench rendered;
   std::uint64_t bad = 0;  ///< wrenches that are not finite or beyond the limits
   double most = 0;        ///< N
+  DeviceInfo info() const override { return {}; }
   void start() override {}
   void stop() override {}
   DeviceState read() noexcept override { return state; }

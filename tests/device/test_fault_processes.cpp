@@ -17,7 +17,7 @@
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/pose.hpp"
-#include "tegotae/device/channel.hpp"
+#include "tegotae/transport/channel.hpp"
 
 using namespace tegotae;
 using test::Program;

@@ -7,10 +7,10 @@
 
 #include "catch.hpp"
 #include "device/delayed_view.hpp"
-#include "device/minimum_jerk.hpp"
-#include "device/tremor.hpp"
+#include "operator/minimum_jerk.hpp"
+#include "operator/tremor.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/device/operator.hpp"
+#include "tegotae/operator/operator.hpp"
 
 using namespace tegotae;
 

@@ -172,7 +172,7 @@ TEST_CASE("half an event holds up neither a read nor a stop", "[spacemouse]") {
   REQUIRE(read_until(*pen, [](const DeviceState& s) { return !rests(s); }));
   daemon.send(kHalfAnEvent);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  pen->set_lead({});
+  pen->set_tracking_error({});
   CHECK_FALSE(rests(pen->read()));
   pen->stop();
   CHECK(pen->status() == DeviceStatus::uninitialized);

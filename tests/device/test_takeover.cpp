@@ -11,7 +11,7 @@
 #include "catch.hpp"
 #include "child_process.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/device/channel.hpp"
+#include "tegotae/transport/channel.hpp"
 
 using namespace tegotae;
 using test::ChildProcess;
@@ -125,9 +125,9 @@ TEST_CASE("of many processes that want a dead device's name at once, one gets it
       ChildProcess device(create_and_stay(name.text));
       device.hear();
     }
-    std::list<ChildProcess> rivals;
+    std::list<ChildProcess> baselines;
     for (int i = 0; i < 6; ++i)
-      rivals.emplace_back([&](auto say) {
+      baselines.emplace_back([&](auto say) {
         try {
           const Channel channel = Channel::create(name.text);
           say(1);
@@ -137,7 +137,7 @@ TEST_CASE("of many processes that want a dead device's name at once, one gets it
         }
       });
     std::int64_t winners = 0;
-    for (ChildProcess& rival : rivals) winners += rival.hear();
+    for (ChildProcess& baseline : baselines) winners += baseline.hear();
     REQUIRE(winners == 1);
     REQUIRE_NOTHROW(ChannelReader::open(name.text));
   }

@@ -1,7 +1,7 @@
 // Pieces of code that the documents show and that are no whole program, as they compile; check_code.py compares.
 #include "tegotae/core/clock.hpp"
-#include "tegotae/servo/attachment.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+#include "tegotae/transport/attachment.hpp"
 
 using namespace tegotae;
 

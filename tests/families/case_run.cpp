@@ -10,7 +10,7 @@
 
 #include "families/judges.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 namespace tegotae::test {
 namespace {
@@ -80,7 +80,7 @@ class Trace {
     if (!out_.is_open()) return;
     const Vec3 p = 1e3 * r.proxy.X.p, turned = rotation_vector(r.proxy.X.q);
     out_ << tick << ',' << static_cast<int>(t.phase) << ',' << 1e3 * t.pen << ',' << 1e3 * t.part << ',' << 1e3 * t.off
-         << ',' << t.force << ',' << t.contacts << ',' << 1e3 * r.gap << ',' << r.cut << ',' << r.fraction;
+         << ',' << t.force << ',' << t.contacts << ',' << 1e3 * r.gap << ',' << r.flags.timed_out << ',' << r.fraction;
     for (const double x : {p.x(), p.y(), p.z(), turned.x(), turned.y(), turned.z()}) out_ << ',' << x;
     out_ << '\n';
   }
@@ -117,7 +117,7 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
     judges.look(look);
     trace.look(tick, look, r);
     sample.look(tick, X);
-    result.cut += r.cut;
+    result.cut += r.flags.timed_out;
     result.seconds_loop += done - start;
     result.seconds_judges += cpu_seconds() - done;
   }

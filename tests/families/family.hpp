@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::test {
 

@@ -9,7 +9,7 @@
 
 #include "families/family.hpp"
 #include "models/height_field.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 
 namespace tegotae::test {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <memory>
 
-#include "tegotae/sim/scene.hpp"
+#include "tegotae/loop/scene.hpp"
 
 namespace tegotae::test {
 

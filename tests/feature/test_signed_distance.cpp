@@ -1,8 +1,8 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "feature/signed_distance.hpp"
+#include "loop/triangle_oracle.hpp"
 #include "models/shapes.hpp"
-#include "sim/triangle_oracle.hpp"
 #include "winding_number.hpp"
 
 using namespace tegotae;

@@ -4,7 +4,7 @@
 #include "fuzz/mesh_seeds.hpp"
 #include "mesh/surface.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/mesh/report.hpp"
 

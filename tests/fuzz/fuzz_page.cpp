@@ -8,7 +8,7 @@
 #include "fuzz/fuzz.hpp"
 #include "fuzz/mesh_seeds.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "view/live_view.hpp"
 #include "view/page_parts.hpp"
 #include "view/wire.hpp"

@@ -2,8 +2,8 @@
 #include "fuzz/fuzz.hpp"
 #include "fuzz/mesh_seeds.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae {
 

@@ -10,8 +10,8 @@
 
 #include "fuzz/fuzz.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 namespace tegotae {
 
@@ -20,6 +20,7 @@ namespace {
 /// A pen that is always enabled, so that only the safety chain stands between the segment and the hand.
 class OpenPen final : public Device {
  public:
+  DeviceInfo info() const override { return {}; }
   void start() override {}
   void stop() override {}
   DeviceState read() noexcept override { return {}; }

@@ -1,7 +1,7 @@
 // STEP files with tessellated shapes: what is taken out of the text, and the text that is left for OpenCASCADE, which
 // is not run here.
 #include "fuzz/fuzz.hpp"
-#include "mesh/step_triangles.hpp"
+#include "import/step_triangles.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {

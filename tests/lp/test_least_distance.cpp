@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "catch.hpp"
-#include "lp/programmes.hpp"
+#include "lp/programs.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -12,7 +12,7 @@ using namespace tegotae::test;
 namespace {
 
 /// The KKT conditions of min ½|z - z0|², G z >= b from the raw data; with them z is the minimizer (convex).
-void require_optimal(const Programme& p, const Vec6& z0, const QpResult& r, double tolerance) {
+void require_optimal(const Program& p, const Vec6& z0, const QpResult& r, double tolerance) {
   REQUIRE(r.status == LpStatus::optimal);
   REQUIRE(r.multipliers.count <= 6);
   const Eigen::VectorXd lambda = dense(r.multipliers, p.d.size());
@@ -34,7 +34,7 @@ void require_optimal(const Programme& p, const Vec6& z0, const QpResult& r, doub
 }
 
 /// The least objective over all active sets whose equality solution is feasible, or infinity.
-double enumerate(const Programme& p, const Vec6& z0) {
+double enumerate(const Program& p, const Vec6& z0) {
   const int n = static_cast<int>(p.d.size());
   double best = std::numeric_limits<double>::infinity();
   for (int set = 0; set < 1 << n; ++set) {
@@ -64,7 +64,7 @@ TEST_CASE("Least distance: held bodies: the least-constraint motion, proved opti
   Random random(21);
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 4000; ++i) {
-    const Programme p = held_body(random, i);
+    const Program p = held_body(random, i);
     CAPTURE(i);
     require_optimal(p, Vec6::Zero(), solver.solve(p.matrix(), p.d.data(), Vec6::Zero()), 1e-5);
     const Vec6 z0 = 1e-3 * random.vec6();
@@ -78,7 +78,7 @@ TEST_CASE("Least distance: well-separated normals: optimal to rounding", "[qp]")
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 1000; ++i) {
     for (const int kind : {0, 1, 4, 5, 6, 7}) {
-      const Programme p = held_body(random, kind);
+      const Program p = held_body(random, kind);
       require_optimal(p, Vec6::Zero(), solver.solve(p.matrix(), p.d.data(), Vec6::Zero()), 1e-8);
     }
   }
@@ -90,8 +90,7 @@ TEST_CASE("Least distance: slots whose walls agree to 1e-8 to 1e-16 rad: never a
   int stalled = 0;
   for (int i = 0; i < 2000; ++i) {
     const double spread = std::pow(10.0, random.uniform(-16, -8));
-    const Programme p =
-        programme(near_parallel(random, random.integer(2, 40), spread, true), Body{}, wanted(random), 1e-5);
+    const Program p = program(near_parallel(random, random.integer(2, 40), spread, true), Body{}, wanted(random), 1e-5);
     const QpResult& r = solver.solve(p.matrix(), p.d.data(), Vec6::Zero());
     REQUIRE(r.status != LpStatus::infeasible);
     if (r.status == LpStatus::optimal) {
@@ -103,12 +102,12 @@ TEST_CASE("Least distance: slots whose walls agree to 1e-8 to 1e-16 rad: never a
   CHECK(stalled <= 40);
 }
 
-TEST_CASE("Least distance: small programmes against all active sets", "[qp]") {
+TEST_CASE("Least distance: small programs against all active sets", "[qp]") {
   Random random(24);
   LeastDistanceSolver solver(16);
   int infeasible = 0;
   for (int i = 0; i < 4000; ++i) {
-    const Programme p = small(random, random.integer(1, 9));
+    const Program p = small(random, random.integer(1, 9));
     const Vec6 z0 = random.vec6();
     const double best = enumerate(p, z0);
     const QpResult& r = solver.solve(p.matrix(), p.d.data(), z0);
@@ -130,7 +129,7 @@ TEST_CASE("Least distance: warm starts: the same motion, no iterations for an un
   LeastDistanceSolver solver(2000);
   for (int i = 0; i < 2000; ++i) {
     const int kinds[] = {0, 1, 4, 5, 6, 7};
-    const Programme p = held_body(random, kinds[i % 6]);
+    const Program p = held_body(random, kinds[i % 6]);
     const LowRankMatrix g = p.matrix();
     const QpResult cold = solver.solve(g, p.d.data(), Vec6::Zero());
     const QpResult again =
@@ -150,7 +149,7 @@ TEST_CASE("Least distance: warm starts: the same motion, no iterations for an un
 
 TEST_CASE("Least distance: simple and bad problems", "[qp]") {
   LeastDistanceSolver solver(4);
-  Programme p;
+  Program p;
   const Vec6 z0 = Vec6::Constant(2);
   SECTION("no rows, satisfied rows") {
     p.g.resize(0, 6);

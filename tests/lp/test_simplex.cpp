@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "catch.hpp"
-#include "lp/programmes.hpp"
+#include "lp/programs.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -14,7 +14,7 @@ namespace {
 
 /// Optimality of f and y for min Σf, A f >= d, f >= 0 from the raw data with the dense A = G Gᵀ: feasibility of both
 /// and equal objectives prove it (weak duality). Tolerances are relative to the terms of each sum.
-void require_optimal(const Programme& p, const LpResult& r, double tolerance) {
+void require_optimal(const Program& p, const LpResult& r, double tolerance) {
   REQUIRE(r.status == LpStatus::optimal);
   REQUIRE(r.force.count <= 6);
   REQUIRE(r.dual.count <= 6);
@@ -34,9 +34,9 @@ void require_optimal(const Programme& p, const LpResult& r, double tolerance) {
   REQUIRE(r.primal_residual <= 1e-5 * (largest + r.w.norm() * p.g.rowwise().norm().maxCoeff()));
 }
 
-/// The least objective over all basic solutions with up to six basic forces, or infinity: a feasible programme has an
+/// The least objective over all basic solutions with up to six basic forces, or infinity: a feasible program has an
 /// optimal one.
-double enumerate(const Programme& p) {
+double enumerate(const Program& p) {
   const int n = static_cast<int>(p.d.size());
   const Eigen::MatrixXd a = p.g * p.g.transpose();
   double best = std::numeric_limits<double>::infinity();
@@ -72,7 +72,7 @@ TEST_CASE("Held bodies: always an answer, proved optimal", "[lp]") {
   Random random(11);
   LpSolver solver(2000);
   for (int i = 0; i < 4000; ++i) {
-    const Programme p = held_body(random, i);
+    const Program p = held_body(random, i);
     CAPTURE(i);
     require_optimal(p, solver.solve(p.matrix(), p.d.data()), 1e-6);
   }
@@ -83,7 +83,7 @@ TEST_CASE("Well-separated normals: optimal to rounding", "[lp]") {
   LpSolver solver(2000);
   for (int i = 0; i < 1000; ++i) {
     for (const int kind : {0, 1, 5, 6, 7}) {
-      const Programme p = held_body(random, kind);
+      const Program p = held_body(random, kind);
       require_optimal(p, solver.solve(p.matrix(), p.d.data()), 1e-9);
     }
   }
@@ -95,8 +95,7 @@ TEST_CASE("Slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict",
   int stalled = 0;
   for (int i = 0; i < 2000; ++i) {
     const double spread = std::pow(10.0, random.uniform(-16, -8));
-    const Programme p =
-        programme(near_parallel(random, random.integer(2, 40), spread, true), Body{}, wanted(random), 1e-5);
+    const Program p = program(near_parallel(random, random.integer(2, 40), spread, true), Body{}, wanted(random), 1e-5);
     const LpResult& r = solver.solve(p.matrix(), p.d.data());
     REQUIRE(r.status != LpStatus::infeasible);
     if (r.status == LpStatus::optimal) {
@@ -108,12 +107,12 @@ TEST_CASE("Slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict",
   CHECK(stalled <= 20);
 }
 
-TEST_CASE("Small programmes against all bases", "[lp]") {
+TEST_CASE("Small programs against all bases", "[lp]") {
   Random random(14);
   LpSolver solver(8);
   int infeasible = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Programme p = small(random, random.integer(1, 5));
+    const Program p = small(random, random.integer(1, 5));
     const double best = enumerate(p);
     const LpResult& r = solver.solve(p.matrix(), p.d.data());
     CAPTURE(i, p.g, p.d);
@@ -129,12 +128,12 @@ TEST_CASE("Small programmes against all bases", "[lp]") {
   CHECK(infeasible > 300);
 }
 
-TEST_CASE("Larger programmes without structure: proved optimal or proved infeasible", "[lp]") {
+TEST_CASE("Larger programs without structure: proved optimal or proved infeasible", "[lp]") {
   Random random(15);
   LpSolver solver(200);
   int infeasible = 0;
   for (int i = 0; i < 3000; ++i) {
-    Programme p = small(random, random.integer(6, 200));
+    Program p = small(random, random.integer(6, 200));
     if (i % 2) {  // some motion satisfies every row
       p.d = p.g * random.vec6() - p.d.cwiseAbs();
     }
@@ -152,12 +151,12 @@ TEST_CASE("Larger programmes without structure: proved optimal or proved infeasi
   CHECK(infeasible <= 1500);
 }
 
-TEST_CASE("The lemma of section 3: gaps at a free pose always give a feasible programme", "[lp]") {
+TEST_CASE("The lemma of section 3: gaps at a free pose always give a feasible program", "[lp]") {
   Random random(16);
   LpSolver solver(128);
   for (int i = 0; i < 3000; ++i) {
     const int n = random.integer(1, 64);
-    Programme p;
+    Program p;
     p.g.resize(n, 6);
     p.d.resize(n);
     const Vec6 delta = std::pow(10.0, random.uniform(-6, 0)) * random.vec6();
@@ -181,7 +180,7 @@ TEST_CASE("Rows in different units are solved alike", "[lp]") {
   Random random(17);
   LpSolver solver(64);
   for (int i = 0; i < 500; ++i) {
-    Programme p = programme(wedged_box(random, 4, Vec3(0.01, 0.02, 0.03)), Body{}, wanted(random), 1e-5);
+    Program p = program(wedged_box(random, 4, Vec3(0.01, 0.02, 0.03)), Body{}, wanted(random), 1e-5);
     for (int k = 0; k < p.d.size(); ++k) {
       const double s = std::pow(10.0, random.uniform(-6, 6));
       p.g.row(k) *= s;
@@ -198,9 +197,9 @@ TEST_CASE("Rows in different units are solved alike", "[lp]") {
   }
 }
 
-TEST_CASE("Simple and bad programmes", "[lp]") {
+TEST_CASE("Simple and bad programs", "[lp]") {
   LpSolver solver(16);
-  Programme p;
+  Program p;
   SECTION("no rows") {
     p.g.resize(0, 6);
     const LpResult& r = solver.solve(p.matrix(), nullptr);

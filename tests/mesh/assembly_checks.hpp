@@ -4,7 +4,7 @@
 
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/assembly.hpp"
+#include "tegotae/import/assembly.hpp"
 #include "tegotae/mesh/report.hpp"
 
 namespace tegotae::test {

@@ -6,8 +6,8 @@
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "models/shapes.hpp"
-#include "tegotae/mesh/load.hpp"
-#include "tegotae/mesh/write.hpp"
+#include "tegotae/import/load.hpp"
+#include "tegotae/import/write.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -3,7 +3,7 @@
 
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

@@ -5,7 +5,7 @@
 
 #include "mesh/assembly_checks.hpp"
 #include "mesh/gltf_doc.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

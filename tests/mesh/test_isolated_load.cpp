@@ -13,8 +13,8 @@
 #include "core/sanitizers.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "tegotae/core/clock.hpp"
-#include "tegotae/mesh/isolated_load.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/isolated_load.hpp"
+#include "tegotae/import/load.hpp"
 
 using namespace tegotae;
 namespace fs = std::filesystem;

@@ -13,7 +13,7 @@
 
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "catch.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;

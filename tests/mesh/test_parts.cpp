@@ -14,9 +14,10 @@
 #include <utility>
 #include <vector>
 
+#include "absent.hpp"
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/mesh/report.hpp"
 
@@ -111,7 +112,7 @@ TEST_CASE("every real part loads with a true report or is refused with a reason"
   const fs::path folder = TEGOTAE_PARTS_DIR;
   std::ifstream manifest(folder / "manifest.csv");
   if (!manifest) {
-    std::cout << "SKIPPED: no parts folder at " << folder << '\n';
+    test::note_absent("no parts folder at " + folder.string());
     return;
   }
   std::string line;

@@ -7,7 +7,7 @@
 #include "mesh/topology.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/constants.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;

@@ -3,7 +3,7 @@
 
 #include "catch.hpp"
 #include "models/shapes.hpp"
-#include "tegotae/mesh/load.hpp"
+#include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;

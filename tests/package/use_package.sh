@@ -29,6 +29,8 @@ quietly cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE
 grep -q "^tegotae_DIR:PATH=$work/moved/" build/CMakeCache.txt || fail "another installed tegotae was found"
 quietly cmake --build build --parallel 2
 
+pkg_config_path=$work/moved/lib/pkgconfig:$work/moved/lib/$(gcc -print-multiarch 2>/dev/null)/pkgconfig
+
 # What each of them must print; the numbers are coarse, the tests of the library look closely.
 run() {
   local name=$1 expected=$2
@@ -47,6 +49,12 @@ run custom_device "at rest: (1[.]9|2[.]0)[0-9] N up" "$root/models"
 run custom_resolver "both pegs went ([0-9.]+) and .* mm down; never farther apart than 0[.][01]" "$root/models"
 run viewer "remove: 401 parts, the held one goes to x = 2[45]" "$root/models"
 run meshes_from_memory "400 ms: pen at +4[.]0 mm, cube at +10[.]0[0-9]+ mm, +[1-9] contacts"
+
+# A program built for this very processor has other vector widths than the library. Its poses must not.
+quietly ${CXX:-g++} -std=c++17 -O2 -march=native scripted_pen.cpp -o native $(PKG_CONFIG_PATH=$pkg_config_path pkg-config --cflags --libs tegotae)
+build/scripted_pen "$root/models" >"$work/as_built"
+LD_LIBRARY_PATH=$work/moved/lib:$work/moved/lib/$(gcc -print-multiarch) ./native "$root/models" >"$work/native"
+cmp "$work/as_built" "$work/native" || fail "scripted_pen does something else when it is built with -march=native"
 
 # The component backends, which comes with the static library.
 if [ -n "$(find "$work/moved" -name libtegotae_backends.a)" ]; then
@@ -84,7 +92,7 @@ fi
 sed -i 's/find_package(tegotae 0.1 /find_package(tegotae 0.0 /' CMakeLists.txt
 if cmake -S . -B build_other -DCMAKE_PREFIX_PATH="$work/moved" >/dev/null 2>&1; then fail "0.0 was taken for 0.1"; fi
 
-export PKG_CONFIG_PATH=$work/moved/lib/pkgconfig:$work/moved/lib/$(gcc -print-multiarch 2>/dev/null)/pkgconfig
+export PKG_CONFIG_PATH=$pkg_config_path
 pkg-config --exists tegotae || fail "pkg-config does not know tegotae"
 # shellcheck disable=SC2046
 quietly ${CXX:-g++} -std=c++17 -O1 meshes_from_memory.cpp -o pkg $(pkg-config --cflags --libs tegotae)

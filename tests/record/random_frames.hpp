@@ -68,7 +68,7 @@ inline ContactForces random_forces(std::mt19937_64& rng) {
   const auto number = [&rng] { return random_double(rng); };
   const auto vector = [&] { return Vec3(number(), number(), number()); };
   ContactForces out;
-  out.count = static_cast<int>(rng() % (ContactForces::kMost + 1));
+  out.count = static_cast<int>(rng() % (ContactForces::kMax + 1));
   for (int i = 0; i < out.count; ++i) {
     ContactForce& c = out.items[static_cast<std::size_t>(i)];
     c.part = PartId{static_cast<std::uint32_t>(rng())};

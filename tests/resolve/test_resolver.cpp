@@ -62,7 +62,7 @@ TEST_CASE("a resolved motion keeps every limit and never goes away from the targ
   const std::string name = GENERATE("lp", "qp");
   CAPTURE(name);
   std::mt19937 rng(52);
-  const auto resolver = make_resolver(name, 64);
+  const auto resolver = make_resolver(resolver_kind(name), 64);
   Metric metric(random_mass(rng));
   metric.set_orientation(Quat::Identity());
   for (int i = 0; i < 500; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("a resolved motion keeps every limit and never goes away from the targ
 
 TEST_CASE("limits that contradict each other are reported, and nothing moves", "[resolve]") {
   const std::string name = GENERATE("lp", "qp");
-  const auto resolver = make_resolver(name, 8);
+  const auto resolver = make_resolver(resolver_kind(name), 8);
   LowRankMatrix rows(8);
   Vec6 up = Vec6::Zero();
   up[2] = 1;
@@ -98,6 +98,9 @@ TEST_CASE("limits that contradict each other are reported, and nothing moves", "
 }
 
 TEST_CASE("an unknown resolver is an error that names it", "[resolve]") {
-  REQUIRE_THROWS_AS(make_resolver("magic", 8), Error);
-  for (const std::string name : {"lp", "qp"}) REQUIRE(make_resolver(name, 8) != nullptr);
+  REQUIRE_THROWS_AS(resolver_kind("magic"), Error);
+  for (const std::string& name : resolver_names()) CHECK(to_string(resolver_kind(name)) == name);
+  for (const ResolverKind kind : {ResolverKind::impulse, ResolverKind::penalty})
+    REQUIRE_THROWS_WITH(make_resolver(kind, 8), Catch::Contains("loop of its own"));
+  for (const std::string name : {"lp", "qp"}) REQUIRE(make_resolver(resolver_kind(name), 8) != nullptr);
 }

@@ -5,7 +5,7 @@
 #include "catch.hpp"
 #include "review/assembly_force.hpp"
 #include "review/review.hpp"
-#include "tegotae/sim/haptic_loop.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 using namespace tegotae;
 using namespace tegotae::review;

@@ -190,8 +190,8 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
     f = find(file, rows, scan, Vec3::Zero());
     REQUIRE(f.start.pairs.size() == 2);
     for (const StartFinding& s : f.start.pairs) {
-      CHECK(s.pair.state == PairState::relieved);
-      CHECK(s.pair.clash.depth == Approx(3e-6).epsilon(1e-6));
+      CHECK(s.pair.state == InitialContactState::shrunk);
+      CHECK(s.pair.clash.depth.value() == Approx(3e-6).epsilon(1e-6));
       CHECK(s.pair.relief == Approx(relief).epsilon(1e-6));
     }
     return judge(f, scene, false, scan, "");
@@ -229,7 +229,7 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
 
 TEST_CASE("a part that begins in another one is told, and the poses in it until it came free") {
   Scene scene = blocks();
-  scene.contact.initial_overlap = "ignore";
+  scene.contact.initial_overlap = InitialOverlap::ignore;
   scene.parts.back().pose.p = {0, 0, 0.004505};  // 0.495 mm deep in the floor
   std::vector<RecordFrame> rows;
   for (int i = 0; i <= 200; ++i) rows.push_back(row(i, 0, 0.004505 + 1e-5 * i, 0.004505 + 1e-5 * i, 0));
@@ -237,7 +237,7 @@ TEST_CASE("a part that begins in another one is told, and the poses in it until 
   Scan scan = scan_path(scene, "test", rows, {});
   Findings f = find(file, rows, scan, Vec3::Zero());
   REQUIRE(f.start.pairs.size() == 1);
-  CHECK(f.start.pairs[0].pair.state == PairState::suspended);
+  CHECK(f.start.pairs[0].pair.state == InitialContactState::filtered);
   CHECK(f.start.pairs[0].deeper == 50);
   CHECK(f.start.pairs[0].until == Approx(0.051).margin(1e-9));
   CHECK(f.start.intersecting == 0);

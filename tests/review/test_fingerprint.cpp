@@ -3,7 +3,7 @@
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 #include "tries/try_table.hpp"
 
 using namespace tegotae;

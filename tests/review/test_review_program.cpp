@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "absent.hpp"
 #include "catch.hpp"
 #include "recording.hpp"
 
@@ -252,7 +253,7 @@ TEST_CASE("a peg in its hole, and a peg out of its tray", "[.][parts]") {
     const std::string peg = TEGOTAE_PARTS_DIR "/industreal/industreal_rectangular_peg_8mm.obj",
                       tray = TEGOTAE_PARTS_DIR "/industreal/industreal_tray_insert_rectangular_peg_8mm.obj";
     if (!std::filesystem::exists(peg)) {
-      std::puts("SKIPPED: no parts folder");
+      note_absent("no parts folder");
       return;
     }
     folder.write("path.csv",

@@ -12,7 +12,7 @@
 #include "catch.hpp"
 #include "fcl_oracle.hpp"
 #include "recording.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;

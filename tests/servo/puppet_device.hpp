@@ -1,8 +1,8 @@
 #pragma once
 
 #include "tegotae/device/device.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 namespace tegotae::test {
 

@@ -7,7 +7,7 @@
 #include "puppet_device.hpp"
 #include "servo/pen_mapping.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/servo/attachment.hpp"
+#include "tegotae/transport/attachment.hpp"
 
 using namespace tegotae;
 using test::engage;

@@ -5,8 +5,8 @@
 
 #include "catch.hpp"
 #include "puppet_device.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 using namespace tegotae;
 using test::engage;

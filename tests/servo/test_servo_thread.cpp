@@ -7,8 +7,8 @@
 #include "puppet_device.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/servo/contact_link.hpp"
 #include "tegotae/servo/servo.hpp"
+#include "tegotae/transport/contact_link.hpp"
 
 using namespace tegotae;
 using test::engage;

@@ -6,7 +6,7 @@
 #include "fcl_oracle.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/record/recording.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
 

@@ -9,9 +9,9 @@
 #include "child_process.hpp"
 #include "fcl_oracle.hpp"
 #include "spawn.hpp"
-#include "tegotae/mesh/write.hpp"
+#include "tegotae/import/write.hpp"
 #include "tegotae/record/recording.hpp"
-#include "tegotae/sim/scene_file.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 #include "view/watcher.hpp"
 
 using namespace tegotae;

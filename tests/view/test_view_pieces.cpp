@@ -184,7 +184,7 @@ TEST_CASE("a led hand goes to its goal like a hand") {
   settings.position_resolution = settings.rotation_resolution = settings.friction = 0;
   const Vec3 center(0, 0, 0.02);
   SimulatedDevice pen(settings, StylusScript({{0, start}}), center);
-  HandGuide guide;
+  InputGuide guide;
   pen.follow(guide);
   pen.start();
   for (int i = 0; i < 100; ++i) pen.advance(1e-3);

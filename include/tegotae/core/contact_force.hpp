@@ -25,10 +25,10 @@ struct ContactForce {
 /// The contacts that carry force: no more than six are needed to hold a rigid body, however many touch. So of a face
 /// that lies flat some corners carry all; their sum is what counts. Each stays within its own cone of friction.
 struct ContactForces {
-  static constexpr int kMost = 6;         ///< degrees of freedom of a free body
-  std::array<ContactForce, kMost> items;  ///< the first `count` of them hold
-  int count = 0;                          ///< 0: nothing carries, or the forces are not available
-  bool available = false;                 ///< that they are known; not in recordings
+  static constexpr int kMax = 6;         ///< degrees of freedom of a free body
+  std::array<ContactForce, kMax> items;  ///< the first `count` of them hold
+  int count = 0;                         ///< 0: nothing carries, or the forces are not available
+  bool available = false;                ///< that they are known; not in recordings
   /// What the coupling's springs pull beyond the contacts' forces because the part is not yet where it is going: out of
   /// time, held to a length a tick, or opening a gap. Zero at rest. At the held part's center of mass, world.
   Wrench lag;

@@ -26,9 +26,8 @@ struct Feature {
   /// for the same mesh.
   std::uint32_t index = 0;
 
-  /// The same feature, of the same mesh.
-  bool operator==(const Feature& o) const noexcept { return kind == o.kind && index == o.index; }
-  bool operator!=(const Feature& o) const noexcept { return !(*this == o); }  ///< another feature
+  bool operator==(const Feature& o) const noexcept { return kind == o.kind && index == o.index; }  ///< the same one
+  bool operator!=(const Feature& o) const noexcept { return !(*this == o); }                       ///< another one
 };
 
 }  // namespace tegotae

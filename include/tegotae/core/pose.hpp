@@ -10,7 +10,9 @@ namespace tegotae TEGOTAE_EXPORT {
 using Vec3 = Eigen::Vector3d;              ///< x, y, z
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< linear part first, then angular
 using Mat3 = Eigen::Matrix3d;              ///< rows and columns x, y, z
-using Quat = Eigen::Quaterniond;           ///< written w, x, y, z; of unit length wherever it is a rotation
+/// Written w, x, y, z; of unit length wherever it is a rotation. Not aligned, because Eigen aligns by the flags of the
+/// compiler: a Pose would have another layout in a program that is built with -mavx2.
+using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// Rigid pose X_WB: maps coordinates in frame B to frame W, p_W = q * p_B + p. Lengths in m, `q` a unit quaternion.
 struct Pose {
@@ -27,6 +29,11 @@ struct Pose {
     return {qi, -(qi * p)};
   }
 };
+
+// A library that was built without -mavx2 must find the numbers of a program that was built with it.
+static_assert(sizeof(Pose) == 56 && alignof(Pose) == 8 && alignof(Vec3) == 8 && alignof(Mat3) == 8 &&
+                  sizeof(Vec6) == 48 && alignof(Vec6) == 16,
+              "Eigen is configured to lay its types out in another way than the library's");
 
 /// Velocity of a body: `v` (m/s) of a stated point of it, `w` angular (rad/s); both expressed in the world.
 struct Twist {

@@ -18,11 +18,11 @@ struct ContactPlane {
 /// What the contact loop knows about the held part's next millimeter, for a servo that is faster: the limits that held
 /// it in its last tick, and after them the nearest others. A free body needs no more than six.
 struct ContactPlanes {
-  static constexpr int kMost = 6;          ///< degrees of freedom of a free body
-  std::array<ContactPlane, kMost> planes;  ///< the first `count` of them hold
-  int count = 0;                           ///< 0: nothing is known, X stays where it is until the next tick
-  Pose X;                                  ///< of the held part's file frame, where they were taken
-  Pose pen;                                ///< Y that the tick answered
+  static constexpr int kMax = 6;          ///< degrees of freedom of a free body
+  std::array<ContactPlane, kMax> planes;  ///< the first `count` of them hold
+  int count = 0;                          ///< 0: nothing is known, X stays where it is until the next tick
+  Pose X;                                 ///< of the held part's file frame, where they were taken
+  Pose pen;                               ///< Y that the tick answered
 
   /// Whether they were taken at `pose`, bit for bit: planes of another pose would pull the part where no contact is.
   bool taken_at(const Pose& pose) const noexcept { return X.p == pose.p && X.q.coeffs() == pose.q.coeffs(); }

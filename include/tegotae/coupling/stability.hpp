@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "tegotae/core/export.hpp"
@@ -15,12 +16,12 @@ namespace tegotae TEGOTAE_EXPORT {
 /// 2005). A hand that holds the pen adds damping: couplings above the limit can be stable in a hand, none below it is
 /// unstable.
 struct StabilityReport {
-  double rate_hz = 0;                    ///< of the servo
-  CouplingSettings coupling;             ///< what is asked for
-  double sampling_limit = 0;             ///< N/m, 2 (b - |B|) / T; NaN when b is not known
-  double quantization_limit = 0;         ///< N/m, 2 f_c / Δ; infinite without quantization
-  double stiffness_limit = 0;            ///< N/m, the smaller one; NaN when not known
-  double torsional_stiffness_limit = 0;  ///< N·m/rad, by sampling alone; NaN when not known
+  double rate_hz = 0;                               ///< of the servo
+  CouplingSettings coupling;                        ///< what is asked for
+  std::optional<double> sampling_limit;             ///< N/m, 2 (b - |B|) / T; none when b is not known
+  double quantization_limit = 0;                    ///< N/m, 2 f_c / Δ; infinite without quantization
+  std::optional<double> stiffness_limit;            ///< N/m, the smaller one; none when not known
+  std::optional<double> torsional_stiffness_limit;  ///< N·m/rad, by sampling alone; none when not known
   /// In one line, for people.
   std::string text() const;
 };
@@ -30,8 +31,8 @@ StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coup
 
 /// The most that fitted_torsional_stiffness() should choose (N·m/rad) for a device of which `limit` is
 /// StabilityReport::torsional_stiffness_limit and `torque` its peak (N·m): half of the limit, and not so stiff that the
-/// peak is reached within 0.05 rad, where a step of the pen's angle would be felt. Where the limit is not known (NaN or
-/// 0), the default of CouplingSettings.
-double torsional_stiffness_bound(double limit, double torque) noexcept;
+/// peak is reached within 0.05 rad, where a step of the pen's angle would be felt. Where the limit is not known (none
+/// or 0), the default of CouplingSettings.
+double torsional_stiffness_bound(std::optional<double> limit, double torque) noexcept;
 
 }  // namespace tegotae

@@ -71,7 +71,7 @@ class Device {
   virtual ~Device() = default;
 
   /// What it is; does not change while the device is started.
-  virtual DeviceInfo info() const { return {}; }
+  virtual DeviceInfo info() const = 0;
 
   /// Connects and makes the device ready or enabled. Throws Error with the cause.
   virtual void start() = 0;
@@ -100,7 +100,7 @@ class Device {
 
   /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
   /// read() while an application is attached; an input that is integrated stays near the part by it.
-  virtual void set_lead(const Displacement&) noexcept {}
+  virtual void set_tracking_error(const Displacement&) noexcept {}
 
  private:
   Vec3 center_ = Vec3::Zero();

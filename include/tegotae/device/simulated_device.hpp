@@ -5,8 +5,8 @@
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/device/device.hpp"
-#include "tegotae/device/hand_guide.hpp"
-#include "tegotae/device/hand_intent.hpp"
+#include "tegotae/device/input_guide.hpp"
+#include "tegotae/device/input_source.hpp"
 #include "tegotae/device/limits.hpp"
 #include "tegotae/device/script.hpp"
 
@@ -49,7 +49,7 @@ class SimulatedDevice final : public Device {
   /// At rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
   /// At rest where `hand` begins. Keeps a reference to it, which must outlive the device.
-  SimulatedDevice(const SimulatedDeviceSettings& settings, HandIntent& hand, const Vec3& center = Vec3::Zero());
+  SimulatedDevice(const SimulatedDeviceSettings& settings, InputSource& hand, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
   /// Its damping is the hand's, which it has for good.
@@ -61,12 +61,12 @@ class SimulatedDevice final : public Device {
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
   void set_center(const Vec3& center) noexcept override;
-  void set_lead(const Displacement& lead) noexcept override;  ///< an application is there
-  void use_wall_clock(bool on) noexcept override;             ///< sets SimulatedDeviceSettings::wall_clock
+  void set_tracking_error(const Displacement& lead) noexcept override;  ///< an application is there
+  void use_wall_clock(bool on) noexcept override;                       ///< sets SimulatedDeviceSettings::wall_clock
 
   /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
   /// keeps a reference.
-  void follow(const HandGuide& guide) noexcept;
+  void follow(const InputGuide& guide) noexcept;
   /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
   void advance(double dt) noexcept override;
   /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/lp/friction_problem.hpp"
 #include "tegotae/lp/low_rank_matrix.hpp"
+#include "tegotae/resolve/kind.hpp"
 #include "tegotae/resolve/status.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
@@ -44,11 +43,8 @@ class Resolver {
   }
 };
 
-/// What ContactSettings::resolver knows: "lp" (the paper's linear programme), "qp" (the springs' least energy, the one
-/// that knows friction), and two
-/// that solve no programme but are loops of their own, "impulse" and "penalty" (see src/sim).
-const std::vector<std::string>& resolver_names();
-/// "lp" or "qp", for at most `capacity` rows. Throws Error for another name.
-std::unique_ptr<Resolver> make_resolver(const std::string& name, int capacity);
+/// Makes the resolver of `kind`, ResolverKind::qp or ResolverKind::lp, for at most `capacity` rows. Throws Error for
+/// the others, which are loops of their own and make no resolver.
+std::unique_ptr<Resolver> make_resolver(ResolverKind kind, int capacity);
 
 }  // namespace tegotae

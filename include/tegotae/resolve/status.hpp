@@ -6,7 +6,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How the resolver's programme of a tick ended.
+/// How the resolver's program of a tick ended.
 enum class ResolveStatus : std::uint8_t {
   not_needed,  ///< nothing limited the motion
   solved,      ///< within the solver's tolerances

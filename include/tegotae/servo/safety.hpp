@@ -48,7 +48,7 @@ struct SafetySettings {
 };
 
 /// Of timeouts, s: longer ones would keep a force that nobody updates for longer than a hand takes to notice.
-inline constexpr double kLongestTimeout = 1.0;
+inline constexpr double kMaxTimeout = 1.0;
 
 /// Throws Error naming the first setting that is out of range.
 void check(const SafetySettings& settings);

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "tegotae/core/export.hpp"
-#include "tegotae/device/channel.hpp"
 #include "tegotae/device/device.hpp"
-#include "tegotae/servo/latency_histogram.hpp"
-#include "tegotae/servo/mapping.hpp"
 #include "tegotae/servo/realtime.hpp"
 #include "tegotae/servo/safety.hpp"
+#include "tegotae/transport/channel.hpp"
+#include "tegotae/transport/mapping.hpp"
+#include "tegotae/transport/servo_statistics.hpp"
 
 namespace tegotae TEGOTAE_EXPORT {
 
@@ -23,21 +22,6 @@ struct ServoSettings {
   MappingSettings mapping;  ///< buttons
   bool local_model = true;  ///< bring the proxy up to date on the contact planes between two ticks of the contact loop
 };
-
-/// What the servo has done since it was made.
-struct ServoStatistics {
-  std::uint64_t ticks = 0;    ///< made
-  std::uint64_t missed = 0;   ///< periods of the schedule that had no tick
-  double rate_hz = 0;         ///< achieved, mean; 0 before the second tick
-  LatencySummary late_us;     ///< wake-up minus schedule
-  LatencySummary compute_us;  ///< the servo's own work in a tick
-  double recent_late_us = 0;  ///< the largest lateness in the last tenth of a second
-  /// How often the force went off, or stayed off for a new reason, by ForceOff.
-  std::array<std::uint64_t, TEGOTAE_SHM_REASONS> force_off{};
-};
-
-/// What the servo at the other end of `channel` last told of itself; zeros before it has.
-ServoStatistics servo_statistics(const ChannelReader& channel) noexcept;
 
 /// The fast loop: pen in, mapping, coupling to the newest proxy, safety chain, wrench out, pen state to the
 /// application. Either as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.

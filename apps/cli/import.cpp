@@ -1,0 +1,111 @@
+#include "cli/import.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include "cli/length_option.hpp"
+#include "cli/scene_writer.hpp"
+#include "shared/process.hpp"
+#include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae::apps {
+
+namespace {
+
+void require_part(const Assembly& assembly, const ImportOptions& options) {
+  if (options.hold.empty()) return;
+  const auto& parts = assembly.parts;
+  if (std::any_of(parts.begin(), parts.end(), [&](const AssemblyPart& p) { return p.name == options.hold; })) return;
+  std::string names;
+  for (std::size_t i = 0; i < parts.size() && i < 8; ++i) names += (i > 0 ? ", " : "") + parts[i].name;
+  throw Error(options.file + ": no part is named " + options.hold + " (there are " + names +
+              (parts.size() > 8 ? ", ...)" : ")"));
+}
+
+int import_here(const ImportOptions& options) {
+  const std::filesystem::path scene = std::filesystem::path(options.folder) / "scene.toml";
+  if (std::filesystem::exists(scene))
+    throw Error(scene.string() + ": exists already; remove it or choose another folder");
+  AssemblyOptions reading = options.assembly;
+  Assembly assembly;
+  {
+    StatusLine status;
+    reading.progress = [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); };
+    assembly = read_assembly(options.file, reading);
+    require_part(assembly, options);
+    write_scene(assembly, options.file, options.folder, options.hold, reading.progress);
+  }
+  for (const std::string& note : assembly.notes) std::cerr << "tegotae: note: " << note << "\n";
+  std::size_t triangles = 0;
+  for (const AssemblyPart& part : assembly.parts) triangles += assembly.shapes[part.shape]->triangles.size();
+  std::cout << scene.string() << ": " << assembly.parts.size() << " part" << (assembly.parts.size() == 1 ? "" : "s")
+            << ", " << assembly.shapes.size() << " mesh" << (assembly.shapes.size() == 1 ? "" : "es") << ", "
+            << triangles << " triangles\n";
+  if (options.hold.empty())
+    std::cout << "no part is held yet: run it with `tegotae run " << scene.string()
+              << " --hold NAME`, or give a part held = true\n";
+  return kDone;
+}
+
+/// Runs `body` in a child process: OpenCASCADE follows null pointers in some damaged files, and then the child dies.
+int in_child(const std::string& file, const std::function<int()>& body) {
+  std::cout.flush();
+  const pid_t child = fork();
+  if (child < 0) throw Error(file + ": cannot be read: " + std::strerror(errno));
+  if (child == 0) {
+    int code = kRunFailed;
+    try {
+      code = body();
+    } catch (const Error& e) {
+      std::cerr << "tegotae: " << e.what() << "\n";
+      code = kBadInput;
+    } catch (const std::exception& e) {
+      std::cerr << "tegotae: " << file << ": " << e.what() << "\n";
+    }
+    _exit(finish_output("tegotae", code));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  const int signal = WTERMSIG(status);
+  if (signal == SIGINT || signal == SIGTERM) return kRunFailed;
+  throw Error(file + ": damaged: its reader crashed (" + strsignal(signal) + ")");
+}
+
+}  // namespace
+
+CLI::App* add_import(CLI::App& app, ImportOptions& options) {
+  CLI::App* import = app.add_subcommand("import", "Turn an assembly (STEP, glTF, 3MF) or a mesh file into a scene");
+  import->add_option("FILE", options.file, "STEP, glTF, GLB, 3MF; or STL, OBJ, PLY, OFF")->required();
+  import->add_option("-o", options.folder, "Folder to write into; it gets scene.toml and meshes/")
+      ->required()
+      ->type_name("DIR");
+  import->add_option("--hold", options.hold, "Name of the part to hold")->type_name("NAME");
+  import->add_flag("--split", options.assembly.split, "Make a part of every connected piece of a surface");
+  import
+      ->add_option("--unit", options.assembly.unit, "Unit of a file that does not tell it: m (default), cm, mm, um, in")
+      ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
+      ->type_name("UNIT");
+  add_length_option(*import, "--chord", options.assembly.chord,
+                    "STEP: how far facets may be from curved faces that mate (5um)");
+  add_length_option(*import, "--coarse-chord", options.assembly.coarse_chord,
+                    "STEP: how far they may be from other curved faces (50um)");
+  return import;
+}
+
+int import_file(const ImportOptions& options) {
+  return in_child(options.file, [&] { return import_here(options); });
+}
+
+}  // namespace tegotae::apps

@@ -1,0 +1,97 @@
+#include "shared/run_options.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <iostream>
+
+#include "shared/format.hpp"
+#include "shared/progress_line.hpp"
+#include "shared/start_text.hpp"
+#include "shared/summary.hpp"
+#include "tegotae/core/version.hpp"
+#include "view/view_run.hpp"
+
+namespace tegotae::apps {
+
+CLI::Option* add_view_address(CLI::App& app, std::string& address) {
+  return app.add_option("--view-address", address, "Where to serve the page (127.0.0.1, any free port)")
+      ->type_name("ADDRESS[:PORT]");
+}
+
+view::Address view_address(const std::string& text) {
+  return text.empty() ? view::Address() : view::parse_address(text);
+}
+
+void announce_page(const std::string& url, bool quiet) {
+  (quiet ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends it)" << std::endl;
+}
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  app.add_option("--resolver", options.resolver,
+                 "Contact resolver: qp or lp, or for comparison impulse or penalty; overrides the scene's")
+      ->type_name("NAME");
+  CLI::Option* device =
+      app.add_option("--device", options.device, "shm:NAME: the pen of a running tegotae-device, until Ctrl-C")
+          ->type_name("DEVICE");
+  CLI::Option* fast =
+      app.add_flag("--fast", options.fast, "Virtual time: as fast as it goes, the same recording on every run");
+  fast->excludes(device);
+  app.add_option("--record", options.record,
+                 "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
+      ->type_name("FILE");
+  app.add_flag("--check-all", options.check_all,
+               "Ask FCL about every pose, however long it takes (as many as a quarter of the run's time allows)");
+  app.add_flag("--json", options.json, "Print the summary as one line of JSON");
+  auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
+  add_view_address(app, options.view_address)->needs(view);
+}
+
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
+  if (!options.resolver.empty()) file.scene.contact.resolver = resolver_kind(options.resolver);
+  RunProgress progress;
+  RunSettings settings;
+  settings.device = options.device;
+  settings.real_time = !options.fast;
+  settings.seconds = options.seconds;
+  settings.record = options.record;
+  settings.program = "tegotae " TEGOTAE_VERSION_STRING;
+  settings.progress = &progress;
+  std::atomic<bool>& interrupted = catch_interrupts();
+  settings.stop = settings.stop_check = &interrupted;
+  settings.check_all = options.check_all;
+  settings.on_start = [&](const RunStart& start) {
+    const std::string text = start_text(start.parts, file.scene);
+    if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
+    if (!options.json && !start.stability.empty())
+      std::cout << format("%-12s ", "stability:") << start.stability << std::endl;
+    if (!options.json) std::cout << format("%-12s ", "torsion:") << start.torsion << std::endl;
+    if (!options.json && !start.weight.empty()) std::cout << format("%-12s ", "weight:") << start.weight << std::endl;
+  };
+
+  RunSummary summary;
+  {
+    const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
+    ProgressLine line(progress, depth_offset, show);
+    summary = options.view ? view::run_viewed(file, settings, view_address(options.view_address), interrupted,
+                                              [&](const std::string& url) { announce_page(url, options.json); })
+                           : run_session(file, settings);
+  }
+  summary.depth_m += depth_offset;
+  if (options.json)
+    std::cout << json_line(summary, file) << std::endl;
+  else
+    std::cout << summary_text(summary, options, file, goal, interrupted.load()) << std::flush;
+  // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
+  // whenever it ends.
+  const bool done =
+      summary.completed || options.view || !options.device.empty() || (options.seconds > 0 && !interrupted.load());
+  if (!summary.record_failure.empty()) {
+    std::cerr << "tegotae: " << summary.record_failure << "\n";
+    return kBadInput;
+  }
+  const bool clean = summary.penetrating == 0 || file.scene.contact.resolver == ResolverKind::penalty;
+  return done && clean ? kDone : kRunFailed;
+}
+
+}  // namespace tegotae::apps

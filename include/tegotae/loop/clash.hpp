@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "tegotae/core/export.hpp"
+#include "tegotae/loop/scene.hpp"
+
+namespace tegotae TEGOTAE_EXPORT {
+
+/// How two parts stand to each other.
+enum class ClashKind : std::uint8_t {
+  overlap,  ///< deeper than the tolerance, or crossing surfaces of which none is closed
+  touch,    ///< apart or overlapping by the tolerance at most
+  near      ///< apart by more than the tolerance
+};
+
+/// Two parts that touch, overlap or are near.
+struct Clash {
+  std::size_t a = 0;                 ///< index into Scene::parts, the smaller one
+  std::size_t b = 0;                 ///< index into Scene::parts, the larger one
+  ClashKind kind = ClashKind::near;  ///< by ClashOptions::tolerance
+  double gap = 0;                    ///< m: distance of the surfaces; 0 when they intersect
+  /// m: how far the deepest point found of one part lies inside the other, measured to the nearest point of its
+  /// surface; 0 when they are apart, none when none of the two is closed. Looked at are all vertices and, of the edges
+  /// that cross the other surface, the middles of the pieces between crossings: a lower bound of the depth of the
+  /// deepest point, exact where that is a vertex.
+  std::optional<double> depth = 0;
+  Vec3 place_W = Vec3::Zero();     ///< the deepest point, or the middle of the shortest gap, m
+  std::size_t triangle_pairs = 0;  ///< that intersect; triangles that touch count
+};
+
+/// What find_clashes() looks for.
+struct ClashOptions {
+  double tolerance = 10e-6;                                           ///< m: what counts as touching
+  double within = 0;                                                  ///< m: pairs apart by up to this are listed too
+  bool held_only = false;                                             ///< only the pairs of the held part
+  std::function<void(std::size_t done, std::size_t total)> progress;  ///< pairs of parts whose boxes are near
+};
+
+/// Every pair of parts that touches, overlaps or is near: overlaps first, the deepest first, then the others by gap.
+/// Part against part, held or not. A part inside the closed surface of another overlaps it.
+std::vector<Clash> find_clashes(const Scene& scene, const ClashOptions& options = {});
+
+}  // namespace tegotae

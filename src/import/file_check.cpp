@@ -1,0 +1,78 @@
+#include "import/file_check.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "import/check_text.hpp"
+#include "import/off_check.hpp"
+#include "import/plain_ply.hpp"
+#include "import/plain_stl.hpp"
+
+namespace tegotae {
+namespace {
+
+/// An OBJ file that stops in the middle of a line: assimp takes a face of two corners for a line, and drops it.
+void check_obj(const std::string& path, std::string_view bytes) {
+  if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return;
+  const std::string_view line = bytes.substr(bytes.find_last_of("\r\n") + 1);
+  if (line.substr(0, 2) != "f " && line.substr(0, 2) != "v ") return;
+  std::size_t words = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    words += std::isspace(static_cast<unsigned char>(line[i])) == 0 && (i == 0 || std::isspace(line[i - 1]) != 0);
+  }
+  if (words < 4) refuse(path, "truncated: the last line is \"" + std::string(line) + '"');
+}
+
+}  // namespace
+
+std::string read_bytes(const std::string& path) {
+  std::error_code status;
+  if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
+    refuse(path, "is not a regular file");  // a device or pipe might have no end
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) refuse(path, "cannot be read to its end");
+  return bytes;
+}
+
+std::string lower_extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+std::string read_mesh_bytes(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  const std::size_t start = bytes.find_first_not_of(kBlank);
+  if (start == std::string::npos) refuse(path, "empty file");
+  const std::string extension = lower_extension(path);
+  if (bytes.compare(start, 12, "ISO-10303-21") == 0 || extension == ".step" || extension == ".stp") {
+    refuse(path, "a STEP file has no triangles: turn it into a scene first (tegotae import FILE -o DIR)");
+  }
+  return bytes;
+}
+
+std::string plain_mesh_bytes(const std::string& path) {
+  std::string bytes = read_mesh_bytes(path);
+  const std::string extension = lower_extension(path);
+  if (extension == ".stl") return plain_stl(path, bytes);
+  if (extension == ".ply") return plain_ply(path, bytes);
+  if (extension == ".obj") {
+    check_obj(path, bytes);
+  } else if (extension == ".off") {
+    check_off(path, bytes);
+  } else {
+    refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
+  }
+  return bytes;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,328 @@
+#include "import/gltf_check.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "core/whole_number.hpp"
+#include "import/file_check.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+using nlohmann::json;
+
+// Far deeper than any assembly, and far from the end of the stack for those who walk the tree.
+constexpr std::size_t kDeepest = 1000;
+// Some JSON readers go down into lists and objects by recursion.
+constexpr int kDeepestJson = 100;
+// Streams of EXT_meshopt_compression that say that they hold more than this many times their size are damaged.
+constexpr std::uint64_t kMostCompression = 2000;
+// Elements of an accessor without data: each costs up to 64 bytes.
+constexpr std::uint64_t kMostZeros = 10'000'000;
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+
+/// Whether the extension is read, or changes nothing of shape and place.
+bool is_known_extension(const std::string& name) {
+  static const std::set<std::string> known = {
+      kMeshopt, "EXT_mesh_gpu_instancing", "KHR_draco_mesh_compression", "KHR_mesh_quantization",
+      // Lights, and what is told about the file.
+      "KHR_lights_punctual", "EXT_lights_ies", "EXT_lights_image_based", "KHR_xmp", "KHR_xmp_json_ld",
+      "EXT_mesh_features", "EXT_structural_metadata", "EXT_instance_features", "MSFT_texture_dds"};
+  const auto begins = [&](const char* start) { return name.rfind(start, 0) == 0; };
+  return known.count(name) > 0 || begins("KHR_materials_") || begins("EXT_materials_") || begins("ADOBE_materials_") ||
+         begins("KHR_texture_") || begins("EXT_texture_");
+}
+
+class GltfCheck {
+ public:
+  GltfCheck(const std::string& path, const json& top, std::uint64_t chunk) : path_(path), top_(top), chunk_(chunk) {}
+
+  /// Extensions that are not read, a note each; throws for those without which the file must not be read.
+  std::vector<std::string> check_extensions() const {
+    for (const json& name : list("extensionsRequired"))
+      if (!is_known_extension(name.get<std::string>()))
+        refuse("it requires the glTF extension " + name.get<std::string>() + ", which is not read");
+    std::vector<std::string> notes;
+    for (const json& name : list("extensionsUsed"))
+      if (!is_known_extension(name.get<std::string>()))
+        notes.push_back("the glTF extension " + name.get<std::string>() + " is not read");
+    return notes;
+  }
+
+  void run() const {
+    for (std::size_t i = 0; i < list("buffers").size(); ++i) check_buffer(i);
+    for (std::size_t i = 0; i < list("bufferViews").size(); ++i) check_view(i);
+    for (std::size_t i = 0; i < list("accessors").size(); ++i) check_accessor(i);
+    for (std::size_t i = 0; i < list("meshes").size(); ++i) check_mesh(i);
+    check_nodes();
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const { throw Error(path_ + ": " + why); }
+
+  const json& list(const char* key) const {
+    static const json empty = json::array();
+    const auto found = top_.find(key);
+    if (found == top_.end()) return empty;
+    if (!found->is_array()) refuse(std::string("damaged: ") + key + " is no list");
+    return *found;
+  }
+
+  /// The number under `key`; a reference to the list `to`, if there is one.
+  std::uint64_t number(const json& of, const char* key, std::uint64_t fallback) const {
+    return of.contains(key) ? whole_number<std::uint64_t>(of.at(key)) : fallback;
+  }
+  std::uint64_t reference(const json& value, const char* to, const std::string& by) const {
+    const auto i = whole_number<std::uint64_t>(value);
+    if (i >= list(to).size())
+      refuse("index out of range: " + by + " names " + to + " " + std::to_string(i) + " of " +
+             std::to_string(list(to).size()));
+    return i;
+  }
+  static std::string called(const char* what, std::size_t i) { return std::string(what) + " " + std::to_string(i); }
+
+  void check_buffer(std::size_t i) const {
+    const json& buffer = list("buffers")[i];
+    const auto bytes = whole_number<std::uint64_t>(buffer.at("byteLength"));
+    if (!buffer.contains("uri") && is_fallback(buffer)) return;
+    std::uint64_t there = chunk_;
+    if (buffer.contains("uri")) {
+      const auto uri = buffer["uri"].get<std::string>();
+      if (uri.rfind("data:", 0) == 0) {
+        there = (uri.size() - std::min(uri.size(), uri.find(',') + 1)) / 4 * 3;
+        there += 3;  // without padding
+      } else {
+        const std::filesystem::path file = std::filesystem::path(path_).parent_path() / decoded(uri);
+        std::error_code status;
+        if (!std::filesystem::is_regular_file(file, status)) refuse("its buffer " + file.string() + " is missing");
+        there = std::filesystem::file_size(file);
+      }
+    }
+    if (there < bytes)
+      refuse("truncated: buffer " + std::to_string(i) + " has " + std::to_string(there) + " of " +
+             std::to_string(bytes) + " bytes");
+  }
+
+  /// Whether a buffer stands for what others hold compressed, and has no data of its own.
+  static bool is_fallback(const json& buffer) {
+    const json* meshopt = extension(buffer, kMeshopt);
+    return meshopt != nullptr && meshopt->value("fallback", false);
+  }
+
+  static const json* extension(const json& of, const char* name) {
+    const auto all = of.find("extensions");
+    if (all == of.end() || !all->is_object() || !all->contains(name)) return nullptr;
+    return &(*all)[name];
+  }
+
+  static std::string decoded(const std::string& uri) {
+    std::string out;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+      if (uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) != 0 &&
+          std::isxdigit(static_cast<unsigned char>(uri[i + 2])) != 0) {
+        out.push_back(static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)));
+        i += 2;
+      } else {
+        out.push_back(uri[i]);
+      }
+    }
+    return out;
+  }
+
+  void check_view(std::size_t i) const {
+    const json& view = list("bufferViews")[i];
+    const std::string self = called("bufferView", i);
+    const json& buffer = list("buffers")[reference(view.at("buffer"), "buffers", self)];
+    const std::uint64_t whole = whole_number<std::uint64_t>(buffer.at("byteLength")),
+                        from = number(view, "byteOffset", 0);
+    if (from > whole || whole_number<std::uint64_t>(view.at("byteLength")) > whole - from)
+      refuse("damaged: " + self + " reaches past the end of its buffer");
+    if (const json* meshopt = extension(view, kMeshopt))
+      check_meshopt(*meshopt, whole_number<std::uint64_t>(view.at("byteLength")), self);
+  }
+
+  /// What the decoder takes for granted; `bytes` are those of the view that it fills.
+  void check_meshopt(const json& from, std::uint64_t bytes, const std::string& self) const {
+    const json& buffer = list("buffers")[reference(from.at("buffer"), "buffers", self)];
+    const auto whole = whole_number<std::uint64_t>(buffer.at("byteLength")), offset = number(from, "byteOffset", 0),
+               size = whole_number<std::uint64_t>(from.at("byteLength")),
+               stride = whole_number<std::uint64_t>(from.at("byteStride")),
+               count = whole_number<std::uint64_t>(from.at("count"));
+    const std::string mode = from.at("mode").get<std::string>(), filter = from.value("filter", "NONE");
+    const bool attributes = mode == "ATTRIBUTES";
+    const bool shape =
+        attributes ? stride > 0 && stride % 4 == 0 && stride <= 256
+                   : (mode == "INDICES" || (mode == "TRIANGLES" && count % 3 == 0)) && (stride == 2 || stride == 4);
+    const bool filtered =
+        filter == "NONE" || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                                            (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL"));
+    if (offset > whole || size > whole - offset || !shape || !filtered || count > bytes || count * stride != bytes ||
+        bytes > kMostCompression * size)
+      refuse("damaged: " + self + " has no sizes that " + kMeshopt + " allows");
+  }
+
+  void check_accessor(std::size_t i) const {
+    const json& accessor = list("accessors")[i];
+    const std::string self = called("accessor", i);
+    const auto count = whole_number<std::uint64_t>(accessor.at("count"));
+    const std::uint64_t size = element_bytes(accessor, self);
+    if (accessor.contains("sparse")) {
+      const json& sparse = accessor["sparse"];
+      const auto few = whole_number<std::uint64_t>(sparse.at("count"));
+      check_elements(sparse.at("indices"), few, scalar_bytes(sparse.at("indices"), self), self);
+      check_elements(sparse.at("values"), few, size, self);
+      if (few > count) refuse("damaged: " + self + " changes more elements than it has");
+    }
+    if (accessor.contains("bufferView")) {
+      check_elements(accessor, count, size, self);
+    } else if (count > kMostZeros) {
+      // Of zeros, or told by an extension; too many to be believed.
+      refuse("damaged: " + self + " has no bufferView and " + std::to_string(count) + " elements");
+    }
+  }
+
+  /// Whether the bufferView that `of` names has room for `count` elements of `size` bytes.
+  void check_elements(const json& of, std::uint64_t count, std::uint64_t size, const std::string& self) const {
+    const json& view = list("bufferViews")[reference(of.at("bufferView"), "bufferViews", self)];
+    const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")), from = number(of, "byteOffset", 0);
+    const std::uint64_t stride = std::max(size, number(view, "byteStride", size));
+    if (count == 0) return;
+    if (from > whole || size > whole - from || (count - 1) > (whole - from - size) / stride)
+      refuse("damaged: " + self + " reaches past the end of its bufferView");
+  }
+
+  std::uint64_t scalar_bytes(const json& of, const std::string& self) const {
+    switch (whole_number<int>(of.at("componentType"))) {
+      case 5120:
+      case 5121:
+        return 1;
+      case 5122:
+      case 5123:
+        return 2;
+      case 5125:
+      case 5126:
+        return 4;
+      default:
+        refuse("damaged: " + self + " has an unknown componentType");
+    }
+  }
+
+  std::uint64_t element_bytes(const json& accessor, const std::string& self) const {
+    std::uint64_t n = 0;
+    const auto type = accessor.at("type").get<std::string>();
+    for (const auto& [name, numbers] : {std::pair<const char*, int>{"SCALAR", 1},
+                                        {"VEC2", 2},
+                                        {"VEC3", 3},
+                                        {"VEC4", 4},
+                                        {"MAT2", 4},
+                                        {"MAT3", 9},
+                                        {"MAT4", 16}})
+      if (type == name) n = static_cast<std::uint64_t>(numbers);
+    if (n == 0) refuse("damaged: " + self + " has an unknown type " + type);
+    return scalar_bytes(accessor, self) * n;
+  }
+
+  void check_mesh(std::size_t i) const {
+    for (const json& primitive : list("meshes")[i].at("primitives")) {
+      for (const json& accessor : primitive.at("attributes")) reference(accessor, "accessors", called("mesh", i));
+      if (primitive.contains("indices")) reference(primitive["indices"], "accessors", called("mesh", i));
+      if (primitive.contains("material")) reference(primitive["material"], "materials", called("mesh", i));
+    }
+  }
+
+  /// Every node has one parent at most and hangs under a root.
+  void check_nodes() const {
+    const std::size_t n = list("nodes").size();
+    std::vector<std::vector<std::uint64_t>> children(n);
+    std::vector<bool> child(n, false);
+    for (std::size_t i = 0; i < n; ++i) {
+      const json& node = list("nodes")[i];
+      if (node.contains("mesh")) reference(node["mesh"], "meshes", called("node", i));
+      if (!node.contains("children")) continue;
+      for (const json& c : node["children"]) {
+        const std::uint64_t to = reference(c, "nodes", called("node", i));
+        if (child[to]) refuse("damaged: node " + std::to_string(to) + " has two parents; nodes must be a tree");
+        child[to] = true;
+        children[i].push_back(to);
+      }
+    }
+    std::vector<std::uint64_t> level;
+    std::size_t reached = 0, depth = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (!child[i]) level.push_back(i);
+    for (; !level.empty(); ++depth) {
+      if (depth > kDeepest) refuse("its nodes are nested more than " + std::to_string(kDeepest) + " deep");
+      reached += level.size();
+      std::vector<std::uint64_t> next;
+      for (const std::uint64_t i : level) next.insert(next.end(), children[i].begin(), children[i].end());
+      level = std::move(next);
+    }
+    if (reached < n) refuse("damaged: its nodes go in a circle");
+    for (const json& scene : list("scenes")) {
+      if (!scene.contains("nodes")) continue;
+      for (const json& root : scene["nodes"])
+        if (child[reference(root, "nodes", "a scene")]) refuse("damaged: a root node of a scene is another's child");
+    }
+  }
+
+  const std::string& path_;
+  const json& top_;
+  const std::uint64_t chunk_;  ///< bytes of the binary chunk of a GLB file
+};
+
+std::uint32_t word(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  return value;
+}
+
+/// The JSON of a GLB file; `chunk` becomes its binary chunk.
+std::string_view glb_json(const std::string& path, std::string_view bytes, std::string_view& chunk) {
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  if (bytes.size() < kHeader || bytes.substr(0, 4) != "glTF") throw Error(path + ": damaged: no glTF binary header");
+  if (word(bytes, 8) > bytes.size()) throw Error(path + ": truncated: shorter than its header says");
+  if (bytes.size() < kHeader + kChunkHeader || bytes.substr(16, 4) != "JSON")
+    throw Error(path + ": damaged: it has no JSON chunk");
+  const std::uint64_t length = word(bytes, kHeader);
+  const std::uint64_t end = kHeader + kChunkHeader + length;
+  if (end > bytes.size()) throw Error(path + ": truncated: its JSON chunk reaches past the end");
+  if (end + kChunkHeader <= bytes.size()) {
+    const std::uint64_t size = word(bytes, end);
+    if (size > bytes.size() - end - kChunkHeader)
+      throw Error(path + ": truncated: its binary chunk reaches past the end");
+    chunk = bytes.substr(end + kChunkHeader, size);
+  }
+  return bytes.substr(kHeader + kChunkHeader, length);
+}
+
+}  // namespace
+
+CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
+  CheckedGltf out;
+  const bool binary = lower_extension(path) == ".glb";
+  const std::string_view text = binary ? glb_json(path, bytes, out.chunk) : bytes;
+  const auto shallow = [&path](int depth, json::parse_event_t, json&) {
+    if (depth > kDeepestJson)
+      throw Error(path + ": its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");
+    return true;
+  };
+  const json top = json::parse(text.begin(), text.end(), shallow, false);
+  if (top.is_discarded() || !top.is_object()) throw Error(path + ": truncated or damaged: not valid JSON");
+  try {
+    const auto version = top.at("asset").at("version").get<std::string>();
+    if (version.rfind("2.", 0) != 0) throw Error(path + ": glTF version " + version + " is not read (2.0 is)");
+    const GltfCheck check(path, top, out.chunk.size());
+    out.notes = check.check_extensions();
+    check.run();
+    out.json = top.dump();
+  } catch (const json::exception& e) {
+    throw Error(path + ": damaged: " + e.what());
+  }
+  return out;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,177 @@
+#include "import/gltf_read.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "import/file_check.hpp"
+#include "import/gltf_data.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+double srgb(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+/// glTF's colors are linear.
+std::optional<Color> color_of(const cgltf_material* material) {
+  if (material == nullptr) return std::nullopt;
+  const cgltf_float* c = material->pbr_metallic_roughness.base_color_factor;
+  if (!material->has_pbr_metallic_roughness) {
+    if (!material->has_pbr_specular_glossiness) return Color{1, 1, 1, 1};
+    c = material->pbr_specular_glossiness.diffuse_factor;
+  }
+  for (int k = 0; k < 4; ++k)
+    if (!std::isfinite(c[k])) return std::nullopt;
+  return Color{srgb(c[0]), srgb(c[1]), srgb(c[2]), std::clamp(double{c[3]}, 0.0, 1.0)};
+}
+
+std::string text_of(const char* name) {
+  return name == nullptr ? "" : name;
+}
+
+class GltfReader {
+ public:
+  GltfReader(const std::string& path, const cgltf_data& data) : path_(path), data_(data) { file_.unit = "m"; }
+
+  PartFile read() {
+    if (data_.animations_count > 0) file_.notes.push_back("animations are not read: parts stand where the nodes are");
+    std::vector<std::string> groups;
+    const cgltf_scene* scene = data_.scene != nullptr ? data_.scene : data_.scenes_count > 0 ? data_.scenes : nullptr;
+    if (scene != nullptr) {
+      for (std::size_t i = 0; i < scene->nodes_count; ++i) add(*scene->nodes[i], Matrix34::Identity(), groups);
+    } else {
+      for (std::size_t i = 0; i < data_.nodes_count; ++i)
+        if (data_.nodes[i].parent == nullptr) add(data_.nodes[i], Matrix34::Identity(), groups);
+    }
+    return std::move(file_);
+  }
+
+ private:
+  void add(const cgltf_node& node, const Matrix34& parent, std::vector<std::string>& groups) {
+    const Matrix34 X = product(parent, local_map(node));
+    if (node.mesh != nullptr) add_parts(node, X, groups);
+    groups.push_back(text_of(node.name));
+    for (std::size_t c = 0; c < node.children_count; ++c) add(*node.children[c], X, groups);
+    groups.pop_back();
+  }
+
+  void add_parts(const cgltf_node& node, const Matrix34& X, const std::vector<std::string>& groups) {
+    PartFile::Placed part;
+    part.name = node.name != nullptr ? node.name : text_of(node.mesh->name);
+    part.path = groups;
+    part.mesh = mesh_of(node);
+    const cgltf_primitive* largest = nullptr;
+    std::size_t most = 0;
+    for (std::size_t p = 0; p < node.mesh->primitives_count; ++p) {
+      if (largest != nullptr && faces_[node.mesh][p] <= most) continue;
+      largest = &node.mesh->primitives[p];
+      most = faces_[node.mesh][p];
+    }
+    if (largest != nullptr) part.color = color_of(largest->material);
+    // A skin tells the scene's coordinates; the format wants the node's own place ignored.
+    const Matrix34 own = node.skin != nullptr ? Matrix34(Matrix34::Identity()) : X;
+    for (const Matrix34& instance : instances_of(node)) {
+      part.X = product(own, instance);
+      file_.parts.push_back(part);
+    }
+  }
+
+  /// EXT_mesh_gpu_instancing: one map for each instance; without it the identity.
+  std::vector<Matrix34> instances_of(const cgltf_node& node) const {
+    if (!node.has_mesh_gpu_instancing) return {Matrix34::Identity()};
+    const cgltf_mesh_gpu_instancing& all = node.mesh_gpu_instancing;
+    std::vector<cgltf_node> nodes;
+    for (std::size_t a = 0; a < all.attributes_count; ++a) {
+      const cgltf_accessor& accessor = *all.attributes[a].data;
+      const std::string name = text_of(all.attributes[a].name);
+      const std::size_t components = name == "ROTATION" ? 4 : 3;
+      if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE") continue;  // instances' colors and the like
+      const std::vector<double> x = numbers_of(path_, accessor, components);
+      if (nodes.empty()) nodes.resize(accessor.count);
+      if (nodes.size() != accessor.count)
+        throw Error(path_ + ": damaged: the instances of a node have not as many of each attribute");
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        cgltf_node& of = nodes[i / components];
+        (name == "ROTATION" ? of.has_rotation : name == "SCALE" ? of.has_scale : of.has_translation) = 1;
+        (name == "ROTATION" ? of.rotation
+         : name == "SCALE"  ? of.scale
+                            : of.translation)[i % components] = static_cast<float>(x[i]);
+      }
+    }
+    if (nodes.empty()) throw Error(path_ + ": damaged: the instances of a node have no places");
+    std::vector<Matrix34> maps;
+    for (const cgltf_node& of : nodes) maps.push_back(local_map(of));
+    return maps;
+  }
+
+  /// Index of the mesh of `node` as its morph weights and its skin pose it.
+  std::size_t mesh_of(const cgltf_node& node) {
+    const cgltf_mesh& mesh = *node.mesh;
+    std::vector<float> weights(mesh.weights, mesh.weights + mesh.weights_count);
+    if (node.weights_count > 0) weights.assign(node.weights, node.weights + node.weights_count);
+    const auto [known, fresh] = known_.emplace(std::make_tuple(&mesh, node.skin, weights), file_.meshes.size());
+    if (!fresh) return known->second;
+    TriangleMesh out;
+    out.name = mesh.name != nullptr ? mesh.name : text_of(node.name);
+    std::vector<std::size_t>& faces = faces_[&mesh];
+    faces.clear();
+    for (std::size_t p = 0; p < mesh.primitives_count; ++p) {
+      TriangleMesh part;
+      std::tie(part.vertices, part.triangles) = posed(node, mesh.primitives[p], weights);
+      faces.push_back(part.triangles.size());
+      append(part, Matrix34::Identity(), 1, out);
+    }
+    file_.meshes.push_back(std::move(out));
+    return known->second;
+  }
+
+  std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 3>>> posed(const cgltf_node& node,
+                                                                                const cgltf_primitive& primitive,
+                                                                                const std::vector<float>& weights) {
+    if (primitive.has_draco_mesh_compression) {
+      if (primitive.targets_count > 0 || node.skin != nullptr)
+        throw Error(path_ + ": a mesh compressed by Draco with a skin or morph targets is not read");
+      GltfTriangles plain = draco_triangles_of(path_, data_, primitive);
+      return {std::move(plain.points), std::move(plain.triangles)};
+    }
+    GltfTriangles plain = triangles_of(path_, primitive);
+    for (std::size_t t = 0; t < primitive.targets_count && t < weights.size(); ++t)
+      if (weights[t] != 0) morph(primitive.targets[t], weights[t], plain.points);
+    if (node.skin != nullptr && !plain.triangles.empty()) plain.points = skinned(path_, node, primitive, plain.points);
+    return {std::move(plain.points), std::move(plain.triangles)};
+  }
+
+  void morph(const cgltf_morph_target& target, double weight, std::vector<Vec3>& points) const {
+    for (std::size_t a = 0; a < target.attributes_count; ++a) {
+      if (target.attributes[a].type != cgltf_attribute_type_position) continue;
+      const std::vector<Vec3> shift = points_of(path_, *target.attributes[a].data);
+      if (shift.size() != points.size())
+        throw Error(path_ + ": damaged: a morph target has not as many vertices as its mesh");
+      for (std::size_t i = 0; i < points.size(); ++i) points[i] += weight * shift[i];
+    }
+  }
+
+  const std::string& path_;
+  const cgltf_data& data_;
+  std::map<std::tuple<const cgltf_mesh*, const cgltf_skin*, std::vector<float>>, std::size_t> known_;
+  std::map<const cgltf_mesh*, std::vector<std::size_t>> faces_;  // of each primitive
+  PartFile file_;
+};
+
+}  // namespace
+
+PartFile read_gltf(const std::string& path) {
+  const std::string bytes = read_mesh_bytes(path);
+  const CheckedGltf checked = check_gltf(path, bytes);
+  const GltfData data = parse_gltf(path, checked);
+  PartFile file = GltfReader(path, *data).read();
+  file.notes.insert(file.notes.end(), checked.notes.begin(), checked.notes.end());
+  return file;
+}
+
+}  // namespace tegotae

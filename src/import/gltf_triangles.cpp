@@ -1,0 +1,100 @@
+// The triangles of a glTF primitive: lists, strips and fans, indexed or not, plain or compressed by Draco.
+#include <draco/compression/decode.h>
+#include <draco/mesh/mesh.h>
+
+#include <limits>
+
+#include "import/gltf_data.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+std::vector<std::size_t> indices_of(const std::string& path, const cgltf_primitive& primitive, std::size_t points) {
+  std::vector<std::size_t> indices(primitive.indices == nullptr ? points : primitive.indices->count);
+  if (primitive.indices != nullptr && (primitive.indices->is_sparse || primitive.indices->type != cgltf_type_scalar))
+    throw Error(path + ": damaged: indices of a primitive are sparse or no scalars");
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    indices[i] = primitive.indices == nullptr ? i : cgltf_accessor_read_index(primitive.indices, i);
+    if (indices[i] >= points)
+      throw Error(path + ": index out of range: a primitive names vertex " + std::to_string(indices[i]) + " of " +
+                  std::to_string(points));
+  }
+  return indices;
+}
+
+std::vector<std::array<std::uint32_t, 3>> assembled(const std::string& path, cgltf_primitive_type type,
+                                                    const std::vector<std::size_t>& indices) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    triangles.push_back({static_cast<std::uint32_t>(indices[a]), static_cast<std::uint32_t>(indices[b]),
+                         static_cast<std::uint32_t>(indices[c])});
+  };
+  const std::size_t n = indices.size();
+  if (type == cgltf_primitive_type_triangles)
+    for (std::size_t i = 0; i + 2 < n; i += 3) add(i, i + 1, i + 2);
+  else if (type == cgltf_primitive_type_triangle_strip)
+    for (std::size_t i = 0; i + 2 < n; ++i) add(i, i + 1 + i % 2, i + 2 - i % 2);
+  else if (type == cgltf_primitive_type_triangle_fan)
+    for (std::size_t i = 1; i + 1 < n; ++i) add(i, i + 1, 0);
+  else if (type == cgltf_primitive_type_invalid)
+    throw Error(path + ": damaged: a primitive has an unknown mode");
+  return triangles;  // of points and lines: none
+}
+
+const cgltf_attribute* position_of(const cgltf_attribute* attributes, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    if (attributes[i].type == cgltf_attribute_type_position) return &attributes[i];
+  return nullptr;
+}
+
+}  // namespace
+
+GltfTriangles triangles_of(const std::string& path, const cgltf_primitive& primitive) {
+  GltfTriangles out;
+  const cgltf_attribute* position = position_of(primitive.attributes, primitive.attributes_count);
+  if (position == nullptr) return out;  // the format leaves such a primitive to extensions
+  out.points = points_of(path, *position->data);
+  if (out.points.size() > std::numeric_limits<std::uint32_t>::max() / 4)
+    throw Error(path + ": too large: more than a billion vertices");
+  out.triangles = assembled(path, primitive.type, indices_of(path, primitive, out.points.size()));
+  return out;
+}
+
+GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data, const cgltf_primitive& primitive) {
+  const cgltf_draco_mesh_compression& from = primitive.draco_mesh_compression;
+  const cgltf_attribute* position = position_of(from.attributes, from.attributes_count);
+  const auto fail = [&](const std::string& why) -> Error {
+    return Error(path + ": damaged: a mesh compressed by Draco " + why);
+  };
+  if (position == nullptr) throw fail("names no positions");
+  const auto* bytes = reinterpret_cast<const char*>(cgltf_buffer_view_data(from.buffer_view));
+  if (bytes == nullptr) throw fail("has no data");
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes, from.buffer_view->size);
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!decoded.ok()) throw fail(std::string("is no stream of it: ") + decoded.status().error_msg());
+  const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+  // What cgltf keeps as the accessor of that number is the attribute's number in the Draco stream.
+  const auto id = static_cast<std::uint32_t>(cgltf_accessor_index(&data, position->data));
+  const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id);
+  if (attribute == nullptr || attribute->num_components() != 3) throw fail("has no positions");
+  GltfTriangles out;
+  for (draco::PointIndex i(0); i < mesh->num_points(); ++i) {
+    std::array<float, 3> p{};
+    if (!attribute->ConvertValue<float, 3>(attribute->mapped_index(i), p.data())) throw fail("has no positions");
+    out.points.emplace_back(p[0], p[1], p[2]);
+  }
+  std::vector<std::size_t> indices;
+  for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {
+    for (const draco::PointIndex& corner : mesh->face(f)) {
+      if (corner.value() >= out.points.size()) throw fail("has an index out of range");
+      indices.push_back(corner.value());
+    }
+  }
+  out.triangles = assembled(path, cgltf_primitive_type_triangles, indices);
+  return out;
+}
+
+}  // namespace tegotae

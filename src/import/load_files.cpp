@@ -1,0 +1,31 @@
+#include "import/load_files.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+namespace tegotae {
+
+namespace fs = std::filesystem;
+
+MeshFolder::MeshFolder(const std::string& mesh_file) {
+  // The mesh file itself may be a link to somewhere else; what it names lies beside it as it was named.
+  std::error_code none;
+  folder_ = fs::canonical(fs::absolute(mesh_file, none).parent_path(), none);
+}
+
+bool MeshFolder::allowed(const char* file) const {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  const fs::path parent = fs::canonical(fs::absolute(file, error).parent_path(), error);
+  return !error && std::mismatch(folder_.begin(), folder_.end(), parent.begin(), parent.end()).first == folder_.end();
+}
+
+bool MeshFolder::Exists(const char* file) const {
+  return allowed(file) && DefaultIOSystem::Exists(file);
+}
+
+Assimp::IOStream* MeshFolder::Open(const char* file, const char* mode) {
+  return allowed(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+}
+
+}  // namespace tegotae

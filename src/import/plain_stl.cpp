@@ -1,0 +1,140 @@
+#include "import/plain_stl.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+
+#include "import/check_text.hpp"
+
+namespace tegotae {
+namespace {
+
+constexpr std::size_t kHeader = 84, kFacet = 50;
+
+std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  return value;
+}
+
+bool is_word(std::string_view word, std::string_view keyword) {
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+/// The words of a text STL file, and the plain file as it becomes.
+class TextStl {
+ public:
+  TextStl(const std::string& path, std::string_view text) : path_(path), rest_(text) {}
+
+  std::string plain() {
+    for (std::string_view word = next(); !word.empty(); word = next()) {
+      if (is_word(word, "solid")) {
+        solid();
+      } else if (open_ && is_word(word, "facet")) {
+        facet();
+      } else if (open_ && is_word(word, "endsolid")) {
+        out_ += "endsolid\n";
+        rest_of_line();
+        open_ = false;
+      } else if (open_ || is_word(word, "facet")) {
+        refuse(path_,
+               "truncated or damaged: \"" + std::string(word.substr(0, 40)) + "\" where a facet or endsolid belongs");
+      }
+    }
+    if (open_) refuse(path_, "truncated: the last solid has no endsolid");
+    return std::move(out_);
+  }
+
+ private:
+  /// The next word; empty at the end.
+  std::string_view next() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpace), rest_.size()));
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(kSpace));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  std::string_view rest_of_line() {
+    const std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+    rest_.remove_prefix(line.size());
+    return line;
+  }
+
+  /// The first word of the name is kept. A name ends with its line, or before a facet on it.
+  void solid() {
+    const std::string_view all = rest_;
+    TextStl line(path_, rest_of_line());
+    std::string_view name;
+    for (std::string_view word = line.next(); !word.empty(); word = line.next()) {
+      if (is_word(word, "facet") && is_word(TextStl(path_, line.rest_).next(), "normal")) {
+        rest_ = all.substr(static_cast<std::size_t>(word.data() - all.data()));
+        break;
+      }
+      if (name.empty()) name = word;
+    }
+    out_ += "solid";
+    if (!name.empty()) (out_ += ' ') += name;
+    out_ += '\n';
+    open_ = true;
+  }
+
+  void expect(std::string_view keyword) {
+    if (!is_word(next(), keyword)) refuse(path_, "truncated or damaged: a facet without " + std::string(keyword));
+  }
+
+  void facet() {
+    expect("normal");
+    while (!rest_.empty() && !is_word(TextStl(path_, rest_).next(), "outer")) {
+      if (next().empty()) break;  // what stands for a normal
+    }
+    expect("outer");
+    expect("loop");
+    out_ += "facet normal 0 0 0\nouter loop\n";
+    for (int k = 0; k < 3; ++k) vertex();
+    expect("endloop");
+    expect("endfacet");
+    out_ += "endloop\nendfacet\n";
+  }
+
+  void vertex() {
+    expect("vertex");
+    out_ += "vertex";
+    for (int k = 0; k < 3; ++k) {
+      std::string_view word = next(), text = word;
+      double value = 0;
+      if (!take_number(text, value)) refuse(path_, "truncated or damaged: a vertex without three numbers");
+      if (!std::isfinite(value)) refuse(path_, "a coordinate is not a finite number");
+      if (word.front() == '+') word.remove_prefix(1);
+      (out_ += ' ') += word;
+    }
+    out_ += '\n';
+  }
+
+  static constexpr std::string_view kSpace = " \t\r\n\v\f";
+  const std::string& path_;
+  std::string_view rest_;
+  std::string out_;
+  bool open_ = false;
+};
+
+}  // namespace
+
+std::string plain_stl(const std::string& path, std::string_view bytes) {
+  const std::uint64_t facets = bytes.size() < kHeader ? 0 : little_endian_32(bytes, kHeader - 4);
+  const std::size_t room = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
+  const std::size_t whole = kHeader + kFacet * static_cast<std::size_t>(facets);
+  if (bytes.size() >= kHeader && whole == bytes.size()) return std::string(bytes);
+  std::string_view text = bytes.substr(bytes.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
+  text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+  if (is_word(text.substr(0, 5), "solid") && text.find('\0') == std::string_view::npos)
+    return TextStl(path, text).plain();
+  if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
+  // Bytes behind the last facet are padding, but for as many as a facet has: then the count is wrong.
+  if (facets > 0 && room == facets) return std::string(bytes.substr(0, whole));
+  refuse(path, (facets > room ? "truncated: " : "damaged: ") + std::to_string(facets) +
+                   " triangles are announced, the file has room for " + std::to_string(room));
+}
+
+}  // namespace tegotae

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "loop/collision_world.hpp"
+#include "loop/contact_planes.hpp"
+#include "loop/proxy_loop.hpp"
+#include "resolve/friction_rows.hpp"
+#include "resolve/metric.hpp"
+#include "tegotae/resolve/resolver.hpp"
+
+namespace tegotae {
+
+/// The loop of the resolvers that solve a program, lp and qp (one tick: broad phase, tracking, contacts, resolver,
+/// free check), over a scene in which parts may touch at the start.
+class ContactLoop final : public ProxyLoop {
+ public:
+  ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
+
+  void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) override;
+  bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
+                 std::int64_t deadline_ns) override;
+  const Pose& pose() const override { return X_; }
+  /// The limits at the end of the last tick.
+  const std::vector<Contact>& constraints() const override { return at_.contacts->limits(); }
+  const InitialContactReport& start() const override { return at_.start.report(); }
+
+ private:
+  /// A displacement together with the pose it leads to.
+  struct Trial {
+    Displacement d;
+    Pose X;
+  };
+
+  /// Moves X towards Y by one free piece no longer than `cap`; returns its length (m), 0 at rest or when blocked.
+  double move_piece(const Pose& Y, double cap, TickReport& report);
+  /// The trial of at most `cap` that the limits allow; false when there is none.
+  bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
+  /// One program over the limits: an allowed `motion` for `wanted`.
+  bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// The same with friction, without gaps that should open.
+  bool solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Opens gaps that were lost, by the least change of `motion`, where that is possible and short.
+  void recover_gaps(TickReport& report, Vec6& motion);
+  /// Sets which of the contacts that carry have slid in the tick, in which X moved by `moved`.
+  void tell_slip(const Displacement& moved, ContactForces& forces) const;
+  /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
+  bool is_free(const Trial& trial, TickReport& report);
+  /// Makes contacts, or planes for one motion, of what is in the way of `d`; whether there are fresh ones.
+  bool take_in(const Displacement& d);
+  bool shorten(Trial& trial, TickReport& report);
+  /// Shortens the trial to `share` of it.
+  void scale(Trial& trial, double share) const;
+  /// Whether the trial brings X nearer to Y; adapts the trust region.
+  bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
+  bool late() const;
+  /// Sets what the report says of contact planes and forces.
+  void tell_forces(const Pose& Y, TickReport& report);
+  /// Fits the gap that contacts keep to the room that the part has.
+  void adapt_keep(const Pose& Y);
+  /// Whether contacts press from opposite sides.
+  bool wedged() const;
+  /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
+  bool track();
+  /// Once for each pose at which X stands: contacts from all that is nearer than contacts keep it. Whether there are
+  /// fresh ones.
+  bool look_around();
+  /// The next piece is to be shorter than this one, which planes for one motion hold; they are forgotten.
+  void shorter_than(double cap);
+  /// Whether a cutting plane, which is no contact, limits the motion.
+  bool cutting() const;
+  LagReason reason_for(double lag, const TickReport& report) const;
+  /// Bound on how far `d` carries any point of the held part (m).
+  double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
+
+  ContactSettings settings_;
+  Vec3 center_;
+  CollisionWorld at_;
+  double piece_cap_;  ///< longest piece near other parts, m
+  Metric metric_;
+  double most_turn_;  ///< of a rotation error, rad
+  std::unique_ptr<Resolver> resolver_;
+  LowRankMatrix rows_;
+  std::vector<double> bounds_;
+  FrictionRows friction_;
+  PlanePicker planes_;
+  std::vector<std::uint32_t> near_;
+  std::vector<FacePair> blocking_;
+  Pose X_;
+  Pose last_Y_;
+  double trust_;
+  double moved_ = 0;     ///< of X in the last tick, m
+  double made_ = 0;      ///< pieces of this tick, m
+  int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
+  double keep_;          ///< gap that contacts keep, m, between the next two
+  double least_keep_, most_keep_;
+  int ticks_ = 0;
+  std::optional<Displacement>
+      owed_;                     ///< motion of the last tick that blocking_ stopped when no time was left for contacts
+  bool tracked_ = false;         ///< the contacts are those of X_
+  bool was_cut_ = false;         ///< the last tick
+  bool comes_ = false;           ///< X went as fast as it may in the last tick
+  bool looked_ = false;          ///< look_around() did at this pose
+  bool held_by_planes_ = false;  ///< planes for one motion made the last piece short
+  bool held_by_contacts_ = false;  ///< see TickEnd
+  double allowed_ = 0;             ///< see TickEnd, m
+  std::int64_t deadline_ns_ = 0;
+};
+
+}  // namespace tegotae

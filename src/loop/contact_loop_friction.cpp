@@ -1,0 +1,59 @@
+// What of a piece is different where contacts rub.
+#include "loop/contact_loop.hpp"
+#include "loop/kept_gap.hpp"
+
+namespace tegotae {
+namespace {
+
+// A motion that carries no point farther than this (m) is rest.
+constexpr double kRest = 1e-10;
+// A contact that slides goes farther than this in a tick (m): 10 µm/s at 1 kHz.
+constexpr double kSlip = 1e-8;
+
+}  // namespace
+
+bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion) {
+  const auto& limits = at_.contacts->limits();
+  rows_.clear();
+  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  for (const double slack : {0.0, kNormalNoise}) {
+    const double give = slack * wanted.norm();
+    for (std::size_t i = 0; i < limits.size(); ++i) bounds_[i] = bound_of(limits[i], keep_, 0) - give;
+    const Resolution r = resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted));
+    ++report.resolves;
+    report.iterations += r.iterations;
+    report.status = r.status;
+    motion = r.motion;
+    if (r.status != ResolveStatus::solved) continue;
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) at_.contacts->carries(i);
+    return true;
+  }
+  return false;
+}
+
+void ContactLoop::recover_gaps(TickReport& report, Vec6& motion) {
+  const auto& limits = at_.contacts->limits();
+  bool lost = false;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    bounds_[i] = bound_of(limits[i], keep_, kRecovery * keep_);
+    lost |= is_lost(limits[i], keep_);
+  }
+  if (!lost) return;
+  const Resolution r = resolver_->resolve(rows_, bounds_.data(), motion);
+  ++report.resolves;
+  report.iterations += r.iterations;
+  if (r.status == ResolveStatus::solved && size(metric_.unwhiten(r.motion - motion)) < kMostRecovery * keep_)
+    motion = r.motion;
+}
+
+void ContactLoop::tell_slip(const Displacement& moved, ContactForces& forces) const {
+  const Vec3 c = X_ * center_;
+  for (int i = 0; i < forces.count; ++i) {
+    ContactForce& f = forces.items[static_cast<std::size_t>(i)];
+    const Vec3 way = moved.dp + moved.dr.cross(f.point - c);
+    f.slides = f.mu > 0 && (way - f.n.dot(way) * f.n).norm() > kSlip;
+  }
+}
+
+}  // namespace tegotae

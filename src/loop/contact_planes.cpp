@@ -1,0 +1,76 @@
+#include "loop/contact_planes.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "lp/force_reduction.hpp"
+#include "lp/tangents.hpp"
+
+namespace tegotae {
+
+bool PlanePicker::solve(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction,
+                        const Vec6& wanted, Vec6& left) noexcept {
+  forces_.clear();
+  rubs_ = friction.fill(limits, metric);
+  if (rubs_) {
+    const FrictionProblem problem = friction.problem(rows_, bounds_.data(), wanted);
+    const FrictionResult& r = friction_solver_.solve(problem);
+    if (r.status != LpStatus::optimal) return false;
+    forces_.assign(r.forces.begin(), r.forces.end());
+    reduce_to_six(problem, forces_);
+    left = r.z;
+    return true;
+  }
+  const QpResult& qp = solver_.solve(rows_, bounds_.data(), wanted);
+  if (qp.status != LpStatus::optimal) return false;
+  for (int k = 0; k < qp.multipliers.count; ++k) {
+    forces_.push_back({});
+    forces_.back().row = qp.multipliers.index[static_cast<std::size_t>(k)];
+    forces_.back().normal = qp.multipliers.value[static_cast<std::size_t>(k)];
+  }
+  left = qp.z;
+  return true;
+}
+
+void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Pose& X,
+                       const Pose& Y, const Vec3& center, double keep, ContactPlanes& planes,
+                       ContactForces& forces) noexcept {
+  planes.count = forces.count = 0;
+  forces.available = false;
+  planes.X = X;
+  planes.pen = Y;
+  const Displacement error = displacement(X, Y, center);
+  forces.lag = pull(error);
+  const std::size_t n = std::min(limits.size(), bounds_.size());
+  if (n == 0) return;
+  rows_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    rows_.push_row(metric.row(limits[i]));
+    bounds_[i] = std::min(keep, limits[i].gap) - limits[i].gap;
+  }
+  Vec6 left;
+  if (!solve(limits, metric, friction, metric.whiten(error), left)) return;
+  // What the solution still goes is not held by contacts: the springs pull the part there.
+  forces.lag = pull(metric.unwhiten(left));
+  forces.available = true;
+  const Vec3 center_W = X * center;
+  const auto take = [&](std::size_t i) {
+    planes.planes[static_cast<std::size_t>(planes.count++)] = {limits[i].n, center_W + limits[i].r, -bounds_[i],
+                                                               rubs_ ? friction.mu(i) : 0};
+    bounds_[i] = -std::numeric_limits<double>::infinity();  // taken
+  };
+  for (const FrictionForce& f : forces_) {
+    const auto i = static_cast<std::size_t>(f.row);
+    const Contact& c = limits[i];
+    ContactForce& out = forces.items[static_cast<std::size_t>(forces.count++)];
+    out = {c.part, center_W + c.r, c.n, c.gap, stiffness_ * f.normal, c.feature_a, c.feature_b};
+    out.mu = rubs_ ? friction.mu(i) : 0;
+    for (int k = 0; k < 2 && out.mu > 0; ++k) out.friction += stiffness_ * f.tangential[k] * tangent(c.n, k);
+    take(i);
+  }
+  while (planes.count < ContactPlanes::kMax && static_cast<std::size_t>(planes.count) < n)
+    take(static_cast<std::size_t>(std::max_element(bounds_.begin(), bounds_.begin() + static_cast<std::ptrdiff_t>(n)) -
+                                  bounds_.begin()));
+}
+
+}  // namespace tegotae

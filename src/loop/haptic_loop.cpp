@@ -1,0 +1,197 @@
+#include "tegotae/loop/haptic_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "core/latest_value.hpp"
+#include "core/proper_pose.hpp"
+#include "loop/contact_list.hpp"
+#include "loop/lag.hpp"
+#include "loop/scene_changes.hpp"
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae {
+namespace {
+
+// Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
+constexpr double kChangeShare = 0.25;
+// Ways divided by less time (s) are no velocities; no loop ticks so often.
+constexpr double kLeastTime = 1e-6;
+
+bool proper_time(double dt) {
+  return dt == 0 || (dt >= kLeastTime && std::isfinite(dt));
+}
+
+std::int64_t deadline(std::int64_t now_ns, double budget) {
+  return std::isfinite(budget) ? now_ns + static_cast<std::int64_t>(1e9 * budget) : kNoDeadline;
+}
+
+}  // namespace
+
+struct HapticLoop::State {
+  std::unique_ptr<RunningScene> now;
+  std::shared_ptr<SceneChanges> changes;
+  Pose Y;              // of the pen; with the weight it carries, the part is drawn to target()
+  double carried = 0;  // of the weight, 0 to 1
+  TickReport report;
+  ContactList contacts;
+  LagCounter lag;
+  Pose last_X;            // after the last tick
+  LatestValue<7> latest;  // p, q
+
+  explicit State(const Scene& scene)
+      : now(std::make_unique<RunningScene>(scene)),
+        changes(std::make_shared<SceneChanges>(*now)),
+        Y(now->loop->pose()) {
+    report.pieces.reserve(kMostPieces);
+    begin();
+  }
+
+  void tell() noexcept {
+    const Pose& X = report.proxy.X;
+    latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
+  }
+
+  /// Where the pen's springs and the weight have the part: as far below the pen as the weight stretches them.
+  Pose target() const noexcept {
+    Pose out = Y;
+    // Without weight the pen's very bits.
+    if (carried > 0 && now->weight.mass > 0) out.p += now->sag(carried);
+    return out;
+  }
+
+  /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
+  const TickReport& finish() noexcept {
+    const auto size = [this](const Displacement& d) { return d.dp.norm() + now->radius * d.dr.norm(); };
+    const double moved = size(displacement(last_X, report.proxy.X, now->mass.center));
+    last_X = report.proxy.X;
+    report.proxy.weight = carried * now->weight.force;
+    report.lag = size(displacement(report.proxy.X, target(), now->mass.center));
+    lag.add(report.lag, moved, tegotae::lag_bound(now->radius), report.lag_reason);
+    report.unexplained_lag_ticks = lag.ticks();
+    return report;
+  }
+
+  /// The tick that goes over to another held part does not follow the pen, which is still where the old one was.
+  const TickReport& suspend() noexcept {
+    report.flags.scene_changed = report.flags.part_changed = true;
+    report.lag_reason = LagReason::suspended;
+    return finish();
+  }
+
+  /// The report before the first tick with a held part.
+  void begin() noexcept {
+    reset(report);
+    report.pieces.push_back(now->loop->pose());
+    report.proxy.X = last_X = now->loop->pose();
+    tell();
+    for (const InitialContact& pair : now->loop->start().pairs) {
+      report.filtered += pair.state == InitialContactState::filtered ? 1 : 0;
+      report.shrunk += pair.state == InitialContactState::shrunk ? 1 : 0;
+    }
+  }
+
+  /// Goes over to a changed scene if there is one and it can be; true when another part is held in it.
+  bool adopt(std::int64_t now_ns) noexcept {
+    RunningScene* changed = changes->take();
+    if (changed == nullptr) return false;
+    const bool same = changed->held == now->held;
+    // What was there before the held part is free of, where the old loop keeps it out and every pair is active.
+    const bool known = changed->fresh_since == now->number && now->keeps_out && changed->held_mesh == now->held_mesh &&
+                       report.filtered + report.shrunk == 0;
+    const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
+    if (same && !changed->loop->take_over(report, target(), known ? &changed->fresh : nullptr, until)) {
+      changes->put_back(changed);
+      return false;
+    }
+    RunningScene* before = now.release();
+    now.reset(changed);
+    if (!same) {
+      Y = now->loop->pose();  // the old part's means nothing for the new one
+      begin();
+    }
+    contacts.clear();
+    changes->come_into_force(*changed, before);
+    return !same;
+  }
+};
+
+HapticLoop::HapticLoop(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
+HapticLoop::~HapticLoop() = default;
+
+const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
+  State& s = *state_;
+  const std::int64_t now_ns = monotonic_ns();
+  const std::uint64_t before = s.changes->in_force();
+  if (s.adopt(now_ns)) return s.suspend();
+  reset(s.report);
+  s.report.flags.scene_changed = s.changes->in_force() != before;
+  const bool placed = proper(Y), timed = proper_time(dt);
+  s.report.flags.input_ignored = !(placed && timed);
+  if (placed) s.Y = {Y.q.normalized(), Y.p};
+  s.now->loop->step(s.target(), timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  if (!placed) s.report.lag_reason = LagReason::suspended;
+  s.contacts.update(s.now->loop->constraints(), s.report, s.report.proxy.X * s.now->mass.center);
+  s.tell();
+  return s.finish();
+}
+
+SceneChange HapticLoop::change(
+    const Scene& next, const std::function<void(std::uint64_t number, const InitialContactReport& start)>& ready) {
+  return state_->changes->offer(next, ready);
+}
+
+std::uint64_t HapticLoop::change_in_force() const noexcept {
+  return state_->changes->in_force();
+}
+
+std::string HapticLoop::held() const {
+  return state_->changes->held();
+}
+
+Pose HapticLoop::latest() const noexcept {
+  const LatestValue<7>::Values v = state_->latest.read();
+  return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+}
+
+void HapticLoop::carry(double share) noexcept {
+  state_->carried = share > 0 ? std::min(share, 1.0) : 0;
+}
+
+const TickReport& HapticLoop::report() const {
+  return state_->report;
+}
+const InitialContactReport& HapticLoop::start() const {
+  return state_->now->loop->start();
+}
+const std::vector<ContactPoint>& HapticLoop::contacts() const {
+  return state_->contacts.contacts();
+}
+const std::vector<ContactEvent>& HapticLoop::contact_events() const {
+  return state_->contacts.events();
+}
+const std::vector<Contact>& HapticLoop::constraints() const {
+  return state_->now->loop->constraints();
+}
+const Vec3& HapticLoop::center() const {
+  return state_->now->mass.center;
+}
+double HapticLoop::radius_of_gyration() const {
+  return tegotae::radius_of_gyration(state_->now->mass);
+}
+const CouplingSettings& HapticLoop::coupling() const {
+  return state_->now->coupling;
+}
+double HapticLoop::lag_bound() const {
+  return tegotae::lag_bound(state_->now->radius);
+}
+const ContactSettings& HapticLoop::contact() const {
+  return state_->now->settings;
+}
+const HeldWeight& HapticLoop::weight() const {
+  return state_->now->weight;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,56 @@
+#include "loop/held_weight.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "loop/scene_parts.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+namespace {
+
+// Beyond, numbers are no longer those of a part or a place (kg, m/s²).
+constexpr double kMostMass = 1e6, kMostGravity = 1e3;
+
+// Of what the motors stand for long; the rest is for contacts.
+constexpr double kWeightShare = 0.5;
+
+}  // namespace
+
+HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
+  HeldWeight out;
+  const WeightSettings& s = scene.weight;
+  if (!s.on) return out;
+  if (!scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
+    throw Error("weight: the resolver " + to_string(scene.contact.resolver) + " knows no weight; qp does");
+  if (!(s.gravity.norm() <= kMostGravity)) throw Error("weight: gravity must be three numbers of up to 1000 m/s²");
+  const Part& held = held_part(scene);
+  out.mass = held.mass.value_or(mass.mass);
+  if (!(out.mass > 0 && out.mass <= kMostMass))
+    throw Error("part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " +
+                std::to_string(out.mass));
+  const double newtons = out.mass * s.gravity.norm();
+  if (s.most && newtons > *s.most) out.share = std::max(0.0, *s.most) / newtons;
+  out.force = out.share * out.mass * s.gravity;
+  return out;
+}
+
+std::optional<double> weight_bound(double continuous_force) {
+  if (!(continuous_force > 0)) return std::nullopt;
+  return kWeightShare * continuous_force;
+}
+
+std::string weight_text(const Scene& scene, const HapticLoop& loop) {
+  const HeldWeight& w = loop.weight();
+  if (!scene.weight.on) return {};
+  char text[160];
+  if (w.share < 1)
+    std::snprintf(text, sizeof text,
+                  "%.3g N of the %.3g N that %.3g kg weigh (%.3g of it: half of what the device stands for long)",
+                  w.force.norm(), w.force.norm() / w.share, w.mass, w.share);
+  else
+    std::snprintf(text, sizeof text, "%.3g N (%.3g kg)", w.force.norm(), w.mass);
+  return text;
+}
+
+}  // namespace tegotae

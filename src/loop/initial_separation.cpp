@@ -1,0 +1,172 @@
+#include "loop/initial_separation.hpp"
+
+#include <algorithm>
+
+#include "resolve/metric.hpp"
+#include "tegotae/core/clock.hpp"
+#include "tegotae/resolve/resolver.hpp"
+
+namespace tegotae {
+namespace {
+
+// Contacts are asked to leave this many times kGapFloor.
+constexpr double kMargin = 1.2;
+// Where a vertex of the copy went farther than its faces, its contacts must open by more: steps of this share of the
+// relief.
+constexpr double kStep = 0.25;
+constexpr int kMostRounds = 60, kMostCalls = 16;
+constexpr std::size_t kMostBlocking = 256;
+
+class InitialSeparation {
+ public:
+  InitialSeparation(CollisionWorld& at, const MassProperties& mass, const Pose& X, double most)
+      : at_(at),
+        center_(mass.center),
+        most_(most),
+        X_(X),
+        metric_(mass),
+        resolver_(make_resolver(ResolverKind::qp, kMostLimits)),
+        rows_(kMostLimits),
+        bounds_(kMostLimits) {
+    metric_.set_orientation(X.q);
+    blocking_.reserve(kMostBlocking);
+  }
+
+  Pose run() {
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = 0; i < at_.start.waiting(); ++i)
+      if (relieved(i)) all.push_back(at_.start.waiting(i).part);
+    if (all.size() > 1 && open(all)) return X_;
+    // Where not all can be had at once (a pin that is too thick for its hole), what can.
+    for (const std::uint32_t part : all) open({part});
+    return X_;
+  }
+
+ private:
+  struct Wanted {
+    PartId id;
+    std::uint32_t part, stand_in;
+    double relief, gap;  ///< gap (m) that contacts with the copy must leave
+    bool blocked;        ///< the part is still nearer than kGapFloor
+  };
+
+  bool relieved(std::size_t i) const { return at_.start.waiting(i).stand_in != InitialContacts::kNobody; }
+
+  std::vector<Wanted> wanted(const std::vector<std::uint32_t>& parts) const {
+    std::vector<Wanted> list;
+    for (std::size_t i = 0; i < at_.start.waiting(); ++i) {
+      const InitialContacts::Waiting& w = at_.start.waiting(i);
+      if (!relieved(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
+      const InitialContact& pair = at_.start.report().pairs[w.pair];
+      const PartId id{static_cast<std::uint32_t>(pair.part)};
+      list.push_back({id, w.part, w.stand_in, pair.relief, pair.relief + kMargin * kGapFloor, false});
+    }
+    return list;
+  }
+
+  /// Moves X_ so that all of `parts` are free of it; false, and nothing happens, when that is not found.
+  bool open(const std::vector<std::uint32_t>& parts) {
+    std::vector<Wanted> list = wanted(parts);
+    at_.query(X_, center_, at_.reach, near_);
+    at_.contacts->clear();
+    at_.contacts->track(X_, at_.reach, kNoDeadline);
+    for (int round = 0; round < kMostRounds; ++round) {
+      Displacement d;
+      if (!solve(list, d) || d.dp.norm() + at_.radius * d.dr.norm() > most_) return false;
+      int found = 0;
+      bool is_open = way_is_free(d, found);
+      for (Wanted& w : list) is_open &= stands_free(w, displaced(X_, center_, d), found);
+      if (!is_open && found == 0) found = ask_for_more(list);
+      if (is_open) {
+        X_ = displaced(X_, center_, d);
+        metric_.set_orientation(X_.q);
+        retire(list);
+        return true;
+      }
+      if (found == 0) return false;
+    }
+    return false;
+  }
+
+  bool solve(const std::vector<Wanted>& list, Displacement& d) {
+    rows_.clear();
+    for (const Contact& c : at_.contacts->limits()) {
+      const auto w = std::find_if(list.begin(), list.end(), [&](const Wanted& x) { return x.id == c.part; });
+      const bool opens = w != list.end();
+      const double gap = opens ? w->gap : std::min(c.gap, kMargin * kGapFloor);
+      bounds_[static_cast<std::size_t>(rows_.rows())] = gap - c.gap;
+      rows_.push_row(metric_.row(c));
+    }
+    const Resolution r = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero());
+    d = metric_.unwhiten(r.motion);
+    return r.status == ResolveStatus::solved;
+  }
+
+  /// One answer of the narrow phase; where its work for one call runs out the next call goes on.
+  MotionAnswer check(const std::vector<std::uint32_t>& parts, const Pose& X, const Displacement& d) {
+    MotionAnswer answer = MotionAnswer::unknown;
+    at_.check->begin(parts, kNoDeadline);
+    for (int i = 0; i < kMostCalls && answer == MotionAnswer::unknown; ++i) {
+      blocking_.clear();
+      answer = at_.check->check(X, d, kGapFloor, blocking_);
+    }
+    return answer;
+  }
+
+  bool way_is_free(const Displacement& d, int& found) {
+    if (check(near_, X_, d) == MotionAnswer::free) return true;
+    found += at_.contacts->seed(blocking_, X_, kNoDeadline);
+    return false;
+  }
+
+  bool stands_free(Wanted& w, const Pose& P, int& found) {
+    w.blocked = false;
+    one_[0] = w.part;
+    if (check(one_, P, Displacement{}) == MotionAnswer::free) return true;
+    // The copy has the same faces, and gaps that mean something.
+    for (FacePair& pair : blocking_) pair.part = w.stand_in;
+    found += at_.contacts->seed(blocking_, X_, kNoDeadline);
+    w.blocked = true;
+    return false;
+  }
+
+  /// Lets the contacts of blocked parts open by more; returns how many parts that are.
+  static int ask_for_more(std::vector<Wanted>& list) {
+    int more = 0;
+    for (Wanted& w : list) {
+      if (!w.blocked || w.gap > 2 * w.relief + kMargin * kGapFloor) continue;
+      w.gap += kStep * w.relief;
+      ++more;
+    }
+    return more;
+  }
+
+  void retire(const std::vector<Wanted>& list) {
+    for (std::size_t i = at_.start.waiting(); i-- > 0;) {
+      const std::uint32_t part = at_.start.waiting(i).part;
+      if (relieved(i) && std::any_of(list.begin(), list.end(), [&](const Wanted& w) { return w.part == part; }))
+        at_.start.free_at_start(i);
+    }
+  }
+
+  CollisionWorld& at_;
+  Vec3 center_;
+  double most_;
+  Pose X_;
+  Metric metric_;
+  std::unique_ptr<Resolver> resolver_;
+  LowRankMatrix rows_;
+  std::vector<double> bounds_;
+  std::vector<std::uint32_t> near_, one_ = {0};
+  std::vector<FacePair> blocking_;
+};
+
+}  // namespace
+
+Pose initial_separation(CollisionWorld& at, const MassProperties& mass, const Pose& X, double most) {
+  const Pose eased = InitialSeparation(at, mass, X, most).run();
+  at.contacts->clear();
+  return eased;
+}
+
+}  // namespace tegotae

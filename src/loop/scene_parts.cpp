@@ -1,0 +1,27 @@
+#include "loop/scene_parts.hpp"
+
+#include "tegotae/core/error.hpp"
+
+namespace tegotae {
+
+std::size_t held_number(const Scene& scene) {
+  const Part* held = nullptr;
+  for (const Part& p : scene.parts) {
+    if (!p.held) continue;
+    if (held != nullptr)
+      throw Error("parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be");
+    held = &p;
+  }
+  if (held == nullptr) throw Error("no part is held; exactly one must be");
+  return static_cast<std::size_t>(held - scene.parts.data());
+}
+
+SceneParts::SceneParts(const Scene& scene) : held(&held_part(scene)) {
+  for (std::uint32_t i = 0; i < scene.parts.size(); ++i) {
+    if (scene.parts[i].held) continue;
+    fixed.push_back(&scene.parts[i]);
+    fixed_id.push_back({i});
+  }
+}
+
+}  // namespace tegotae

@@ -1,0 +1,93 @@
+// Random pens over many scenes; every committed piece and poses inside it are asked of FCL. Exit code 0: none
+// intersects, no tick hid that it was late, and none was held back without a contact; 1: some; 2: wrong use. See
+// `stress --help`.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+
+#include "stress_run.hpp"
+#include "tegotae/core/error.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+void print(const std::string& name, const StressResult& r, const LatencyHistogram& cpu) {
+  const LatencySummary us = summary(cpu);
+  std::printf(
+      "%-16s %5lld scripts %7lld ticks %7lld pieces %8lld poses, intersecting %lld | touching %4.1f%% cut %lld "
+      "overflow %lld infeasible %lld stalled %lld lag time %lld capacity %lld unexplained %lld late unreported %lld | "
+      "tick us p50 %.0f p99 %.0f "
+      "p99.9 %.0f "
+      "max %.0f | loop %.1f s check %.1f s\n",
+      name.c_str(), (long long)r.scripts, (long long)r.ticks, (long long)r.pieces, (long long)r.poses,
+      (long long)r.intersecting, 100.0 * (double)r.touching / (double)std::max<std::int64_t>(1, r.ticks),
+      (long long)r.cut, (long long)r.overflow, (long long)r.infeasible, (long long)r.stalled, (long long)r.out_of_time,
+      (long long)r.out_of_capacity, (long long)r.unexplained, (long long)r.late_unreported, us.p50, us.p99, us.p999,
+      us.max, r.seconds_loop, r.seconds_check);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Random pens over many scenes; every committed piece and poses inside it are asked of FCL."};
+  int scripts = 1000;
+  unsigned seed = 1;
+  std::vector<std::string> scenes;
+  std::string resolver = "both";
+  double friction = 0;
+  StressOptions options;
+  app.add_option("--scripts", scripts, "How many, over the scenes in turn")->capture_default_str();
+  app.add_option("--seed", seed, "Of the first script; the next ones count up")->capture_default_str();
+  app.add_option("--scene", scenes, "Only this scene; can be given several times");
+  app.add_option("--resolver", resolver, "lp, qp or both in turn")
+      ->check(CLI::IsMember({"lp", "qp", "both"}))
+      ->capture_default_str();
+  app.add_option("--friction", friction, "Coefficients from a fifth of this up to this, by script; with qp alone")
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--ticks", options.ticks, "Of a script, 1 ms each")->capture_default_str();
+  app.add_option("--between", options.between, "Poses asked inside a piece, on the two readings of its path in turn")
+      ->capture_default_str();
+  app.add_option("--budget", options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
+  app.add_option("--record", options.record, "Folder for a scene file and a recording of each script");
+  CLI11_PARSE(app, argc, argv);
+  setlinebuf(stdout);
+  try {
+    if (friction > 0) resolver = "qp";
+    if (scenes.empty()) scenes = stress_scene_names();
+    std::map<std::string, std::pair<StressResult, LatencyHistogram>> results;
+    StressResult all;
+    std::int64_t unexplained = 0;  // of `qp`; `lp` creeps by itself (docs/limits.md)
+    for (int i = 0; i < scripts; ++i) {
+      const auto n = static_cast<int>(scenes.size());
+      const std::string& name = scenes[i % n];
+      if (resolver == "both")
+        options.resolver = (i / n) % 2 == 0 ? "qp" : "lp";
+      else
+        options.resolver = resolver;
+      options.mu = friction * (1 + (i / n) % 5) / 5;
+      auto& [sum, cpu] = results[name];
+      const StressResult one = run_stress_script(stress_scene(name, seed + i), seed + i, options, cpu);
+      if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());
+      if (one.infeasible + one.stalled > 0)
+        std::printf("UNSOLVED: %s seed %u resolver %s\n", name.c_str(), seed + i, options.resolver.c_str());
+      if (i % 100 == 99) std::printf("%d scripts\n", i + 1);
+      sum.add(one);
+      all.add(one);
+      if (options.resolver == "qp") unexplained += one.unexplained;
+    }
+    for (const auto& [name, result] : results) print(name, result.first, result.second);
+    std::printf("%lld scripts, %lld poses checked: %lld intersecting, %lld programs without an answer\n",
+                (long long)all.scripts, (long long)all.poses, (long long)all.intersecting,
+                (long long)(all.infeasible + all.stalled));
+    std::printf("%lld ticks held back for long without a contact, %lld of them with qp\n", (long long)all.unexplained,
+                (long long)unexplained);
+    return all.intersecting + all.late_unreported + unexplained > 0 ? 1 : 0;
+  } catch (const Error& e) {
+    std::fprintf(stderr, "stress: %s\n", e.what());
+    return 2;
+  }
+}
