@@ -1,3 +1,5 @@
+// The listener's interface of Catch2 v2.
+#define CATCH_CONFIG_EXTERNAL_INTERFACES
 #include "absent.hpp"
 
 #include <cstdio>
