@@ -8,6 +8,7 @@
 #include "core/same_file.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
+#include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"

@@ -78,7 +78,6 @@ class InputDevice final : public Device {
   }
 
   void write(const Wrench&) noexcept override {}
-  void set_center(const Vec3&) noexcept override {}  // the pen turns about its own point
   void set_tracking_error(const Displacement& lead) noexcept override {
     lead_ = lead;
     led_ = true;

@@ -95,6 +95,7 @@ struct SimulatedDevice::Impl {
   InputSource& hand;
   PenBodySettings body_constants;
   PenBody body;
+  Vec3 center = Vec3::Zero();            // of mass of the held part, file frame
   Quat encoder_zero = Quat::Identity();  // rotations are counted from where the pen started
   Wrench rendered;
   std::atomic<std::int64_t> time_ns{0};  // since the script's begin; atomic for script_time()
@@ -115,17 +116,15 @@ struct SimulatedDevice::Impl {
 
   double script_time(std::int64_t ns) const { return hand.begin() + 1e-9 * static_cast<double>(ns); }
 
-  HandTarget intent(double t, const Vec3& center) {
-    return hand.target(t, {body.rotation, body.center - body.rotation * center});
-  }
+  HandTarget intent(double t) { return hand.target(t, {body.rotation, body.center - body.rotation * center}); }
 
-  void look_at_guide(const Vec3& center) {
+  void look_at_guide() {
     if (!guide || !guide->target(goal) || led) return;
     led = true;
-    led_hand = intent(script_time(time_ns.load(std::memory_order_relaxed)), center).pose;
+    led_hand = intent(script_time(time_ns.load(std::memory_order_relaxed))).pose;
   }
 
-  void move_hand(double h, const Vec3& center) {
+  void move_hand(double h) {
     const Displacement way = displacement(led_hand, goal, center);
     const double rate = 1 / (kHandLag + h);
     const Twist of_center = {at_most(rate * way.dp, kHandSpeed), at_most(rate * way.dr, kHandTurning)};
@@ -133,21 +132,21 @@ struct SimulatedDevice::Impl {
     led_rate = {of_center.v - of_center.w.cross(led_hand.q * center), of_center.w};
   }
 
-  PenTarget target(double t, const Vec3& center) {
-    const auto [pose, rate] = led ? HandTarget{led_hand, led_rate} : intent(t, center);
+  PenTarget target(double t) {
+    const auto [pose, rate] = led ? HandTarget{led_hand, led_rate} : intent(t);
     const Vec3 arm = pose.q * center;
     return {pose.p + arm, pose.q, {rate.v + rate.w.cross(arm), rate.w}};
   }
 
-  void advance(std::int64_t dt_ns, const Vec3& center) {
+  void advance(std::int64_t dt_ns) {
     std::int64_t now = time_ns.load(std::memory_order_relaxed);
     const std::int64_t end = now + dt_ns;
-    look_at_guide(center);
+    look_at_guide();
     while (now < end) {
       const std::int64_t step = std::min(kMaxStepNs, end - now);
       const double h = 1e-9 * static_cast<double>(step);
-      if (led) move_hand(h, center);
-      body.step(h, body_constants, target(script_time(now) + 0.5 * h, center), rendered);
+      if (led) move_hand(h);
+      body.step(h, body_constants, target(script_time(now) + 0.5 * h), rendered);
       now += step;
     }
     time_ns.store(now, std::memory_order_relaxed);
@@ -166,7 +165,7 @@ struct SimulatedDevice::Impl {
 SimulatedDevice::SimulatedDevice(std::unique_ptr<Impl> impl, const Vec3& center) : impl_(std::move(impl)) {
   check(impl_->settings);
   require(center.allFinite(), "center");
-  Device::set_center(center);
+  impl_->center = center;
   const Pose start = impl_->hand.start();
   impl_->body.center = start * center;
   impl_->body.rotation = start.q;
@@ -213,12 +212,12 @@ DeviceState SimulatedDevice::read() noexcept {
   if (impl_->settings.wall_clock) {
     stamp = monotonic_ns();
     if (impl_->last_read_clock_ns >= 0 && !impl_->waiting)
-      impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs), center());
+      impl_->advance(std::clamp<std::int64_t>(stamp - impl_->last_read_clock_ns, 0, kMaxCatchUpNs));
     impl_->last_read_clock_ns = stamp;
   }
   impl_->sample();
   const Quat& q = impl_->sampled_rotation;
-  return {{q, impl_->sampled_center - q * center()}, impl_->velocity.velocity(), 0, stamp, impl_->sequence++};
+  return {{q, impl_->sampled_center - q * impl_->center}, impl_->velocity.velocity(), 0, stamp, impl_->sequence++};
 }
 
 void SimulatedDevice::write(const Wrench& wrench) noexcept {
@@ -233,14 +232,19 @@ ForceOff SimulatedDevice::reason() const noexcept {
   return impl_->status == DeviceStatus::enabled ? ForceOff::none : ForceOff::software;
 }
 
-void SimulatedDevice::set_center(const Vec3& center_now) noexcept {
+Vec3 SimulatedDevice::reference_point() const noexcept {
+  return impl_->center;
+}
+
+void SimulatedDevice::set_held_center(const Vec3& center) noexcept {
+  if (center == impl_->center) return;
   PenBody& body = impl_->body;
-  const Vec3 arm = body.rotation * (center_now - center());
+  const Vec3 arm = body.rotation * (center - impl_->center);
   body.center += arm;
   body.velocity += body.angular_velocity(impl_->body_constants).cross(arm);
   // The difference to the last sample would be a jump of the point, not a motion.
   impl_->velocity.forget();
-  Device::set_center(center_now);
+  impl_->center = center;
 }
 
 void SimulatedDevice::follow(const InputGuide& guide) noexcept {
@@ -256,7 +260,7 @@ void SimulatedDevice::use_wall_clock(bool on) noexcept {
 }
 
 void SimulatedDevice::advance(double dt) noexcept {
-  if (dt > 0 && std::isfinite(dt)) impl_->advance(std::llround(dt * 1e9), center());
+  if (dt > 0 && std::isfinite(dt)) impl_->advance(std::llround(dt * 1e9));
 }
 
 double SimulatedDevice::script_time() const noexcept {
@@ -265,7 +269,7 @@ double SimulatedDevice::script_time() const noexcept {
 
 Pose SimulatedDevice::true_pose() const noexcept {
   const PenBody& body = impl_->body;
-  return {body.rotation, body.center - body.rotation * center()};
+  return {body.rotation, body.center - body.rotation * impl_->center};
 }
 
 Twist SimulatedDevice::true_velocity() const noexcept {

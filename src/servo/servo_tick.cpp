@@ -68,7 +68,9 @@ void ServoTick::read_application() noexcept {
   if (!sane_) return;
   coupling_ = coupling_of(application_);
   command_ = mapping_of(application_);
-  if (command_.center != device_.center()) device_.set_center(command_.center);
+  if (held_center_ == command_.center) return;
+  held_center_ = command_.center;
+  device_.set_held_center(command_.center);
 }
 
 void ServoTick::tell_lead(std::int64_t now_ns) noexcept {
@@ -82,11 +84,11 @@ void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
   moved_ = {};
   in.pen_proper = proper(pen.pose) && pen.velocity.v.allFinite() && pen.velocity.w.allFinite();
   if (!in.pen_proper) return;
-  if (started_) moved_ = displacement(pen_, pen.pose, device_.center());
+  if (started_) moved_ = displacement(pen_, pen.pose, device_.reference_point());
   started_ = true;
   pen_ = pen.pose;
-  if (!attached_) command_.center = device_.center();
-  in.remapped = mapping_.update(pen, device_.center(), command_);
+  if (!attached_) command_.center = device_.reference_point();
+  in.remapped = mapping_.update(pen, device_.reference_point(), command_);
   in.clutched = mapping_.clutch() != Clutch::none;
   watch_.update(pen, moved_, in.now_ns);
   in.pen_silent = watch_.silent();

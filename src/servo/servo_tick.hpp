@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/nonblocking.hpp"
 #include "coupling/local_model.hpp"
@@ -55,7 +56,8 @@ class ServoTick {
   bool sane_ = false;  // what the application says can be
   CouplingSettings coupling_;
   MappingCommand command_;
-  double lifted_ = 0;  // J that lifting the part has stored since it has a weight
+  std::optional<Vec3> held_center_;  // what the device was told last
+  double lifted_ = 0;                // J that lifting the part has stored since it has a weight
   bool carries_ = false;
   Vec3 carried_at_ = Vec3::Zero();  // its center of mass then, in the pen's lengths
 

@@ -21,7 +21,7 @@ class LocalPen final : public PenPort {
         link_(channel_, coupling_, loop.center()) {
     link_.set_scale(scale);
     device_.use_wall_clock(wall_clock);
-    if (device_.center() != loop.center()) device_.set_center(loop.center());
+    device_.set_held_center(loop.center());
   }
 
   void start() override {

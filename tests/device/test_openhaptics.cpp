@@ -122,8 +122,8 @@ TEST_CASE("wrenches go out in newtons and millinewton meters, in the device's ax
   const FakeHd fake;
   OpenHapticsDevice pen(settings());
   pen.start();
-  pen.set_center(Vec3(1, 2, 3));
-  CHECK(pen.center() == Vec3::Zero());  // wrenches stay at the gimbal
+  pen.set_held_center(Vec3(1, 2, 3));
+  CHECK(pen.reference_point() == Vec3::Zero());  // wrenches stay at the gimbal
   pen.write({Vec3(1, 2, 3), Vec3(0.01, 0.02, 0.03)});
   fake.run(1);
   CHECK((vec(fake.state->force) - Vec3(1, 3, -2)).norm() < 1e-12);

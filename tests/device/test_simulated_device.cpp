@@ -199,7 +199,8 @@ TEST_CASE("another center of mass is another point of the same moving body", "[d
   const Pose pose = device.true_pose();
   const Twist before = device.true_velocity();
   const Vec3 center(0.03, -0.02, 0.05);
-  device.set_center(center);
+  device.set_held_center(center);
+  CHECK(device.reference_point() == center);
   CHECK((device.true_pose().p - pose.p).norm() < 1e-15);
   CHECK(device.true_pose().q.coeffs() == pose.q.coeffs());
   CHECK((device.true_velocity().v - before.v - before.w.cross(pose.q * center)).norm() < 1e-15);

@@ -38,7 +38,7 @@ FamilyCase ball_in_socket(const FamilyParameters& p) {
   socket.segments = segments;
   socket.rings = std::max(4, segments / 4);
   add_fixed(c, made(shapes::socket(socket)));
-  c.seat = {choice(p, 0) ? rotation(3 * Vec3(draw(p, 2), draw(p, 3), draw(p, 4))) : Quat::Identity(),
+  c.seat = {choice(p, 0) ? rotation(3 * Vec3(draw(p, 2), draw(p, 3), draw(p, 4))) : Quat(Quat::Identity()),
             Vec3(0, 0, socket.center)};
   c.gain = 2;
   const double radius = p.size / 2;

@@ -15,7 +15,7 @@ constexpr int kLongestPhase = 60;  // ticks
 
 Pose posed(const Vec3& dp, const Vec3& dr, const Pose& from) {
   const double angle = dr.norm();
-  const Quat turn = angle > 0 ? Quat(Eigen::AngleAxisd(angle, Vec3(dr / angle))) : Quat::Identity();
+  const Quat turn = angle > 0 ? Quat(Eigen::AngleAxisd(angle, Vec3(dr / angle))) : Quat(Quat::Identity());
   return {(turn * from.q).normalized(), from.p + dp};
 }
 

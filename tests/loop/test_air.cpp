@@ -211,7 +211,7 @@ TEST_CASE("after a change of the resolver in contact nothing is felt in empty ai
       CHECK(a.proxy.touching == b.proxy.touching);
       CHECK(a.planes.count == b.planes.count);
       CHECK(a.contacts == b.contacts);
-      CHECK(a.limits == b.limits);
+      CHECK(a.constraints == b.constraints);
       CHECK(a.gap == b.gap);
       CHECK(a.depth == b.depth);
       CHECK(a.candidate_parts == b.candidate_parts);
@@ -221,7 +221,7 @@ TEST_CASE("after a change of the resolver in contact nothing is felt in empty ai
       CHECK(a.flags.timed_out == b.flags.timed_out);
       CHECK(a.filtered == b.filtered);
       CHECK(a.shrunk == b.shrunk);
-      CHECK(a.overflow == b.overflow);
+      CHECK(a.flags.overflow == b.flags.overflow);
     }
 }
 

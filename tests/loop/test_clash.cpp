@@ -221,14 +221,15 @@ TEST_CASE("the list agrees with brute force", "[clash]") {
         INFO(round << ": " << i << " " << j);
         if (overlap) {
           REQUIRE(c != found.end());
+          REQUIRE(c->depth);
           CHECK(c->gap == 0);
           const double corners = std::max(sampled_depth(a, b, 1), sampled_depth(b, a, 1));
-          CHECK(c->depth >= corners - 1e-12);
+          CHECK(*c->depth >= corners - 1e-12);
           // Of points on a grid none can be deeper than the true depth, which the list may fall short of by what lies
           // between corners and edges; nothing in the list is deeper than where it says it is.
-          CHECK(c->depth <= std::max(sampled_depth(a, b, 12), sampled_depth(b, a, 12)) + 0.004);
+          CHECK(*c->depth <= std::max(sampled_depth(a, b, 12), sampled_depth(b, a, 12)) + 0.004);
           CHECK(std::max(is_inside(a, c->place_W) ? surface_distance(a, c->place_W) : 0,
-                         is_inside(b, c->place_W) ? surface_distance(b, c->place_W) : 0) >= c->depth - 1e-9);
+                         is_inside(b, c->place_W) ? surface_distance(b, c->place_W) : 0) >= *c->depth - 1e-9);
           ++kinds[static_cast<int>(c->kind)];
         } else {
           const double gap = least_distance(a, b);

@@ -19,7 +19,7 @@ constexpr double kRest = 0.5;  // s, after each motion
 /// The simulated pen, of which nobody knows how much it damps: so are most real ones.
 class UnknownDamping final : public Device {
  public:
-  explicit UnknownDamping(SimulatedDevice& device) : device_(device) { Device::set_center(device.center()); }
+  explicit UnknownDamping(SimulatedDevice& device) : device_(device) {}
   DeviceInfo info() const override {
     DeviceInfo info = device_.info();
     info.damping = info.torsional_damping = 0;
@@ -31,10 +31,8 @@ class UnknownDamping final : public Device {
   void write(const Wrench& wrench) noexcept override { device_.write(wrench); }
   DeviceStatus status() const noexcept override { return device_.status(); }
   ForceOff reason() const noexcept override { return device_.reason(); }
-  void set_center(const Vec3& center) noexcept override {
-    Device::set_center(center);
-    device_.set_center(center);
-  }
+  Vec3 reference_point() const noexcept override { return device_.reference_point(); }
+  void set_held_center(const Vec3& center) noexcept override { device_.set_held_center(center); }
 
  private:
   SimulatedDevice& device_;

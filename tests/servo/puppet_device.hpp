@@ -8,13 +8,16 @@ namespace tegotae::test {
 
 inline constexpr std::int64_t kMs = 1'000'000;
 
-/// A pen that says what the test tells it to, and remembers what it was asked to render.
+/// A pen that says what the test tells it to, and remembers what it was asked to render. Its body is the held part.
 class PuppetDevice : public Device {
  public:
   DeviceState state;
   DeviceStatus now = DeviceStatus::enabled;
   DeviceInfo facts;
   Wrench rendered;
+  Vec3 center = Vec3::Zero();
+  Vec3 reference_point() const noexcept override { return center; }
+  void set_held_center(const Vec3& held) noexcept override { center = held; }
   DeviceInfo info() const override { return facts; }
   void start() override {}
   void stop() override {}

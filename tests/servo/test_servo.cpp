@@ -69,7 +69,7 @@ TEST_CASE("a tick renders the coupling to the newest proxy and tells of the pen"
   REQUIRE(link.read(pen));
   CHECK((device.rendered.force - Vec3(0, 0, 800 * 0.003 + 5 * 0.1)).norm() < 1e-12);
   CHECK((device.rendered.torque - Vec3(0, -0.004, 0)).norm() < 1e-15);
-  CHECK(device.center() == center);
+  CHECK(device.center == center);
   CHECK(pen.wrench.force == device.rendered.force);
   CHECK(pen.wrench.torque == device.rendered.torque);
   CHECK(pen.status == DeviceStatus::enabled);

@@ -55,7 +55,7 @@ TEST_CASE("whatever stands in the application's slot, the wrench stays within th
     REQUIRE(device.rendered.force.allFinite());
     REQUIRE(device.rendered.force.norm() <= 8.5 * (1 + 1e-15));
     REQUIRE(device.rendered.torque.norm() <= 0.188 * (1 + 1e-15));
-    REQUIRE(device.center().allFinite());
+    REQUIRE(device.center.allFinite());
   }
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("every field of the application's slot may hold garbage, one at a time
     const double step = (device.rendered.force - last.force).norm();
     REQUIRE((step <= 3 * (1 + 1e-9) || device.rendered.force.norm() == 0));
     last = device.rendered;
-    REQUIRE(device.center().allFinite());
+    REQUIRE(device.center.allFinite());
     rendered += device.rendered.force.norm() > 0.5 ? 1 : 0;
   }
   CHECK(rendered > 5'000);

@@ -26,7 +26,7 @@ struct DeviceInfo {
 /// One snapshot of the pen.
 struct DeviceState {
   Pose pose;                   ///< X_WF: the pen's frame in the device's own space, whose axes are those of the world
-  Twist velocity;              ///< of the pen's body; `v` is that of the held part's center of mass (Device::center)
+  Twist velocity;              ///< of the pen's body; `v` is that of Device::reference_point()
   std::uint32_t buttons = 0;   ///< bit i: button i is pressed
   std::int64_t time_ns = 0;    ///< when it was sampled: the monotonic clock, or the device's own in virtual time
   std::uint64_t sequence = 0;  ///< number of the sample
@@ -80,18 +80,18 @@ class Device {
 
   /// The newest state. Never waits. When the device does not answer: the last state, and reason() says so.
   virtual DeviceState read() noexcept = 0;
-  /// Renders `wrench` (on the pen, at the held part's center of mass, world) until the next call.
+  /// Renders `wrench` (on the pen, at reference_point(), in the axes of the world) until the next call.
   virtual void write(const Wrench& wrench) noexcept = 0;
 
   virtual DeviceStatus status() const noexcept = 0;  ///< now
   virtual ForceOff reason() const noexcept = 0;      ///< why it renders no force; ForceOff::none when it does
 
-  /// The point of the pen, in its frame, m, of which DeviceState::velocity tells the velocity and at which wrenches
-  /// act: it carries the held part's center of mass. The servo proposes that center in the part's file frame, which
-  /// suits a pen that has the part for a body; a device whose wrench acts at a fixed point, such as a stylus tip,
-  /// overrides set_center() to keep its own.
-  const Vec3& center() const noexcept { return center_; }
-  virtual void set_center(const Vec3& center) noexcept { center_ = center; }  ///< `center` in m, file frame
+  /// The device's own point, in the pen's frame, m: DeviceState::velocity is its velocity, and wrenches act at it. The
+  /// servo lets it carry the held part's center of mass. The default is the origin of the pen's frame.
+  virtual Vec3 reference_point() const noexcept { return Vec3::Zero(); }
+  /// The held part's center of mass, m, file frame, each time that another part is held. Only a pen whose body is the
+  /// part itself takes it for its reference point, as SimulatedDevice does; other drivers ignore it.
+  virtual void set_held_center(const Vec3&) noexcept {}
 
   /// Before start(): whether the device moves with the clock (hardware always does) or by advance() alone.
   virtual void use_wall_clock(bool) noexcept {}
@@ -101,9 +101,6 @@ class Device {
   /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
   /// read() while an application is attached; an input that is integrated stays near the part by it.
   virtual void set_tracking_error(const Displacement&) noexcept {}
-
- private:
-  Vec3 center_ = Vec3::Zero();
 };
 
 }  // namespace tegotae

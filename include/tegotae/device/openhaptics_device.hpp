@@ -18,8 +18,8 @@ struct OpenHapticsSettings {
   Quat axes = desktop_axes();        ///< from the device's axes to the world's
 };
 
-/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, found at run time. The pen's
-/// point is its gimbal: poses, velocities and wrenches are of that point, whatever center the servo proposes.
+/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, found at run time. Its
+/// reference point is the gimbal, the origin of the pen's frame.
 ///
 /// The vendor's scheduler calls back at its own rate (1 kHz); read() and write() meet it in mailboxes and never wait.
 /// A command that is older than 20 ms is not rendered, and after an error of the device nothing is for half a second.
@@ -38,7 +38,6 @@ class OpenHapticsDevice final : public Device {
   void write(const Wrench& wrench) noexcept override;
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
-  void set_center(const Vec3&) noexcept override {}  ///< no effect: the gimbal point stays
 
  private:
   struct Impl;

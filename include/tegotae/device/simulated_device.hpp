@@ -60,7 +60,8 @@ class SimulatedDevice final : public Device {
   void write(const Wrench& wrench) noexcept override;
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
-  void set_center(const Vec3& center) noexcept override;
+  Vec3 reference_point() const noexcept override;                       ///< the held part's center of mass
+  void set_held_center(const Vec3& center) noexcept override;           ///< keeps pose and motion
   void set_tracking_error(const Displacement& lead) noexcept override;  ///< an application is there
   void use_wall_clock(bool on) noexcept override;                       ///< sets SimulatedDeviceSettings::wall_clock
 
