@@ -1,9 +1,10 @@
-// `tegotae experiment`: a short form of each, its files and its claims.
+// `tegotae experiment`: a short form of each, its files, its claims, and its tables by judges of our own.
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/experiment_judges.hpp"
 #include "apps/run_program.hpp"
 #include "catch.hpp"
 
@@ -21,6 +22,7 @@ void check_claims(const json& summary) {
     CHECK(claim.at("target").is_string());
     CHECK(claim.at("unit").is_string());
     CHECK(claim.at("holds") == true);
+    CHECK(meets(claim.at("value"), claim.at("target")));
   }
 }
 
@@ -47,6 +49,7 @@ void check_experiment(const std::string& name, const std::string& options) {
     CHECK(head.find(',') != std::string::npos);
   }
   CHECK(tables > 0);
+  judge_tables(name, at);
 }
 
 }  // namespace
