@@ -80,11 +80,13 @@ Planar balance(const PegLead& lead, const PlanarPeg& peg, const std::vector<Plan
   return p;
 }
 
-/// Whether the mesh peg goes on in the contact loop, under a load that stays what it is wherever the peg goes. At first
-/// it comes into contact on both sides: over its play it turns, and its center sinks by the turn times the radius.
-bool slides(LoadRig& rig, const Wrench& load) {
+/// Whether the mesh peg goes on in the contact loop, under a load that stays what it is wherever the peg goes. First it
+/// comes into contact on both sides under `aside`, the load without the push: under the whole load it would sink while
+/// it turns over its play, by up to a quarter of the depth, and what is asked then is another point of the diagram.
+bool slides(LoadRig& rig, const Wrench& aside, const Wrench& load) {
   constexpr int kComing = 40, kWatched = 20;
   constexpr double kFar = 1e-3, kGoesOn = 1e-5;  // m
+  for (int i = 0; i < kComing; ++i) rig.step(rig.pen_for(aside));
   const double from = rig.X().p.z();
   const auto sunk_since = [&](int ticks) {
     const double begin = rig.X().p.z();
@@ -112,10 +114,12 @@ std::vector<JamPoint> jam_map(double lambda, double mu, int grid) {
       p.moment = (-1.3 + 2.6 * (j + 0.5) / grid) * (1 + 2 * lambda);
       p.slides = whitney_slides(lambda, mu, p.side, p.moment);
       // About the center, which is half the peg's length over the tip.
-      const Vec3 force(p.side * kPush, 0, -kPush);
-      const Vec3 torque = Vec3(0, -p.moment * kPegRadius * kPush, 0) + Vec3(0, 0, -kHalf).cross(force);
+      const auto load = [&](double push) {
+        const Vec3 force(p.side * kPush, 0, -push);
+        return Wrench{force, Vec3(0, -p.moment * kPegRadius * kPush, 0) + Vec3(0, 0, -kHalf).cross(force)};
+      };
       LoadRig rig(peg_in_hole(depth, kPlay, mu));
-      p.slid = slides(rig, {force, torque});
+      p.slid = slides(rig, load(0), load(kPush));
       out.push_back(p);
     }
   return out;

@@ -60,6 +60,8 @@ constexpr double kKeepGrowth = 1.1;
 // looked for among about so many limits.
 constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMostWedging = 64;
+// Forces of a piece that are remembered until the end of the tick.
+constexpr std::size_t kMostForces = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
 constexpr double kLeastKeep = 2e-6;
 // A motion that carries no point farther than this (m) is rest.
@@ -101,6 +103,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMostBlocking);
   near_.reserve(at_.spheres.size());
+  known_.reserve(kMostForces);
+  guess_.reserve(kMostForces);
 }
 
 bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
@@ -127,6 +131,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
+  known_.clear();
   allowed_ = wanted;
   made_ = 0;
   if (near_.empty()) {
@@ -180,7 +185,8 @@ void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, report.planes, report.forces);
+    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), report.planes,
+                 report.forces);
   } else {
     // Out of time, the limits may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));

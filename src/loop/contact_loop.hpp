@@ -40,6 +40,8 @@ class ContactLoop final : public ProxyLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One program over the limits: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// The last forces of a piece, as forces of the contacts that are tracked now.
+  const std::vector<FrictionForce>& known_forces();
   /// The same with friction, without gaps that should open.
   bool solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion);
   /// Opens gaps that were lost, by the least change of `motion`, where that is possible and short.
@@ -85,6 +87,14 @@ class ContactLoop final : public ProxyLoop {
   LowRankMatrix rows_;
   std::vector<double> bounds_;
   FrictionRows friction_;
+  /// A force of the last piece with friction and the features that it was between.
+  struct KnownForce {
+    PartId part;
+    Feature feature_a, feature_b;
+    FrictionForce force;
+  };
+  std::vector<KnownForce> known_;
+  std::vector<FrictionForce> guess_;
   PlanePicker planes_;
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;

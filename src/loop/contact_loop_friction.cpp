@@ -25,11 +25,31 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
     report.status = r.status;
     motion = r.motion;
     if (r.status != ResolveStatus::solved) continue;
+    known_.clear();
+    if (r.forces != nullptr)
+      for (const FrictionForce& f : *r.forces) {
+        const Contact& c = limits[static_cast<std::size_t>(f.row)];
+        if (known_.size() < known_.capacity()) known_.push_back({c.part, c.feature_a, c.feature_b, f});
+      }
     for (std::size_t i = 0; i < limits.size(); ++i)
       if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) at_.contacts->carries(i);
     return true;
   }
   return false;
+}
+
+const std::vector<FrictionForce>& ContactLoop::known_forces() {
+  const auto& limits = at_.contacts->limits();
+  guess_.clear();
+  for (const KnownForce& k : known_)
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const Contact& c = limits[i];
+      if (c.part != k.part || c.feature_a != k.feature_a || c.feature_b != k.feature_b) continue;
+      guess_.push_back(k.force);
+      guess_.back().row = static_cast<int>(i);
+      break;
+    }
+  return guess_;
 }
 
 void ContactLoop::recover_gaps(TickReport& report, Vec6& motion) {

@@ -6,14 +6,6 @@
 
 namespace tegotae {
 
-/// The force of one contact, in the unit of its FrictionProblem.
-struct FrictionForce {
-  int row = 0;                    ///< of the problem
-  double normal = 0;              ///< ν > 0
-  double tangential[2] = {0, 0};  ///< τ along the two tangents
-  bool slides = false;            ///< the point slides; otherwise it sticks, or there is no friction
-};
-
 /// How far z and `forces` are from the law: the largest of what the balance, the limits, the cones and the directions
 /// are off by, m. Each contact is measured by the change that projecting its force on its cone would make.
 double coulomb_residual(const FrictionProblem& problem, const Vec6& z,

@@ -9,7 +9,7 @@ namespace tegotae {
 namespace {
 
 /// Rounds after which it will not end; those that end take 2 to 12.
-constexpr int kMaxRounds = 25;
+constexpr int kMaxRounds = 16;
 /// A contact that changed between sliding and sticking so often goes in a circle.
 constexpr int kMostFlips = 4;
 /// Less than this part of the wanted motion is no motion, and no violation.
@@ -48,7 +48,7 @@ void FrictionActiveSet::set_direction(Member& m, double d0, double d1) noexcept 
   if (m.mu > 0) m.column -= m.mu * (d0 * m.t[0] + d1 * m.t[1]);
 }
 
-bool FrictionActiveSet::add(int row, Start start) noexcept {
+bool FrictionActiveSet::add(int row) noexcept {
   if (count_ == kMostMembers) return false;
   Member& m = members_[static_cast<std::size_t>(count_++)];
   m.row = row;
@@ -66,7 +66,7 @@ bool FrictionActiveSet::add(int row, Start start) noexcept {
     m.slip[0] = m.t[0].dot(z_);
     m.slip[1] = m.t[1].dot(z_);
     const double far = length(m.slip[0], m.slip[1]);
-    m.slides = start == Start::along && far > slip_;
+    m.slides = far > slip_;
     if (m.slides) set_direction(m, m.slip[0] / far, m.slip[1] / far);
   } else {
     set_direction(m, 0, 0);
@@ -80,13 +80,17 @@ void FrictionActiveSet::remove(int position) noexcept {
   --count_;
 }
 
-void FrictionActiveSet::begin(const Vec6& from, Start start) noexcept {
+void FrictionActiveSet::set_problem(const Vec6& from) noexcept {
   z_ = from;
   scale_ = problem_->wanted.norm();
   slip_ = kSmall * scale_;
   count_ = 0;
+  std::fill_n(inside_.begin(), problem_->normals.rows(), std::uint8_t{0});
+}
+
+void FrictionActiveSet::begin(const Vec6& from) noexcept {
+  set_problem(from);
   const int rows = problem_->normals.rows();
-  std::fill_n(inside_.begin(), rows, std::uint8_t{0});
   touching_.clear();
   for (int i = 0; i < rows; ++i)
     if (problem_->normals.row(i).dot(z_) - problem_->bounds[i] < slip_) touching_.push_back(i);
@@ -95,7 +99,7 @@ void FrictionActiveSet::begin(const Vec6& from, Start start) noexcept {
   for (std::size_t k = 0; k < taken; ++k)
     squares += problem_->normals.row(touching_[k * touching_.size() / taken]).squaredNorm();
   give_ = kGive * (taken > 0 ? squares / static_cast<double>(taken) : 1);
-  for (std::size_t k = 0; k < taken; ++k) add(touching_[k * touching_.size() / taken], start);
+  for (std::size_t k = 0; k < taken; ++k) add(touching_[k * touching_.size() / taken]);
 }
 
 bool FrictionActiveSet::step() noexcept {
@@ -227,13 +231,34 @@ bool FrictionActiveSet::add_most_violated() noexcept {
       most = i;
     }
   }
-  return most >= 0 && add(most, Start::along);
+  return most >= 0 && add(most);
 }
 
-bool FrictionActiveSet::solve(const FrictionProblem& problem, const Vec6& from, Start start) noexcept {
+bool FrictionActiveSet::solve(const FrictionProblem& problem, const Vec6& from) noexcept {
   problem_ = &problem;
-  begin(from, start);
-  bool first = true;
+  begin(from);
+  return run(true);
+}
+
+bool FrictionActiveSet::refine(const FrictionProblem& problem, const Vec6& from,
+                               const std::vector<FrictionForce>& forces) noexcept {
+  problem_ = &problem;
+  set_problem(from);
+  double squares = 0;
+  for (const FrictionForce& f : forces) squares += problem.normals.row(f.row).squaredNorm();
+  give_ = kGive * (forces.empty() ? 1 : squares / static_cast<double>(forces.size()));
+  for (const FrictionForce& f : forces) {
+    if (!add(f.row)) return false;
+    Member& m = members_[static_cast<std::size_t>(count_ - 1)];
+    m.normal = f.normal;
+    if (m.slides) continue;
+    m.tangential[0] = f.tangential[0];
+    m.tangential[1] = f.tangential[1];
+  }
+  return run(false);
+}
+
+bool FrictionActiveSet::run(bool first) noexcept {
   for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
     if (!step()) return false;
     if (drop_pulling(first)) continue;

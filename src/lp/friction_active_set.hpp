@@ -18,13 +18,12 @@ class FrictionActiveSet {
   /// For at most `capacity` rows.
   explicit FrictionActiveSet(int capacity);
 
-  /// How contacts that touch are taken to move first.
-  enum class Start {
-    along,  ///< each slides as the motion `from` has it; it sticks where that does not slide
-    stick   ///< all stick
-  };
-  /// Starts from the contacts that touch after the motion `from`. False when the rounds ran out or it went in a circle.
-  bool solve(const FrictionProblem& problem, const Vec6& from, Start start) noexcept;
+  /// Starts from the contacts that touch after the motion `from`, each sliding as that has it, or sticking where it
+  /// does not slide. False when the rounds ran out or it went in a circle.
+  bool solve(const FrictionProblem& problem, const Vec6& from) noexcept;
+
+  /// Starts from an answer that is nearly right: its contacts with force, which slide where `from` has them slide.
+  bool refine(const FrictionProblem& problem, const Vec6& from, const std::vector<FrictionForce>& forces) noexcept;
 
   // Of the last solve that ended:
   const Vec6& z() const noexcept { return z_; }
@@ -49,8 +48,10 @@ class FrictionActiveSet {
   };
   enum class Change { none, some, failed };
 
-  void begin(const Vec6& from, Start start) noexcept;
-  bool add(int row, Start start) noexcept;
+  void set_problem(const Vec6& from) noexcept;
+  void begin(const Vec6& from) noexcept;
+  bool run(bool first) noexcept;
+  bool add(int row) noexcept;
   void set_direction(Member& m, double d0, double d1) noexcept;
   void remove(int position) noexcept;
   /// One round: z_, all forces, error_. False when the system has no solution that can be.

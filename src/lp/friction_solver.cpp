@@ -1,17 +1,25 @@
 #include "lp/friction_solver.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace tegotae {
 namespace {
 
 /// A residual below this part of the wanted motion is the law.
 constexpr double kExact = 1e-7;
+/// Convex neighbors solved one after the other, each to this part of the wanted motion; most that come to the law do so
+/// with the first, and a coarse one tells as well who sticks and who slides.
+constexpr std::array<double, 4> kShifts = {1e-7, 1e-9, 1e-10, 1e-10};
 
 }  // namespace
 
-FrictionSolver::FrictionSolver(int capacity) : frictionless_(capacity), active_set_(capacity), cone_(capacity) {
-  result_.forces.reserve(static_cast<std::size_t>(std::max(FrictionActiveSet::most_forces(), SparseRows::kMax)));
+FrictionSolver::FrictionSolver(int capacity)
+    : frictionless_(capacity), active_set_(capacity), cone_(capacity), shifted_(static_cast<std::size_t>(capacity)) {
+  const auto most = static_cast<std::size_t>(std::max(FrictionActiveSet::most_forces(), SparseRows::kMax));
+  result_.forces.reserve(most);
+  estimate_.reserve(most);
 }
 
 void FrictionSolver::take_frictionless(const QpResult& qp) noexcept {
@@ -32,11 +40,14 @@ void FrictionSolver::take_frictionless(const QpResult& qp) noexcept {
   }
 }
 
-bool FrictionSolver::try_active_set(const FrictionProblem& problem, const Vec6& from, FrictionActiveSet::Start start,
-                                    FrictionMethod method) noexcept {
-  const bool ended = active_set_.solve(problem, from, start);
+bool FrictionSolver::refine(const FrictionProblem& problem, const Vec6& from,
+                            const std::vector<FrictionForce>& forces) noexcept {
+  const bool ended = active_set_.refine(problem, from, forces);
   result_.iterations += active_set_.rounds();
-  if (!ended) return false;
+  return ended && take_active_set(problem, FrictionMethod::refined);
+}
+
+bool FrictionSolver::take_active_set(const FrictionProblem& problem, FrictionMethod method) noexcept {
   result_.forces.clear();
   active_set_.forces(result_.forces);
   result_.residual = coulomb_residual(problem, active_set_.z(), result_.forces);
@@ -45,6 +56,30 @@ bool FrictionSolver::try_active_set(const FrictionProblem& problem, const Vec6& 
   result_.method = method;
   result_.exact = true;
   return true;
+}
+
+bool FrictionSolver::shift(const FrictionProblem& problem) noexcept {
+  // Where a contact slides by s, the convex neighbor opens its gap by mu s. With bounds that are lower by that of the
+  // last answer the next opens less: its fixed point is the law (Acary, Cadoux, Lemaréchal, Malick, ZAMM 2011, after De
+  // Saxcé's bipotential). Which contacts stick, slide and where to is right long before the numbers are.
+  std::copy_n(problem.bounds, problem.normals.rows(), shifted_.begin());
+  FrictionProblem neighbor = problem;
+  neighbor.bounds = shifted_.data();
+  for (const double tolerance : kShifts) {
+    const bool solved = cone_.solve(neighbor, tolerance);
+    result_.iterations += cone_.changes();
+    if (!solved) return false;
+    estimate_.clear();
+    cone_.forces(estimate_);
+    if (refine(problem, cone_.z(), estimate_)) return true;
+    for (int i = 0; i < problem.normals.rows(); ++i) {
+      if (!(problem.mu[i] > 0)) continue;
+      const TangentRows& t = problem.tangents[i];
+      const double s0 = t.row[0].dot(cone_.z()), s1 = t.row[1].dot(cone_.z());
+      shifted_[static_cast<std::size_t>(i)] = problem.bounds[i] - problem.mu[i] * std::sqrt(s0 * s0 + s1 * s1);
+    }
+  }
+  return false;
 }
 
 void FrictionSolver::relax(const FrictionProblem& problem) noexcept {
@@ -62,7 +97,13 @@ void FrictionSolver::relax(const FrictionProblem& problem) noexcept {
   result_.exact = result_.residual <= kExact * problem.wanted.norm();
 }
 
-const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem) noexcept {
+const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
+                                            const std::vector<FrictionForce>& guess) noexcept {
+  if (!guess.empty()) {
+    result_.status = LpStatus::optimal;
+    result_.iterations = 0;
+    if (refine(problem, Vec6::Zero(), guess)) return result_;
+  }
   const QpResult& qp = frictionless_.solve(problem.normals, problem.bounds, problem.wanted);
   take_frictionless(qp);
   if (qp.status != LpStatus::optimal) return result_;
@@ -70,9 +111,10 @@ const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem) noex
                                 [&](const FrictionForce& f) { return problem.mu[f.row] > 0; });
   if (!rubs) return result_;
   const Vec6 from = qp.z;
-  if (try_active_set(problem, from, FrictionActiveSet::Start::along, FrictionMethod::sliding)) return result_;
-  if (try_active_set(problem, from, FrictionActiveSet::Start::stick, FrictionMethod::sticking)) return result_;
-  relax(problem);
+  const bool ended = active_set_.solve(problem, from);
+  result_.iterations += active_set_.rounds();
+  if (ended && take_active_set(problem, FrictionMethod::sliding)) return result_;
+  if (!shift(problem)) relax(problem);
   return result_;
 }
 

@@ -12,7 +12,7 @@ namespace tegotae {
 enum class FrictionMethod {
   frictionless,  ///< no contact with friction carries force
   sliding,       ///< exact, from the frictionless motion
-  sticking,      ///< exact, from all contacts sticking, where the way from the frictionless motion did not end
+  refined,       ///< exact, from the convex neighbor's answer or from the guess
   relaxed        ///< of the convex neighbor: exact (see `exact`) where nothing slides
 };
 
@@ -34,17 +34,23 @@ class FrictionSolver {
  public:
   /// For at most `capacity` rows.
   explicit FrictionSolver(int capacity);
-  const FrictionResult& solve(const FrictionProblem& problem) noexcept;
+  /// `guess`: forces that hold the body where it is, if they are known; taken when they can be made to obey the law.
+  const FrictionResult& solve(const FrictionProblem& problem, const std::vector<FrictionForce>& guess = {}) noexcept;
 
  private:
   void take_frictionless(const QpResult& qp) noexcept;
-  bool try_active_set(const FrictionProblem& problem, const Vec6& from, FrictionActiveSet::Start start,
-                      FrictionMethod method) noexcept;
+  /// Takes what the active set ended at, if it obeys the law.
+  bool take_active_set(const FrictionProblem& problem, FrictionMethod method) noexcept;
+  bool refine(const FrictionProblem& problem, const Vec6& from, const std::vector<FrictionForce>& forces) noexcept;
+  /// From the convex neighbor on towards the law; false when it does not come there.
+  bool shift(const FrictionProblem& problem) noexcept;
   void relax(const FrictionProblem& problem) noexcept;
 
   LeastDistanceSolver frictionless_;
   FrictionActiveSet active_set_;
   RelaxedCone cone_;
+  std::vector<double> shifted_;  // bounds
+  std::vector<FrictionForce> estimate_;
   FrictionResult result_;
 };
 

@@ -7,8 +7,6 @@
 namespace tegotae {
 namespace {
 
-/// Violations below this part of the wanted motion are none. Where rows come ever closer it takes their last digits.
-constexpr double kTolerance = 1e-11;
 /// What is accepted where rounding keeps a row from being taken.
 constexpr double kAccepted = 1e-7;
 /// A unit row whose part outside the span of the others is shorter depends on them.
@@ -16,37 +14,47 @@ constexpr double kDependent = 1e-9;
 /// Far above the 2 to 60 changes that solves take.
 constexpr int kMaxChanges = 300;
 
+LaneBlock product(const RowBlock& rows, const Vec6& z) noexcept {
+  LaneBlock out{};
+  for (int k = 0; k < 6; ++k)
+    for (int lane = 0; lane < kRowLanes; ++lane) out.v[lane] += rows.g[k][lane] * z[k];
+  return out;
+}
+
 }  // namespace
 
 RelaxedCone::RelaxedCone(int capacity)
-    : products_(static_cast<std::size_t>(capacity + kRowLanes)), reach_(static_cast<std::size_t>(capacity)) {}
+    : friction_{LowRankMatrix(capacity), LowRankMatrix(capacity)},
+      bounds_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)) {}
+
+void RelaxedCone::set_problem(const FrictionProblem& problem) noexcept {
+  problem_ = &problem;
+  const int rows = problem.normals.rows();
+  for (int k = 0; k < 2; ++k) {
+    friction_[k].clear();
+    for (int i = 0; i < rows; ++i)
+      friction_[k].push_row(problem.mu[i] > 0 ? Vec6(problem.mu[i] * problem.tangents[i].row[k]) : Vec6::Zero());
+  }
+  for (int i = 0; i < rows; ++i) bounds_[static_cast<std::size_t>(i / kRowLanes)].v[i % kRowLanes] = problem.bounds[i];
+}
 
 bool RelaxedCone::most_violated(double tolerance, Row& out) noexcept {
-  const FrictionProblem& p = *problem_;
-  const int rows = p.normals.rows();
-  for (int begin = 0; begin < rows; begin += kRowLanes) {
-    const RowBlock& block = p.normals.blocks()[begin / kRowLanes];
-    double product[kRowLanes] = {};
-    for (int k = 0; k < 6; ++k)
-      for (int lane = 0; lane < kRowLanes; ++lane) product[lane] += block.g[k][lane] * z_[k];
-    std::copy(product, product + kRowLanes, products_.begin() + begin);
-  }
-  const double far = z_.norm();
+  const int rows = problem_->normals.rows();
   double worst = tolerance;
   int found = -1;
-  for (int i = 0; i < rows; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const double short_by = p.bounds[i] - products_[at];
-    if (!(short_by + reach_[at] * far > worst)) continue;
-    double slip2 = 0;
-    for (int k = 0; k < 2 && p.mu[i] > 0; ++k) {
-      const double s = p.tangents[i].row[k].dot(z_);
-      slip2 += s * s;
-    }
-    const double by = short_by + p.mu[i] * std::sqrt(slip2);
-    if (!(by > worst)) continue;
-    worst = by;
-    found = i;
+  for (int begin = 0; begin < rows; begin += kRowLanes) {
+    const int at = begin / kRowLanes;
+    const LaneBlock n = product(problem_->normals.blocks()[at], z_), t0 = product(friction_[0].blocks()[at], z_),
+                    t1 = product(friction_[1].blocks()[at], z_);
+    const LaneBlock& bound = bounds_[static_cast<std::size_t>(at)];
+    LaneBlock by;
+    for (int lane = 0; lane < kRowLanes; ++lane)
+      by.v[lane] = bound.v[lane] - n.v[lane] + std::sqrt(t0.v[lane] * t0.v[lane] + t1.v[lane] * t1.v[lane]);
+    for (int lane = 0; lane < std::min(kRowLanes, rows - begin); ++lane)
+      if (by.v[lane] > worst) {
+        worst = by.v[lane];
+        found = begin + lane;
+      }
   }
   if (found < 0) return false;
   make_row(found, out);
@@ -119,21 +127,16 @@ bool RelaxedCone::take(const Row& row) noexcept {
   }
 }
 
-bool RelaxedCone::solve(const FrictionProblem& problem) noexcept {
-  problem_ = &problem;
+bool RelaxedCone::solve(const FrictionProblem& problem, double tolerance) noexcept {
+  set_problem(problem);
   span_.clear();
   size_ = changes_ = 0;
   z_ = problem.wanted;
   const double scale = problem.wanted.norm();
-  for (int i = 0; i < problem.normals.rows(); ++i) {
-    const TangentRows& t = problem.tangents[i];
-    reach_[static_cast<std::size_t>(i)] =
-        problem.mu[i] > 0 ? problem.mu[i] * std::sqrt(t.row[0].squaredNorm() + t.row[1].squaredNorm()) : 0;
-  }
   Row row;
-  while (most_violated(kTolerance * scale, row)) {
+  while (most_violated(tolerance * scale, row)) {
     if (take(row)) continue;
-    return !most_violated(kAccepted * scale, row);
+    return !most_violated(std::max(tolerance, kAccepted) * scale, row);
   }
   return true;
 }

@@ -15,8 +15,9 @@ class RelaxedCone {
   /// For at most `capacity` rows; allocates.
   explicit RelaxedCone(int capacity);
 
-  /// False when precision is lost, which leaves standing still.
-  bool solve(const FrictionProblem& problem) noexcept;
+  static constexpr double kFine = 1e-10;
+  /// Limits hold to `tolerance` of the wanted motion. False when precision is lost, which leaves standing still.
+  bool solve(const FrictionProblem& problem, double tolerance = kFine) noexcept;
 
   // Of the last solve that succeeded:
   const Vec6& z() const noexcept { return z_; }
@@ -33,6 +34,7 @@ class RelaxedCone {
     int contact = 0;
   };
 
+  void set_problem(const FrictionProblem& problem) noexcept;
   /// The row that z_ violates most, by more than `tolerance`.
   bool most_violated(double tolerance, Row& out) noexcept;
   void make_row(int contact, Row& out) const noexcept;
@@ -42,8 +44,8 @@ class RelaxedCone {
   void solve_active() noexcept;
 
   const FrictionProblem* problem_ = nullptr;
-  std::vector<double> products_;  ///< N z of each row, by eights
-  std::vector<double> reach_;     ///< the most that μ |T z| can be by |z|
+  LowRankMatrix friction_[2];      ///< tangents times μ
+  std::vector<LaneBlock> bounds_;  ///< b
   SpanBasis span_;
   Row rows_[6];
   double lambda_[6] = {};

@@ -70,7 +70,7 @@ class QpResolver final : public Resolver {
 
   Resolution resolve_with_friction(const FrictionProblem& problem) noexcept override {
     const FrictionResult& r = friction_.solve(problem);
-    return {r.z, status_of(r.status), r.iterations};
+    return {r.z, status_of(r.status), r.iterations, &r.forces};
   }
 
  private:

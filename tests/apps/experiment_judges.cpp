@@ -173,6 +173,22 @@ void judge_task_time(const std::string& at) {
   }
 }
 
+/// Whitney's diagram by his formula (1982), and closed forms that need no program: a block on an incline slides from
+/// tan b = mu on, a sliding block is held by mu N against its way whatever its heading.
+void judge_friction(const std::string& at) {
+  int right = 0, all = 0;
+  for (const Row& r : read_table(at + "/jamming.csv")) {
+    const double mu = r["mu"], lambda = r["lambda"], side = r["fx_over_fz"], moment = r["m_over_r_fz"];
+    const bool slides = std::abs(side) < 1 / mu && std::abs(moment + mu * (1 + lambda) * side) < lambda;
+    ++all;
+    right += slides == (r["slid"] == 1) ? 1 : 0;
+  }
+  CHECK(right >= 0.99 * all);
+  for (const Row& r : read_table(at + "/sliding.csv")) CHECK(r["ratio"] == Approx(1).epsilon(0.01));
+  for (const Row& r : read_table(at + "/insertion_force.csv"))
+    CHECK(r["measured_n"] == Approx(r["expected_n"]).epsilon(0.05).margin(0.01));
+}
+
 }  // namespace
 
 bool meets(double value, const std::string& target) {
@@ -186,8 +202,9 @@ bool meets(double value, const std::string& target) {
 
 void judge_tables(const std::string& name, const std::string& at) {
   static const std::map<std::string, void (*)(const std::string&)> judges = {
-      {"wall", judge_wall}, {"insertion", judge_insertion}, {"widening", judge_widening},  {"wrench", judge_wrench},
-      {"hold", judge_hold}, {"ladder", judge_ladder},       {"task-time", judge_task_time}};
+      {"wall", judge_wall},         {"insertion", judge_insertion}, {"widening", judge_widening},
+      {"wrench", judge_wrench},     {"hold", judge_hold},           {"ladder", judge_ladder},
+      {"friction", judge_friction}, {"task-time", judge_task_time}};
   judges.at(name)(at);
 }
 

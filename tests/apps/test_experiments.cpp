@@ -55,7 +55,8 @@ void check_experiment(const std::string& name, const std::string& options) {
 }  // namespace
 
 TEST_CASE("the short form of each experiment holds its claims", "[experiment]") {
-  check_experiment(GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench"), "--quick");
+  check_experiment(GENERATE("wall", "insertion", "task-time", "ladder", "hold", "widening", "wrench", "friction"),
+                   "--quick");
 }
 
 // The short ladder is for the default resolver; with the baselines, which may jam, it takes minutes.

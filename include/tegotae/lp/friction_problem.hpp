@@ -23,4 +23,12 @@ struct FrictionProblem {
   Vec6 wanted;                   ///< the motion that the springs ask for, m
 };
 
+/// The force of one contact, in the unit of its FrictionProblem.
+struct FrictionForce {
+  int row = 0;                    ///< of the problem
+  double normal = 0;              ///< ν > 0
+  double tangential[2] = {0, 0};  ///< τ along the two tangents
+  bool slides = false;            ///< the point slides; otherwise it sticks, or there is no friction
+};
+
 }  // namespace tegotae

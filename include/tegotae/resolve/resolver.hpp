@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/lp/friction_problem.hpp"
@@ -15,6 +16,9 @@ struct Resolution {
   Vec6 motion = Vec6::Zero();                     ///< in whitened coordinates; zero unless solved
   ResolveStatus status = ResolveStatus::stalled;  ///< how it ended
   int iterations = 0;                             ///< pivots, for TickReport::iterations
+  /// With friction, if the resolver knows them: the forces behind the motion, in its memory until the next call. They
+  /// spare the loop a program of its own.
+  const std::vector<FrictionForce>* forces = nullptr;
 };
 
 /// Turns a wanted motion of the held part into one that the limits allow. Motions are in whitened coordinates, m: the
