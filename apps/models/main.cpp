@@ -10,6 +10,7 @@
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
 #include "shared/process.hpp"
+#include "tegotae/core/version.hpp"
 
 namespace {
 
@@ -43,6 +44,7 @@ int run(int argc, char** argv) {
   CLI::App app(
       "Writes the parts of the experiments as OBJ files, in mm: pegs for a hole of 20 mm, a block with that "
       "hole, a cube, a wall and a floor.");
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   std::string out;
   std::vector<double> ratios;
   int segments = 64, rings = 8;

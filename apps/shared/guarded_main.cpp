@@ -1,5 +1,6 @@
 #include "shared/guarded_main.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -25,6 +26,18 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+/// What is wrong with a command line; of a program with subcommands that was given another one, which it has.
+std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+  const std::string given = argc > 1 ? argv[1] : "";
+  const bool known =
+      std::any_of(commands.begin(), commands.end(), [&](const CLI::App* c) { return c->get_name() == given; });
+  if (commands.empty() || given.empty() || given.front() == '-' || known) return first_line(error.what());
+  std::string list;
+  for (const CLI::App* c : commands) list += (list.empty() ? "" : ", ") + c->get_name();
+  return "there is no command " + given + ", but " + list;
+}
+
 int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   try {
@@ -33,7 +46,7 @@ int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::cerr << app.get_name() << ": " << first_line(e.what()) << " (see --help)\n";
+    std::cerr << app.get_name() << ": " << usage_error(app, argc, argv, e) << " (see --help)\n";
     return kBadInput;
   } catch (const Error& e) {
     std::cerr << app.get_name() << ": " << e.what() << "\n";

@@ -197,6 +197,7 @@ std::unique_ptr<Segment> Segment::create(const std::string& name) {
 
 std::unique_ptr<Segment> Segment::open(const std::string& name, SegmentRole role) {
   FileDescriptor fd = opened(name, role == SegmentRole::observer ? O_RDONLY : O_RDWR);
+  if (fd.get() < 0 && errno == ENOENT) fail(name, "there is none; start its device first (`tegotae-device`)");
   if (fd.get() < 0) fail_errno(name, "cannot be opened");
   check_file(fd.get(), name);
   if (role == SegmentRole::application && !lock_byte(fd.get(), TEGOTAE_SHM_LOCK_APPLICATION))

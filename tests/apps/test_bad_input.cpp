@@ -97,6 +97,15 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
       check_refused(run_program("tegotae", "check " + (folder / "bad.toml")), c.named);
   }
   check_refused(run_program("tegotae", "run --fast " + (folder / "none.toml")), {"none.toml: no such file"});
+  check_refused(run_program("tegotae", "run --fast --hold lid " + (folder / "scene.toml")),
+                {"no part is named lid (there are block, peg)"});
+  // A file of parts is told from a damaged scene, whatever is in it and however its ending is written.
+  for (const std::string part :
+       {"tet.obj", "pump.STEP", "pump.stp", "a.glb", "a.gltf", "a.3mf", "a.Stl", "a.ply", "a.off"}) {
+    if (part != "tet.obj") folder.write(part, "anything");
+    check_refused(run_program("tegotae", "run --fast " + (folder / part)),
+                  {part + ": is a file of parts", "tegotae import"});
+  }
 }
 
 TEST_CASE("bad usage is refused", "[bad_input]") {
@@ -104,7 +113,7 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
   write_small_scene(folder);
   const std::string scene = folder / "scene.toml";
   check_refused(run_program("tegotae", ""), {"--help"});
-  check_refused(run_program("tegotae", "dance"), {"--help"});
+  check_refused(run_program("tegotae", "dance"), {"no command dance", "run", "review", "--help"});
   check_refused(run_program("tegotae", "run"), {"SCENE"});
   check_refused(run_program("tegotae", "check"), {"FILE"});
   check_refused(run_program("tegotae", "run --frobnicate " + scene), {"frobnicate"});
@@ -125,7 +134,8 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
 }
 
 TEST_CASE("help and version are no errors", "[bad_input]") {
-  for (const std::string program : {"tegotae", "peg_in_hole"}) {
+  for (const std::string program :
+       {"tegotae", "tegotae-device", "peg_in_hole", "tegotae-models", "tegotae-load-mesh"}) {
     for (const std::string flag : {"--help", "--version"}) {
       const Output o = run_program(program, flag);
       CHECK(o.code == 0);

@@ -225,6 +225,7 @@ TEST_CASE("a run cannot take a device that is not there, nor in virtual time", "
   const Output absent = run_program("tegotae", "run --device shm:tegotae-nobody " + scene);
   CHECK(absent.code == 2);
   CHECK(absent.err.find("tegotae-nobody") != std::string::npos);
+  CHECK(absent.err.find("start its device first") != std::string::npos);
   CHECK(run_program("tegotae", "run --device usb:3 " + scene).err.find("shm:NAME") != std::string::npos);
   CHECK(run_program("tegotae", "run --fast --device shm:x " + scene).code == 2);
 }
