@@ -46,6 +46,7 @@ int import_here(const ImportOptions& options) {
     write_scene(assembly, options.file, options.folder, options.hold, reading.progress);
   }
   for (const std::string& note : assembly.notes) std::cerr << "tegotae: note: " << note << "\n";
+  if (options.quiet) return kDone;
   std::size_t triangles = 0;
   for (const AssemblyPart& part : assembly.parts) triangles += assembly.shapes[part.shape]->triangles.size();
   std::cout << scene.string() << ": " << assembly.parts.size() << " part" << (assembly.parts.size() == 1 ? "" : "s")

@@ -12,6 +12,7 @@ struct ImportOptions {
   std::string folder;
   std::string hold;  ///< name of the part to hold; empty: none
   AssemblyOptions assembly;
+  bool quiet = false;  ///< nothing on stdout
 };
 
 /// Adds the subcommand `import`.

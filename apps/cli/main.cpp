@@ -8,6 +8,7 @@
 #include "cli/check.hpp"
 #include "cli/import.hpp"
 #include "cli/length_option.hpp"
+#include "cli/view_command.hpp"
 #include "experiments/experiments.hpp"
 #include "review/review_command.hpp"
 #include "shared/run_options.hpp"
@@ -15,7 +16,6 @@
 #include "tegotae/import/isolated_load.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
 #include "tries/try_command.hpp"
-#include "view/replay.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -23,17 +23,6 @@ using namespace tegotae::apps;
 namespace {
 constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
 
-int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
-                   const std::string& address) {
-  const std::string bundle = view::replay_bundle(recording, scene, html);
-  if (html.empty())
-    view::serve_replay(
-        bundle, [&] { return review::recording_report(recording, scene); }, view_address(address), catch_interrupts(),
-        [](const std::string& url) { announce_page(url); });
-  else
-    view::write_replay(bundle, html);
-  return kDone;
-}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -65,6 +54,9 @@ int main(int argc, char** argv) {
       replay->add_option("--html", html, "Write the page to a file that needs no server, then exit")->type_name("FILE");
   add_view_address(*replay, address)->excludes(file);
 
+  ViewOptions view_options;
+  CLI::App* view = add_view(app, view_options);
+
   CheckOptions check_options;
   CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
   check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")
@@ -84,7 +76,7 @@ int main(int argc, char** argv) {
   const CLI::App* tries = tries::add_try(app, try_options);
 
   bool trusted = false;
-  for (CLI::App* reads : {run, check})
+  for (CLI::App* reads : {run, view, check})
     reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
 
   bench::BenchOptions bench_options;
@@ -126,6 +118,7 @@ int main(int argc, char** argv) {
     };
     check_options.load = load;
     if (check->parsed()) return check_files(check_options);
+    if (view->parsed()) return view_file(view_options, load);
     if (measure->parsed()) return bench::run_bench(bench_options);
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, address);
     if (experiment->parsed()) return experiments::run(trials);

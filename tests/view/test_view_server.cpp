@@ -1,6 +1,8 @@
 // Where the server listens, what slow clients can do to the run, and what a page sees of another process's pen.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "catch.hpp"
@@ -134,4 +136,27 @@ TEST_CASE("a page that is open to other machines says so, and where it is for th
   check_going_on(own);
   check_end(own);
   CHECK(own.err().find("warning") == std::string::npos);
+}
+
+TEST_CASE("anything can be looked at: a mesh, a scene that holds nothing, a recording") {
+  const TempFolder folder, temporary;
+  write_small_scene(folder);
+  std::string scene = read_text(folder / "scene.toml");
+  scene.replace(scene.find("held = true"), 11, "held = false");
+  folder.write("loose.toml", scene);
+  REQUIRE(run_program("tegotae", "run --fast --record " + (folder / "r.csv") + " " + (folder / "scene.toml")).code ==
+          0);
+  ::setenv("TMPDIR", (temporary / "").c_str(), 1);
+  for (const std::string file : {"tet.obj", "loose.toml", "r.csv"}) {
+    CAPTURE(file);
+    Served s({"tegotae", "view", folder / file, "--unit", "mm"});
+    CHECK(ask(s.port, get(s, "/scene")) == 200);
+    s.interrupt();
+    CHECK(s.wait() == 0);
+    CHECK((s.out().find("take another one in the page") != std::string::npos) == (file != "r.csv"));
+    // What was made of a mesh is gone with the page.
+    for (const auto& left : std::filesystem::directory_iterator(temporary / ""))
+      CHECK(left.path().filename().string().rfind("tegotae-view", 0) != 0);
+  }
+  ::unsetenv("TMPDIR");
 }
