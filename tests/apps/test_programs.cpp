@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "apps/program_summary.hpp"
 #include "catch.hpp"
@@ -38,7 +40,52 @@ std::string on_a_terminal(const std::string& program, const std::vector<std::str
   return text;
 }
 
+/// Names of the keys of `value`, and of the objects in it but those whose keys are reasons.
+void collect_keys(const json& value, std::set<std::string>& keys) {
+  if (value.is_array())
+    for (const auto& item : value) collect_keys(item, keys);
+  if (!value.is_object()) return;
+  for (const auto& [key, inner] : value.items()) {
+    keys.insert(key);
+    if (key != "force_off") collect_keys(inner, keys);
+  }
+}
+
 }  // namespace
+
+TEST_CASE("the table of the summary is complete, and names nothing that is not there", "[programs]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const Output o = run_program("tegotae", "run --fast --json " + (folder / "scene.toml"));
+  REQUIRE(o.code == 0);
+  const json summary = json::parse(o.out);
+  std::set<std::string> keys;
+  collect_keys(summary, keys);
+
+  const std::string docs = read_text(TEGOTAE_TEST_DATA_DIR "/../docs/programs.md");
+  const std::size_t begin = docs.find("## The summary as JSON"), end = docs.find("\n## ", begin + 1);
+  REQUIRE(begin != docs.npos);
+  const std::string table = docs.substr(begin, end - begin);
+  for (const std::string& key : keys) {
+    CAPTURE(key);
+    CHECK(table.find("`" + key + "`") != table.npos);
+  }
+  std::istringstream rows(table);
+  std::size_t named = 0;
+  for (std::string row; std::getline(rows, row);) {
+    if (row.rfind("| `", 0) != 0) continue;
+    const std::string fields = row.substr(0, row.find('|', 1));
+    for (std::size_t at = fields.find('`'); at != fields.npos; at = fields.find('`', at + 1)) {
+      const std::size_t close = fields.find('`', at + 1);
+      const std::string field = fields.substr(at + 1, close - at - 1);
+      CAPTURE(field);
+      CHECK(summary.contains(field));
+      ++named;
+      at = close;
+    }
+  }
+  CHECK(named == summary.size());
+}
 
 TEST_CASE("a run in free space follows the pen", "[programs]") {
   const TempFolder folder;
