@@ -9,7 +9,7 @@ namespace tegotae {
 namespace {
 
 /// Rounds after which it will not end; those that end take 2 to 12.
-constexpr int kMaxRounds = 16;
+constexpr int kMaxRounds = 25;
 /// A contact that changed between sliding and sticking so often goes in a circle.
 constexpr int kMostFlips = 4;
 /// Less than this part of the wanted motion is no motion, and no violation.
