@@ -1,19 +1,14 @@
 #include "cli/import.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstring>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>
 
 #include "cli/length_option.hpp"
 #include "cli/scene_writer.hpp"
-#include "shared/process.hpp"
+#include "cli/watched_child.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
@@ -32,7 +27,7 @@ void require_part(const Assembly& assembly, const ImportOptions& options) {
               (parts.size() > 8 ? ", ...)" : ")"));
 }
 
-int import_here(const ImportOptions& options) {
+int import_here(const ImportOptions& options, const std::function<void(const std::string&)>& at) {
   const std::filesystem::path scene = std::filesystem::path(options.folder) / "scene.toml";
   if (std::filesystem::exists(scene))
     throw Error(scene.string() + ": exists already; remove it or choose another folder");
@@ -40,7 +35,10 @@ int import_here(const ImportOptions& options) {
   Assembly assembly;
   {
     StatusLine status;
-    reading.progress = [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); };
+    reading.progress = [&](const char* what, std::size_t done, std::size_t total) {
+      at(what);
+      status.show(what, done, total);
+    };
     assembly = read_assembly(options.file, reading);
     require_part(assembly, options);
     write_scene(assembly, options.file, options.folder, options.hold, reading.progress);
@@ -56,32 +54,6 @@ int import_here(const ImportOptions& options) {
     std::cout << "no part is held yet: run it with `tegotae run " << scene.string()
               << " --hold NAME`, or give a part held = true\n";
   return kDone;
-}
-
-/// Runs `body` in a child process: OpenCASCADE follows null pointers in some damaged files, and then the child dies.
-int in_child(const std::string& file, const std::function<int()>& body) {
-  std::cout.flush();
-  const pid_t child = fork();
-  if (child < 0) throw Error(file + ": cannot be read: " + std::strerror(errno));
-  if (child == 0) {
-    int code = kRunFailed;
-    try {
-      code = body();
-    } catch (const Error& e) {
-      std::cerr << "tegotae: " << e.what() << "\n";
-      code = kBadInput;
-    } catch (const std::exception& e) {
-      std::cerr << "tegotae: " << file << ": " << e.what() << "\n";
-    }
-    _exit(finish_output("tegotae", code));
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
-  const int signal = WTERMSIG(status);
-  if (signal == SIGINT || signal == SIGTERM) return kRunFailed;
-  throw Error(file + ": damaged: its reader crashed (" + strsignal(signal) + ")");
 }
 
 }  // namespace
@@ -102,11 +74,16 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
                     "STEP: how far facets may be from curved faces that mate (5um)");
   add_length_option(*import, "--coarse-chord", options.assembly.coarse_chord,
                     "STEP: how far they may be from other curved faces (50um)");
+  import->add_option("--seconds", options.seconds, "How long reading, or the facets of one part, may take (600)")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->type_name("S");
   return import;
 }
 
 int import_file(const ImportOptions& options) {
-  return in_child(options.file, [&] { return import_here(options); });
+  const char* hint =
+      "is its unit right? For fewer facets tegotae import has --chord and --coarse-chord, for more time --seconds";
+  return watched_child(options.file, options.seconds, hint, [&](const auto& at) { return import_here(options, at); });
 }
 
 }  // namespace tegotae::apps

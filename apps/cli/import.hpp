@@ -12,7 +12,8 @@ struct ImportOptions {
   std::string folder;
   std::string hold;  ///< name of the part to hold; empty: none
   AssemblyOptions assembly;
-  bool quiet = false;  ///< nothing on stdout
+  bool quiet = false;    ///< nothing on stdout
+  double seconds = 600;  ///< for each thing that takes its time
 };
 
 /// Adds the subcommand `import`.

@@ -1,12 +1,16 @@
 #include "import/occt_shape.hpp"
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <GCPnts_TangentialDeflection.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
+#include <Precision.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_DataMapOfShapeInteger.hxx>
@@ -23,8 +27,43 @@ constexpr double kMillimeter = 1e-3;
 // Turn between neighboring facets, rad: what small curved faces get besides the chord error.
 constexpr double kFacetAngle = 0.35;
 
+// Corners of a plane face from which on OpenCASCADE's default algorithm, whose time grows with their square, takes more
+// than 0.1 s.
+constexpr int kManyCorners = 2000;
+
 Vec3 direction(const gp_Dir& d) {
   return {d.X(), d.Y(), d.Z()};
+}
+
+/// How many corners the bounds of a face get; those that nobody can follow count nothing.
+int corners_of(const TopoDS_Face& face, const IMeshTools_Parameters& settings) {
+  int corners = 0;
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+    const TopoDS_Edge& edge = TopoDS::Edge(e.Current());
+    if (BRep_Tool::Degenerated(edge) || !BRep_Tool::IsGeometric(edge)) continue;
+    const BRepAdaptor_Curve curve(edge);
+    if (Precision::IsInfinite(curve.FirstParameter()) || Precision::IsInfinite(curve.LastParameter())) continue;
+    corners += GCPnts_TangentialDeflection(curve, settings.Angle, settings.Deflection).NbPoints() - 1;
+  }
+  return corners;
+}
+
+/// Whether a face has the triangles of a disk with holes whose corners are all on its bounds, by Euler's formula.
+bool is_whole(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation)& mesh = BRep_Tool::Triangulation(face, location);
+  int bounds = 0;
+  for (TopExp_Explorer w(face, TopAbs_WIRE); w.More(); w.Next()) ++bounds;
+  return !mesh.IsNull() && mesh->NbTriangles() == mesh->NbNodes() + 2 * (bounds - 1) - 2;
+}
+
+/// Triangulates a plane face of many corners by the faster algorithm. That leaves some faces out; what is not whole is
+/// left to the default one.
+void triangulate_large_plane(const TopoDS_Face& face, IMeshTools_Parameters settings) {
+  if (BRepAdaptor_Surface(face).GetType() != GeomAbs_Plane || corners_of(face, settings) < kManyCorners) return;
+  settings.MeshAlgo = IMeshTools_MeshAlgoType_Delabella;
+  BRepMesh_IncrementalMesh(face, settings);
+  if (!is_whole(face)) BRepTools::Clean(face);
 }
 
 /// Puts the triangulations of the faces of a shape together, joining nodes where the faces share edges.
@@ -188,6 +227,7 @@ void tessellate(const TopoDS_Shape& shape, double chord) {
   settings.Deflection = chord / kMillimeter;
   settings.Angle = kFacetAngle;
   settings.MinSize = 0.1 * settings.Deflection;
+  for (const TopoDS_Face& face : faces_of(shape)) triangulate_large_plane(face, settings);
   BRepMesh_IncrementalMesh(shape, settings);
 }
 

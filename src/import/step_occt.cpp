@@ -30,6 +30,7 @@
 #include "import/occt_triangles.hpp"
 #include "import/part_file.hpp"
 #include "import/read_parts.hpp"
+#include "import/utf8.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -108,7 +109,7 @@ class StepReader {
     for (const TDF_Label& root : roots) add(root, root, TopLoc_Location(), groups, std::nullopt);
     pair_faces();
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      if (options_.progress) options_.progress("tessellating", i, leaves_.size());
+      if (options_.progress) options_.progress(("tessellating " + described(leaves_[i])).c_str(), i, leaves_.size());
       make_shape(i);
     }
     tell_unread();
@@ -117,6 +118,16 @@ class StepReader {
   }
 
  private:
+  struct Leaf {
+    TopoDS_Shape shape;
+    std::string name;
+    std::vector<TopoDS_Face> faces;
+    std::vector<CadFace> cad;
+    std::vector<bool> fine;
+    std::optional<Color> color;
+    bool tessellated = false;
+  };
+
   void open() {
     if (options_.progress) options_.progress("reading the file", 0, 0);
     STEPCAFControl_Controller::Init();
@@ -249,6 +260,16 @@ class StepReader {
     }
   }
 
+  /// Name and size: facets by the million come from a unit that is not the part's.
+  static std::string described(const Leaf& leaf) {
+    Eigen::AlignedBox3d box;
+    for (const CadFace& face : leaf.cad)
+      if (!face.box.isEmpty()) box.extend(face.box);
+    char size[32];
+    std::snprintf(size, sizeof size, "%.3g m", box.isEmpty() ? 0.0 : box.diagonal().norm());
+    return '"' + printable(leaf.name) + "\" (" + size + " across)";
+  }
+
   void make_shape(std::size_t i) {
     Leaf& leaf = leaves_[i];
     // Fine faces first: what is finer than asked for is kept, and its edges with it.
@@ -304,16 +325,6 @@ class StepReader {
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
     if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
   }
-
-  struct Leaf {
-    TopoDS_Shape shape;
-    std::string name;
-    std::vector<TopoDS_Face> faces;
-    std::vector<CadFace> cad;
-    std::vector<bool> fine;
-    std::optional<Color> color;
-    bool tessellated = false;
-  };
 
   const std::string &path_, &bytes_;
   const AssemblyOptions& options_;

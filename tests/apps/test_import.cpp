@@ -95,6 +95,24 @@ TEST_CASE("clashes are listed by name, depth and place", "[import]") {
 }
 
 #ifdef TEGOTAE_HAS_STEP
+TEST_CASE("an import that takes too long says at what, and leaves nothing", "[import]") {
+  const TempFolder folder;
+  StepSizes huge;  // as when millimeters are taken for meters: facets of 5 um on cones of 6 m take minutes
+  for (double* size :
+       {&huge.plate_x, &huge.plate_y, &huge.plate_z, &huge.bore, &huge.bushing_outer, &huge.bushing_inner,
+        &huge.bushing_length, &huge.shaft, &huge.shaft_length, &huge.window, &huge.dowel_hole, &huge.dowel,
+        &huge.dowel_length, &huge.chamfer_length, &huge.chamfer_depth, &huge.cover_z, &huge.bore_at, &huge.dowel_at})
+    *size *= 1000;
+  write_step_assembly(folder / "huge.step", huge, "MM", "AP214IS");
+  const Output o = run_program("tegotae", "import " + (folder / "huge.step") + " --seconds 2 -o " + (folder / "out"));
+  INFO(o.err);
+  CHECK(o.code == 2);
+  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+  for (const char* part : {"huge.step: not read: tessellating \"", " m across) took more than 2 s", "unit", "--chord"})
+    CHECK(o.err.find(part) != std::string::npos);
+  CHECK(!std::filesystem::exists(folder / "out"));
+}
+
 TEST_CASE("damaged STEP files end in one line, whatever the reader does with them", "[import]") {
   const TempFolder folder;
   write_step_assembly(folder / "a.step", {}, "MM", "AP214IS");

@@ -2,15 +2,22 @@
 
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Writer.hxx>
+#include <StepData_StepModel.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <XCAFApp_Application.hxx>
@@ -18,6 +25,8 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Circ.hxx>
+#include <gp_Pln.hxx>
 #include <gp_Trsf.hxx>
 #include <stdexcept>
 
@@ -67,16 +76,20 @@ TopoDS_Shape cover(const StepSizes& s) {
   return body;
 }
 
+double millimeters(const std::string& unit) {
+  if (unit == "MM") return 1;
+  if (unit == "INCH") return 25.4;
+  if (unit == "M") return 1000;
+  throw std::runtime_error("unknown unit " + unit);
+}
+
 TopLoc_Location at(double x, double y, double z) {
   gp_Trsf t;
   t.SetTranslation(gp_Vec(x, y, z));
   return t;
 }
 
-}  // namespace
-
-void write_step_assembly(const std::string& path, const StepSizes& s, const std::string& unit,
-                         const std::string& schema) {
+Handle(TDocStd_Document) new_document(const std::string& unit, const std::string& schema) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPCAFControl_Controller::Init();
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
@@ -84,6 +97,41 @@ void write_step_assembly(const std::string& path, const StepSizes& s, const std:
   Interface_Static::SetCVal("write.step.schema", schema.c_str());
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  return document;
+}
+
+void write(const Handle(TDocStd_Document) & document, const std::string& path, const std::string& unit) {
+  STEPCAFControl_Writer writer;
+  writer.SetColorMode(true);
+  writer.SetNameMode(true);
+  // OpenCASCADE 7.8 takes the unit's name from "write.step.unit" and the lengths from here.
+  writer.ChangeWriter().Model()->SetWriteLengthUnit(millimeters(unit));
+  if (!writer.Transfer(document, STEPControl_AsIs) || writer.Write(path.c_str()) != IFSelect_RetDone)
+    throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace
+
+void write_step_perforated(const std::string& path, int rows) {
+  constexpr double pitch = 10, radius = 2.5, thickness = 2;
+  const Handle(TDocStd_Document) document = new_document("MM", "AP214IS");
+  const double side = pitch * rows;
+  BRepBuilderAPI_MakePolygon outline(gp_Pnt(0, 0, 0), gp_Pnt(side, 0, 0), gp_Pnt(side, side, 0), gp_Pnt(0, side, 0),
+                                     true);
+  BRepBuilderAPI_MakeFace face(gp_Pln(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), outline);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const gp_Ax2 center(gp_Pnt((i + 0.5) * pitch, (j + 0.5) * pitch, 0), gp_Dir(0, 0, -1));
+      face.Add(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(center, radius))));
+    }
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())
+      ->AddShape(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, thickness)).Shape(), false);
+  write(document, path, "MM");
+}
+
+void write_step_assembly(const std::string& path, const StepSizes& s, const std::string& unit,
+                         const std::string& schema) {
+  const Handle(TDocStd_Document) document = new_document(unit, schema);
   const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   const Handle(XCAFDoc_ColorTool) colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
 
@@ -123,11 +171,7 @@ void write_step_assembly(const std::string& path, const StepSizes& s, const std:
       TopLoc_Location(turned) * at(-s.bore_at, 0, -s.shaft_length / 2), "Welle");
   shapes->UpdateAssemblies();
 
-  STEPCAFControl_Writer writer;
-  writer.SetColorMode(true);
-  writer.SetNameMode(true);
-  if (!writer.Transfer(document, STEPControl_AsIs) || writer.Write(path.c_str()) != IFSelect_RetDone)
-    throw std::runtime_error("cannot write " + path);
+  write(document, path, unit);
 }
 
 }  // namespace tegotae::test

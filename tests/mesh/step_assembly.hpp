@@ -29,4 +29,7 @@ struct StepSizes {
 void write_step_assembly(const std::string& path, const StepSizes& sizes, const std::string& unit,
                          const std::string& schema);
 
+/// Writes a plate of `rows` times `rows` round holes, pitch 10 mm, diameter 5 mm, 2 mm thick, in mm.
+void write_step_perforated(const std::string& path, int rows);
+
 }  // namespace tegotae::test

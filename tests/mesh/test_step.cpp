@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -178,6 +179,40 @@ TEST_CASE("faces that mate are tessellated finer than others", "[step]") {
   const Assembly b = read_assembly(folder / "a.step", fine);
   const Radii finer = radii(mesh_of(b, "Blech"), 20, 15, 16);
   CHECK(finer.facets > 2 * window.facets);
+}
+
+TEST_CASE("a plane face of many round holes takes time in proportion to its holes", "[step]") {
+  const TempFolder folder;
+  const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };  // of this process's threads
+  AssemblyOptions options;
+  options.coarse_chord = options.chord;
+  double begin = 0;  // OpenCASCADE's reading before takes its time too
+  options.progress = [&](const char* what, std::size_t, std::size_t) {
+    if (std::string(what).rfind("tessellating \"", 0) == 0) begin = seconds();
+  };
+  std::vector<double> took;
+  for (const int rows : {8, 24}) {
+    write_step_perforated(folder / "p.step", rows);
+    const Assembly a = read_assembly(folder / "p.step", options);
+    REQUIRE(begin > 0);
+    took.push_back(seconds() - begin);
+    for (const std::string& note : a.notes) UNSCOPED_INFO(note);
+    CHECK(a.notes.empty());
+    REQUIRE(a.shapes.size() == 1);
+    const TriangleMesh& mesh = *a.shapes[0];
+    const MeshReport r = report(mesh);
+    CHECK(r.closed);
+    CHECK(r.components == 1);
+    CHECK(r.degenerate_faces == 0);
+    // Facets lie outside of the holes' circles by at most the chord error: of 2.5 mm these are 2/1000.
+    const int holes = rows * rows;
+    CHECK(volume(mesh) == Approx(1e-9 * 2 * holes * (100 - M_PI * 2.5 * 2.5)).epsilon(2e-3));
+    // A surface of genus `holes`.
+    CHECK(mesh.vertices.size() == mesh.triangles.size() / 2 + 2 - 2 * static_cast<std::size_t>(holes));
+    CHECK(mesh.vertices.size() > static_cast<std::size_t>(2 * 20 * holes));
+  }
+  // Nine times the holes. The default algorithm takes 38 times as long, the one for large planes 16 times.
+  CHECK(took[1] < 25 * took[0]);
 }
 
 TEST_CASE("STEP files that cannot be read are refused in one line", "[step]") {
