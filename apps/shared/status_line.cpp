@@ -4,7 +4,8 @@
 
 #include <cstdio>
 #include <iostream>
-#include <set>
+
+#include "loop/scene_parts.hpp"
 
 namespace tegotae::apps {
 
@@ -35,12 +36,7 @@ SceneFile load_with_progress(const std::string& path, SceneOptions options) {
 }
 
 void print_notes(const Scene& scene) {
-  std::set<const TriangleMesh*> told;
-  for (const Part& part : scene.parts) {
-    if (!told.insert(part.mesh.get()).second) continue;
-    for (const std::string& note : part.mesh->notes)
-      std::cerr << "tegotae: note: " << part.mesh->name << ": " << note << "\n";
-  }
+  for (const std::string& note : notes_of(scene)) std::cerr << "tegotae: note: " << note << "\n";
 }
 
 }  // namespace tegotae::apps

@@ -1,5 +1,7 @@
 #include "loop/scene_parts.hpp"
 
+#include <set>
+
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -22,6 +24,16 @@ SceneParts::SceneParts(const Scene& scene) : held(&held_part(scene)) {
     fixed.push_back(&scene.parts[i]);
     fixed_id.push_back({i});
   }
+}
+
+std::vector<std::string> notes_of(const Scene& scene) {
+  std::vector<std::string> notes;
+  std::set<const TriangleMesh*> seen;
+  for (const Part& part : scene.parts) {
+    if (!seen.insert(part.mesh.get()).second) continue;
+    for (const std::string& note : part.mesh->notes) notes.push_back(part.mesh->name + ": " + note);
+  }
+  return notes;
 }
 
 }  // namespace tegotae

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "tegotae/core/ids.hpp"
@@ -24,5 +25,8 @@ struct SceneParts {
   std::vector<PartId> fixed_id;  ///< of each fixed part
   explicit SceneParts(const Scene& scene);
 };
+
+/// What of a scene's meshes is not as their files say, "MESH: what", once for each mesh.
+std::vector<std::string> notes_of(const Scene& scene);
 
 }  // namespace tegotae

@@ -126,6 +126,18 @@ tegotae_scene* tegotae_scene_load(const char* path) {
   });
 }
 
+int64_t tegotae_scene_notes(const tegotae_scene* scene, char* text, size_t capacity) {
+  return guarded<int64_t>(kFailed, [&] {
+    std::string all;
+    for (const std::string& note : notes_of(required(scene, "scene").scene)) all += note + '\n';
+    if (capacity == 0) return static_cast<int64_t>(all.size());
+    const std::size_t copied = std::min(all.size(), capacity - 1);
+    std::copy_n(all.data(), copied, &required(text, "text"));
+    text[copied] = '\0';
+    return static_cast<int64_t>(all.size());
+  });
+}
+
 int64_t tegotae_scene_add(tegotae_scene* scene, const char* name, const double* vertices, size_t vertex_count,
                           const uint32_t* triangles, size_t triangle_count, const double pose[7], int held) {
   return guarded<int64_t>(kFailed, [&] {

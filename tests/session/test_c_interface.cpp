@@ -1,10 +1,12 @@
 // tegotae.h, called as C would: closed forms, and what goes wrong is told and never thrown.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "apps/run_program.hpp"
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/coupling/coupling.hpp"
@@ -13,6 +15,7 @@
 using tegotae::CouplingSettings;
 using tegotae::TriangleMesh;
 using tegotae::Vec3;
+using tegotae::test::TempFolder;
 
 namespace {
 
@@ -147,6 +150,58 @@ TEST_CASE("what goes wrong in a call from C is told", "[c_interface]") {
   tegotae_scene_destroy(scene);
   tegotae_scene_destroy(nullptr);
   tegotae_rig_destroy(nullptr);
+}
+
+TEST_CASE("what is not read of a scene's mesh files is told in C", "[c_interface]") {
+  const TempFolder folder;
+  // A triangle that moves and that ACME shows otherwise; the second part shares its mesh, the third has one of its own.
+  folder.write("c.bin",
+               std::string("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0", 36));
+  folder.write("told.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+"animations":[{"channels":[],"samplers":[]}],"extensionsUsed":["ACME_shape"],"buffers":[{"byteLength":36,"uri":"c.bin"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]})");
+  folder.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("s.toml", R"([[part]]
+name = "a"
+mesh = "told.gltf"
+held = true
+[[part]]
+name = "b"
+mesh = "told.gltf"
+position = [5, 0, 0]
+[[part]]
+name = "c"
+mesh = "plain.obj"
+position = [0, 5, 0]
+)");
+  tegotae_scene* scene = tegotae_scene_load((folder / "s.toml").c_str());
+  INFO(error());
+  REQUIRE(scene != nullptr);
+  const int64_t size = tegotae_scene_notes(scene, nullptr, 0);
+  REQUIRE(size > 0);
+  std::vector<char> bytes(static_cast<std::size_t>(size) + 2, 'x');
+  REQUIRE(tegotae_scene_notes(scene, bytes.data(), bytes.size() - 1) == size);
+  CHECK(bytes.back() == 'x');
+  const std::string text = bytes.data();
+  REQUIRE(text.size() == static_cast<std::size_t>(size));
+  CHECK(std::count(text.begin(), text.end(), '\n') == 2);
+  CHECK(text.back() == '\n');
+  CHECK(text.find("told.gltf: animations") != std::string::npos);
+  CHECK(text.find("ACME_shape") != std::string::npos);
+  CHECK(text.find("plain.obj") == std::string::npos);
+  // Room for less: the beginning, and nothing beyond.
+  std::fill(bytes.begin(), bytes.end(), 'x');
+  CHECK(tegotae_scene_notes(scene, bytes.data(), 5) == size);
+  CHECK(std::string(bytes.data()) == text.substr(0, 4));
+  CHECK(bytes[5] == 'x');
+  CHECK(tegotae_scene_notes(scene, nullptr, 5) < 0);
+  CHECK(error() == "text must not be NULL");
+  CHECK(tegotae_scene_notes(nullptr, nullptr, 0) < 0);
+  tegotae_scene_destroy(scene);
+  tegotae_scene* quiet = floor_scene();
+  CHECK(tegotae_scene_notes(quiet, nullptr, 0) == 0);
+  tegotae_scene_destroy(quiet);
 }
 
 TEST_CASE("a scene file is loaded from C", "[c_interface]") {
