@@ -218,10 +218,65 @@ TEST_CASE("a tetrahedron loads the same from every format", "[load]") {
   }
 }
 
+TEST_CASE("what OBJ, OFF and PLY files have beside places and corners changes nothing", "[load]") {
+  const Sandbox s;
+  const std::string corners = kObj.substr(0, kObj.find('f'));
+  const std::string faces = "3 0 2 1 200 100 0\n3 0 1 3 0.5 0.5 0.5\n3 1 2 3\n3 2 0 3 7\n";
+  std::vector<std::string> files = {
+      s.write("all.obj", "# made by hand\no part\n" + corners +
+                             "vt 0 0\nvt 1 0\nvn 0 0 1\ng front back\ns 1\nf 1/1/1 3/2/1 \\\n 2/1/1\nf 1//1 2//1 4//1\n"
+                             "g other\nf 2/1 3/1 4/1\nf 3 1 4\n"),
+      s.write("curves.obj", kObj + "vp 0.5\ncstype bezier\ndeg 1\ncurv 0 1 1 2\nparm u 0 1\nend\n"),
+      s.write("colors.off", "COFF\n4 4 6\n0 0 0 255 0 0 255\n1 0 0 0 255 0 9\n0 1 0 1 2 3 4\n0 0 1 5 6 7 8\n" + faces),
+      s.write("normals.off", "NOFF\n4 4 6\n0 0 0 0 0 -1\n1 0 0 1 0 0\n0 1 0 0 1 0\n0 0 1 0 0 1\n" + faces)};
+  for (const char* type : {"char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16", "int", "int32",
+                           "uint", "uint32", "float", "float32", "double", "float64"})
+    files.push_back(s.write(std::string(type) + ".ply", replaced(replaced(kPly, "float x", type + std::string(" x")),
+                                                                 "float z", type + std::string(" z"))));
+  for (const std::string& path : files) {
+    INFO(path);
+    const TriangleMesh mesh = load_mesh(path);
+    CHECK(mesh.vertices.size() == 4);
+    CHECK(mesh.triangles.size() == 4);
+    CHECK(report(mesh).closed);
+    CHECK(volume(mesh) == Approx(1.0 / 6).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("faces of OFF files have up to nine corners", "[load]") {
+  const Sandbox s;
+  const auto polygon = [&](int corners) {
+    std::string text = "OFF\n" + std::to_string(corners) + " 1 0\n", face = std::to_string(corners);
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * M_PI * i / corners;
+      text += std::to_string(std::cos(angle)) + ' ' + std::to_string(std::sin(angle)) + " 0\n";
+      face += ' ' + std::to_string(i);
+    }
+    return s.write("p.off", text + face + '\n');
+  };
+  for (int n = 3; n <= 9; ++n) {
+    INFO(n);
+    const TriangleMesh mesh = load_mesh(polygon(n));
+    REQUIRE(mesh.triangles.size() == static_cast<std::size_t>(n) - 2);
+    double area = 0;
+    for (const auto& t : mesh.triangles)
+      area += 0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).z();
+    CHECK(area == Approx(0.5 * n * std::sin(2 * M_PI / n)).epsilon(1e-5));
+  }
+  CHECK(refusal(s, polygon(10)).find("has 10 corners") != std::string::npos);
+}
+
 TEST_CASE("glTF nodes are placed, mirrored ones keep their outside", "[load]") {
   const Sandbox s;
   s.write("t.bin", corner_bytes());
-  for (const std::string& path : {s.write("t.gltf", gltf_json(R"("uri":"t.bin",)")), s.write("t.glb", glb())}) {
+  // The bytes of t.bin.
+  const std::string data =
+      "data:application/octet-stream;base64,"
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+      "AAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAQACAAMAAgAAAAMA";
+  for (const std::string& path :
+       {s.write("t.gltf", gltf_json(R"("uri":"t.bin",)")), s.write("data.gltf", gltf_json("\"uri\":\"" + data + "\",")),
+        s.write("t.glb", glb())}) {
     INFO(path);
     const TriangleMesh mesh = load_mesh(path);
     const MeshReport r = report(mesh);
@@ -308,6 +363,7 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
   refuse("lines.off", replaced(kOff, "3 1 2 3", "3 1\n2 3"), "takes a line");
   refuse("two.off", replaced(kOff, "1 0 0\n", "1 0 0 "), "damaged at face 3");
   refuse("long.off", replaced(kOff, "1 0 0\n", "1 0 0 " + std::string(5000, ' ') + '\n'), "longer than 4000");
+  refuse("binary.off", std::string("OFF BINARY\n\0\0\0\4", 15), "text OFF only");
   refuse("feed.off", replaced(kOff, "1 0 0\n", "1 0 0 \f\n"), "control characters");
   refuse("many.off", replaced(kOff, "4 4 6", "400000000 400000000 0"), "truncated");
   std::string many = binary_stl();

@@ -83,6 +83,18 @@ TEST_CASE("STEP: operators that move are read, those that scale or mirror are re
   }
 }
 
+TEST_CASE("STEP: each product has its own unit of length", "[step]") {
+  StepText s;
+  s.shape(s.product("small"), {s.origin(), s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  s.set_unit("$");
+  s.shape(s.product("large"), {s.origin(), s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  const Assembly a = read(s);
+  REQUIRE(a.parts.size() == 2);
+  const std::size_t small = a.parts[0].name == "small" ? 0 : 1;
+  check_block(a, small);
+  check_box(box_of(a, 1 - small), {0, 0, 0}, {40, 30, 10});
+}
+
 TEST_CASE("STEP: how something is drawn refuses no file", "[step]") {
   for (const char* style : {"POINT_STYLE('',MARKER,POSITIVE_LENGTH_MEASURE(3.),COLOR)",
                             "CURVE_STYLE('',$,POSITIVE_LENGTH_MEASURE(0.1),COLOR)",
