@@ -18,6 +18,8 @@ while :; do
 done
 
 bash .ci/setup.sh "${setup[@]}"
+system=$(bash .ci/system.sh)
+echo "tests/run.sh: on $system"
 
 # Independent readers, for tests only.
 python=build/python
@@ -39,4 +41,5 @@ ctest --preset release --parallel "$(nproc)" --label-regex '^realtime$' --label-
 again=$(sed -n 's/^ *Start *[0-9]*: //p' "$log" | sort | uniq -d | xargs)
 echo "tests/run.sh: $(wc -w <<<"$again") of $(sed -n 's/^ *Start *[0-9]*: //p' "$log" | sort -u | wc -l)" \
   "realtime tests were repeated${again:+: $again}"
+[ "$code" != 0 ] || echo "tests/run.sh: all passed on $system"
 exit "$code"
