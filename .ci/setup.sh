@@ -21,7 +21,8 @@ for _ in 1 2; do
     --demo)
       packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev)
       preset=demo
-      options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF)
+      options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF
+               -DTEGOTAE_FEW_UNITS=ON)
       set -- demo
       break ;;
     --browser)

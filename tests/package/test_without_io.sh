@@ -15,8 +15,10 @@ absent=()
 for package in assimp draco meshoptimizer pugixml tomlplusplus ZLIB zstd nlohmann_json OpenCASCADE; do
   absent+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
 done
-# Warnings as errors: the same command lines as in the main build, so that ccache has the objects.
+# Warnings as errors: the same command lines as in the main build, so that ccache has the objects, but for those of
+# TEGOTAE_FEW_UNITS, which only the demo is built with otherwise.
 quietly cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF \
+  -DTEGOTAE_FEW_UNITS=ON \
   -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=ON "${absent[@]}" "${launcher[@]}"
 quietly cmake --build "$build" --parallel 2
 quietly cmake --install "$build" --prefix "$build/stage"
