@@ -99,6 +99,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   trust_ = piece_cap_ = at_.check->longest_motion();
   most_keep_ = keep_ = kKeepShare * *settings_.l_min;
   least_keep_ = scene.contact.l_min ? most_keep_ : std::min(kLeastKeep, most_keep_);
+  recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMostBlocking);
@@ -217,7 +218,10 @@ void ContactLoop::adapt_keep(const Pose& Y) {
   const auto& limits = at_.contacts->limits();
   if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
   const bool standing = moved_ < kStanding;
-  if (standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged()) {
+  const bool holds = standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged();
+  // Gaps that are a little short of the least one may lock a part that has room to turn out of where it stands.
+  recover_below_ = holds && keep_ == least_keep_ ? kRecoverWedged : kRecoverBelow;
+  if (holds) {
     keep_ = std::max(0.5 * keep_, least_keep_);
     return;
   }
@@ -381,7 +385,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
     const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) {
-      bounds_[i] = bound_of(limits[i], keep_, recovery) - give;
+      bounds_[i] = bound_of(limits[i], keep_, recover_below_, recovery) - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;

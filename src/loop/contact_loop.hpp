@@ -106,6 +106,7 @@ class ContactLoop final : public ProxyLoop {
   int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
   double keep_;          ///< gap that contacts keep, m, between the next two
   double least_keep_, most_keep_;
+  double recover_below_;  ///< share of the kept gap below which gaps recover
   int ticks_ = 0;
   std::optional<Displacement>
       owed_;                     ///< motion of the last tick that blocking_ stopped when no time was left for contacts

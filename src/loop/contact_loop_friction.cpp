@@ -18,7 +18,7 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
   for (const double slack : {0.0, kNormalNoise}) {
     const double give = slack * wanted.norm();
-    for (std::size_t i = 0; i < limits.size(); ++i) bounds_[i] = bound_of(limits[i], keep_, 0) - give;
+    for (std::size_t i = 0; i < limits.size(); ++i) bounds_[i] = bound_of(limits[i], keep_, recover_below_, 0) - give;
     const Resolution r = resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted));
     ++report.resolves;
     report.iterations += r.iterations;
@@ -56,8 +56,8 @@ void ContactLoop::recover_gaps(TickReport& report, Vec6& motion) {
   const auto& limits = at_.contacts->limits();
   bool lost = false;
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    bounds_[i] = bound_of(limits[i], keep_, kRecovery * keep_);
-    lost |= is_lost(limits[i], keep_);
+    bounds_[i] = bound_of(limits[i], keep_, recover_below_, kRecovery * keep_);
+    lost |= is_lost(limits[i], keep_, recover_below_);
   }
   if (!lost) return;
   const Resolution r = resolver_->resolve(rows_, bounds_.data(), motion);
