@@ -26,9 +26,20 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
     const Feature face_a{FeatureKind::face, t.a}, face_b{FeatureKind::face, t.b};
     if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kOneShotAge, face_a, face_b}, limits_)) continue;
     owners_.push_back(kNone);
+    cut_.push_back(t);
     ++added;
   }
   return added;
+}
+
+bool ContactSet::touches(std::size_t limit, double distance) const noexcept {
+  const Contact& c = limits_[limit];
+  return std::any_of(cut_.begin(), cut_.end(), [&](const FacePair& t) {
+    if (t.a != c.feature_a.index || t.b != c.feature_b.index || !(fixed_[t.part].part == c.part)) return false;
+    const FeaturePair at =
+        walk_to_minimum(*held_, *fixed_[t.part].surface, pose_in(t.part), c.feature_a, c.feature_b, {}, 0);
+    return at.distance <= distance;
+  });
 }
 
 Vec3 ContactSet::normal_B(std::uint32_t part, const FeaturePair& at) const {

@@ -34,6 +34,7 @@ ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSur
   next_.reserve(size);
   limits_.reserve(size);
   next_limits_.reserve(size);
+  cut_.reserve(size);
   owners_.reserve(size);
   next_owners_.reserve(size);
   taken_.reserve(size);
@@ -83,6 +84,7 @@ void ContactSet::begin_track(const Pose& X, double reach) {
   next_.clear();
   next_limits_.clear();
   next_owners_.clear();
+  cut_.clear();
 }
 
 void ContactSet::clear() {

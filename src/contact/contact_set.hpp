@@ -50,6 +50,9 @@ class ContactSet {
   /// the displacement `d` least, of those that leave `clearance` (m). Returns how many were added. Ends early after
   /// `deadline_ns`.
   int cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance, std::int64_t deadline_ns);
+  /// Whether the two triangles that limit number `limit`, from cut(), keeps apart are at most `distance` (m) from each
+  /// other at the pose of the last track().
+  bool touches(std::size_t limit, double distance) const noexcept;
   /// Limit number `limit` carries force: the next track() keeps its pair, whatever it drops.
   void carries(std::size_t limit) noexcept;
 
@@ -127,6 +130,7 @@ class ContactSet {
   std::vector<std::int32_t> table_;  ///< open addressing into next_, -1 is empty
   std::vector<std::size_t> taken_;   ///< places of table_ that are not
   std::vector<Contact> limits_;
+  std::vector<FacePair> cut_;               ///< by limits for this tick only
   std::vector<std::uint32_t> owners_;       ///< of each limit: its pair, kNone for a cutting plane
   std::vector<Contact> next_limits_;        ///< of this track, until it is finished
   std::vector<std::uint32_t> next_owners_;  ///< likewise

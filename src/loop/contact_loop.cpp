@@ -267,7 +267,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
       if (i + 1 < kMostResolves && look_around()) continue;
-      held_by_contacts_ = !cutting();
+      held_by_contacts_ = only_contacts();
       if (!resolver_->projects()) trust_ *= 0.5;
       if (cutting()) shorter_than(cap);
       return 0;
@@ -298,7 +298,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   const bool worth = worth_it(wanted, trial, goal);
   if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
   if (!worth) {
-    held_by_contacts_ = !cutting();
+    held_by_contacts_ = only_contacts();
     look_around();
     return 0;
   }
@@ -334,6 +334,12 @@ bool ContactLoop::cutting() const {
   return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
+void ContactLoop::carries(std::size_t i) {
+  at_.contacts->carries(i);
+  if (!far_planes_ && at_.contacts->limits()[i].age == kOneShotAge)
+    far_planes_ = !at_.contacts->touches(i, keep_ / kKeepShare);
+}
+
 LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   TickEnd end;
   end.lag = lag;
@@ -352,8 +358,8 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   if (!at_.contacts->limits().empty()) {
     rubs = friction_.fill(at_.contacts->limits(), metric_);
     if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
-    // Cutting planes stand for what the certificate failed at, and explain no lag.
-    if (!cutting()) allowed_ = size(metric_.unwhiten(motion));
+    // Cutting planes between triangles that do not touch explain no lag.
+    if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
     const double far = size(metric_.unwhiten(wanted));
     // Of a shorter way a program that does not project may take a part where of the whole it takes nothing.
     if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
@@ -396,8 +402,9 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
     if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMostRecovery * keep_) continue;
+    far_planes_ = false;
     for (std::size_t i = 0; i < limits.size(); ++i)
-      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) at_.contacts->carries(i);
+      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) carries(i);
     return true;
   }
   return false;

@@ -71,8 +71,13 @@ class ContactLoop final : public ProxyLoop {
   bool look_around();
   /// The next piece is to be shorter than this one, which planes for one motion hold; they are forgotten.
   void shorter_than(double cap);
-  /// Whether a cutting plane, which is no contact, limits the motion.
+  /// Whether a cutting plane limits the motion.
   bool cutting() const;
+  /// Limit number `i` carries in the last program.
+  void carries(std::size_t i);
+  /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,
+  /// whatever features they come from.
+  bool only_contacts() const { return !cutting() || !far_planes_; }
   LagReason reason_for(double lag, const TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
@@ -114,6 +119,7 @@ class ContactLoop final : public ProxyLoop {
   bool was_cut_ = false;         ///< the last tick
   bool comes_ = false;           ///< X went as fast as it may in the last tick
   bool looked_ = false;          ///< look_around() did at this pose
+  bool far_planes_ = false;      ///< see only_contacts()
   bool held_by_planes_ = false;  ///< planes for one motion made the last piece short
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m

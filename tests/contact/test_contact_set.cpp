@@ -182,3 +182,25 @@ TEST_CASE("a face in the middle of a large flat region leads to the corners of t
     CHECK(c.gap == Approx(1e-5));
   }
 }
+
+TEST_CASE("a cutting plane knows how far apart its triangles are", "[contact]") {
+  const auto triangle = [](const Vec3& at) {
+    TriangleMesh mesh;
+    mesh.vertices = {at, at + Vec3(0.01, 0, 0), at + Vec3(0, 0.01, 0)};
+    mesh.triangles = {{0, 1, 2}};
+    return surface(std::move(mesh));
+  };
+  // Over the other by `height`, or beside it: then the corner at its own origin is nearest to the other's second one.
+  const auto B = triangle(Vec3::Zero());
+  for (const double beside : {0.0, 0.02}) {
+    const double height = 1e-5;
+    const double apart = beside > 0 ? std::hypot(beside - 0.01, height) : height;
+    ContactSet set(triangle(Vec3(beside, 0, height)), {{B, Pose{}}}, Vec3::Zero(), 64);
+    REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
+    const Displacement d{Vec3(-0.02, 0, -2e-5), Vec3::Zero()};
+    REQUIRE(set.cut({{0, 0, 0}}, d, 1e-6, kNoDeadline) == 1);
+    REQUIRE(set.limits().size() == 1);
+    CHECK(set.touches(0, 1.001 * apart));
+    CHECK_FALSE(set.touches(0, 0.999 * apart));
+  }
+}
