@@ -81,6 +81,10 @@ constexpr double kStiction = 1e-6;
 constexpr int kMostStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
 constexpr double kFeltLag = 0.05;
+// Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
+constexpr double kPrepareShare = 0.3;
+// Parts that are nearer than this (m) touch, or hardly come nearer.
+constexpr double kNearGap = 100e-6;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
@@ -177,6 +181,9 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   was_cut_ = report.flags.timed_out;
   tell_forces(Y, report);
   tell_slip(moved, report.forces);
+  // What the tick leaves over gets ready for the first touch.
+  if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap)
+    at_.check->prepare(X_, deadline_ns_ - static_cast<std::int64_t>(1e9 * (1 - kPrepareShare) * settings_.tick_budget));
 }
 
 void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {

@@ -23,11 +23,16 @@ constexpr double kKnownShare = 0.5;
 constexpr int kClockStride = 8, kAskStride = 256, kVisitsPerSearch = 8;
 /// So many cells that allow least of the motion are looked at in any case.
 constexpr std::ptrdiff_t kFirst = 64;
-/// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times.
-constexpr int kGrades = 24;
+/// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times, and in
+/// eighths of that.
+constexpr int kOctaves = 24, kEighths = 8, kGrades = kOctaves * kEighths;
 
 int grade(double share) {
-  return share > 0 ? std::clamp(kGrades - 1 + std::ilogb(share), 0, kGrades - 1) : 0;
+  if (!(share > 0)) return 0;
+  int exponent = 0;
+  const double part = std::frexp(share, &exponent);  // of a half to one
+  const int eighth = static_cast<int>(2 * kEighths * (part - 0.5));
+  return std::clamp(kEighths * (kOctaves - 1 + exponent) + eighth, 0, kGrades - 1);
 }
 
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
@@ -38,6 +43,10 @@ constexpr double kRaiseMotions = 8, kRaiseShare = 0.5, kMotionFades = 0.9;
 /// Pieces that could not be put together are tried again when they are so many times as far from B, and at least this
 /// share of their size.
 constexpr double kRetryGrowth = 1.4, kRetryShare = 0.01;
+/// A piece that was taken apart at rest, for a clearance that no motion needed yet, is tried again at this share of it.
+constexpr double kAheadRetry = 0.25;
+/// One of so many cells that are used up is tried as a larger piece: that costs as much as to renew several.
+constexpr int kGrowStride = 4;
 /// So many larger pieces are tried in the place of one whose cell is used up.
 constexpr int kMostGrowths = 2;
 
@@ -119,7 +128,8 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
   ++call_;
   const double theta2 = d.dr.squaredNorm();
   const double carried = d.dp.norm() + reach_ * std::sqrt(theta2) + center_.norm() * theta2 / 8;
-  motion_ = std::max(kMotionFades * motion_, carried);
+  ahead_ = carried == 0;
+  if (!ahead_) motion_ = std::max(kMotionFades * motion_, carried);
   need_ = carried * (1 + kSumSlack) + clearance_ + kLengthSlack;
   report_.share = 1;
   settled_ = true;
@@ -245,7 +255,9 @@ void CellFront::settle_due() {
       continue;
     }
     const Look look = look_at(it->node);
-    if (look.free || (look.far && (grow(it->node, look.margin) || renew(it->node, look.margin)))) continue;
+    if (look.free) continue;
+    const bool grows = look.far && looked % kGrowStride == 0 && grow(it->node, look.margin);
+    if (grows || (look.far && renew(it->node, look.margin))) continue;
     const Outcome outcome = settle(it->node);
     if (outcome == Outcome::free) continue;
     report_.share = std::min(report_.share, std::max(it->share, look.share));
@@ -327,7 +339,7 @@ void CellFront::keep(std::uint32_t id) {
   for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent) {
     if (nodes_[up].retry < kInfinity && nodes_[up].split != call_) break;
     const double before = nodes_[up].retry;
-    needs_parts(up, search_.margin());
+    needs_parts(up, ahead_ ? kAheadRetry * search_.margin() : search_.margin());
     nodes_[up].retry = std::min(nodes_[up].retry, before);
   }
 }

@@ -153,6 +153,7 @@ class CellFront {
   std::int64_t visits_at_start_ = 0;
   WorkLimit limit_;
   CertifyReport report_;
+  bool ahead_ = false;   ///< the call is about a clearance at rest
   bool settled_ = true;  ///< nothing yet kept the call from looking at all that the motion needs
 };
 

@@ -106,7 +106,8 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
 
 void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_ = Sweep(X_BA, d, center_, *b_, a_->radius() + offset_a_.norm(), clearance_);
-  motion_ = std::max(kMotionFades * motion_, d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm());
+  const double carried = d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm();
+  if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
 }
 
 LaneSweep PatchFront::lane_sweep() const {

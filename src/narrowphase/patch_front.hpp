@@ -47,6 +47,9 @@ class PatchFront {
   /// What stopped the last motion, when its status was `blocked`; at most FrontCapacity::blocking.
   const std::vector<BlockingPair>& blocking() const { return blocking_; }
 
+  /// Length of the mean normal of all planes: 1 when they face one way, 0 when they face each other.
+  double one_sidedness() const noexcept;
+
   int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
 
   /// Calls f(a, a_is_face, b, b_is_face) for every pair of the front: nodes of the trees, or faces.

@@ -150,6 +150,14 @@ Vec3 PatchFront::plane(std::uint32_t id) const {
   return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
 }
 
+double PatchFront::one_sidedness() const noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (const Group* g : {&boxes_, &triangles_})
+    for (std::uint32_t i = 0; i < g->count; ++i)
+      sum += Vec3(g->lanes.at(i, kBoxNormal), g->lanes.at(i, kBoxNormal + 1), g->lanes.at(i, kBoxNormal + 2));
+  return pairs() > 0 ? sum.norm() / pairs() : 0;
+}
+
 double PatchFront::node_reach(const PatchNode& n) const {
   // Half edges may not be quite orthogonal (single precision), which the sum of their lengths squared does not see.
   constexpr double kSkew = 1 + 1e-6;

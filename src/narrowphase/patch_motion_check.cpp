@@ -21,6 +21,14 @@ constexpr int kMostRounds = 4;
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMostCuts = 6;
+// So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
+// cells: they lie on each other over much of the part.
+constexpr int kSomePairs = 4000, kFacesPerPair = 5;
+constexpr double kOneSided = 0.35;
+// What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
+constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kLeastAhead = 30e-6;
+// Parts among the cells whose gap is looked at in one call.
+constexpr int kMostGuesses = 8;
 // Cells (about 850 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kFewestCells = 1u << 13;
@@ -62,6 +70,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   part_of_.assign(fronts, kNobody);
   used_.assign(fronts, 0);
   cuts_.assign(fronts, 0);
+  ahead_.resize(fronts);
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kFewestCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
@@ -86,6 +95,7 @@ void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   front_of_[part] = front;
   used_[front] = now_;
   cuts_[front] = 0;
+  ahead_[front] = Ahead{};
   fronts_[front].attach(*held_, center_, *fixed_[part]);
 }
 
@@ -168,6 +178,90 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) const noexcept {
+  const int many = std::max(kSomePairs, static_cast<int>(held_->mesh().triangles.size()) / kFacesPerPair);
+  if (report.pairs * static_cast<int>(near_fronts_.size()) <= many) return false;
+  int pairs = 0;
+  for (const std::uint32_t near : near_fronts_)
+    if (front_of_[near] != kNobody) pairs += fronts_[front_of_[near]].pairs();
+  return pairs > many && fronts_[front_of_[part]].one_sidedness() > kOneSided;
+}
+
+double PatchMotionCheck::least_gap_at_most(const Pose& X, std::uint32_t part) const noexcept {
+  // Down both hierarchies to the child that is nearest: some two faces that are near.
+  const PatchTree &A = *held_, &B = *fixed_[part];
+  const Pose X_BA = poses_[part].inverse() * X;
+  std::uint32_t a = 0, b = 0;
+  const auto center_a = [&](std::uint32_t node) -> Vec3 { return X_BA * (A.origin() + A.nodes()[node].center_vec()); };
+  const auto center_b = [&](std::uint32_t node) -> Vec3 { return B.origin() + B.nodes()[node].center_vec(); };
+  while (!A.nodes()[a].leaf() || !B.nodes()[b].leaf()) {
+    const PatchNode &na = A.nodes()[a], &nb = B.nodes()[b];
+    if (nb.leaf() || (!na.leaf() && na.half[0] > nb.half[0])) {
+      const Vec3 other = center_b(b);
+      a = na.first +
+          ((center_a(na.first) - other).squaredNorm() <= (center_a(na.first + 1) - other).squaredNorm() ? 0 : 1);
+    } else {
+      const Vec3 other = center_a(a);
+      b = nb.first +
+          ((center_b(nb.first) - other).squaredNorm() <= (center_b(nb.first + 1) - other).squaredNorm() ? 0 : 1);
+    }
+  }
+  const std::uint32_t face_a = A.order()[A.nodes()[a].first], face_b = B.order()[B.nodes()[b].first];
+  double least2 = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      least2 = std::min(least2, (X_BA * A.corner(face_a, i) - B.corner(face_b, k)).squaredNorm());
+  return std::sqrt(least2);
+}
+
+template <typename Ask>
+void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, Ask ask) noexcept {
+  const Displacement since = displacement(ahead.X, X, center_);
+  const double moved = since.dp.norm() + radius_ * since.dr.norm();
+  ahead.X = X;
+  ahead.proved = std::max(0.0, ahead.proved - moved);
+  ahead.ceiling = std::min(ahead.ceiling + moved, at_most);
+  while (!past(limit_.deadline_ns)) {
+    const double target = kAheadShare * ahead.ceiling;
+    if (target < kLeastAhead || ahead.proved >= kAheadEnough * ahead.ceiling || ahead.proved >= longest_motion())
+      return;
+    const CertifyStatus status = ask(target);
+    if (status == CertifyStatus::cut) return;
+    if (status == CertifyStatus::certified) ahead.proved = target;
+    if (status == CertifyStatus::blocked) ahead.ceiling = target;
+  }
+}
+
+void PatchMotionCheck::prepare(const Pose& X, std::int64_t deadline_ns) noexcept {
+  limit_.deadline_ns = deadline_ns;
+  limit_.searches = kFrontSearches;
+  limit_.blocking = 1;
+  for (std::size_t i = 0; i < near_fronts_.size() && !past(limit_.deadline_ns);) {
+    const std::uint32_t part = near_fronts_[i++];
+    bool to_cells = false;
+    look_ahead(X, ahead_[front_of_[part]], least_gap_at_most(X, part), [&](double clearance) {
+      const CertifyReport report = ask_front(part, X, {}, clearance, limit_);
+      to_cells = lies_on(report, part);
+      return to_cells || report.pairs > kSomePairs ? CertifyStatus::cut : report.status;
+    });
+    if (!to_cells) continue;
+    move_to_cells(part);
+    near_cells_.push_back(part);
+    near_fronts_.erase(near_fronts_.begin() + static_cast<std::ptrdiff_t>(--i));
+    cells_->set_near(near_cells_);
+    cells_ahead_ = Ahead{};
+  }
+  if (near_cells_.empty() || past(limit_.deadline_ns)) return;
+  double at_most = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostGuesses && i < static_cast<int>(near_cells_.size()); ++i)
+    at_most = std::min(at_most, least_gap_at_most(X, near_cells_[guessed_++ % near_cells_.size()]));
+  limit_.searches = kCellSearches;
+  look_ahead(X, cells_ahead_, at_most, [&](double clearance) {
+    cells_->set_clearance(clearance);
+    return cells_->certify(X, {}, limit_).status;
+  });
 }
 
 MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "narrowphase/cell_front.hpp"
@@ -22,6 +23,7 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
+  void prepare(const Pose& X, std::int64_t deadline_ns) noexcept override;
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -31,10 +33,23 @@ class PatchMotionCheck final : public MotionCheck {
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
+  /// How far ahead a front, or the cells, have been asked at rest.
+  struct Ahead {
+    Pose X;                                                    ///< where
+    double proved = 0;                                         ///< all of B is at least so far away, m
+    double ceiling = std::numeric_limits<double>::infinity();  ///< and something of it no farther than this, m
+  };
+
   void take_front(std::uint32_t part) noexcept;
   void move_to_cells(std::uint32_t part) noexcept;
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
                           const WorkLimit& limit) noexcept;
+  bool lies_on(const CertifyReport& report, std::uint32_t part) const noexcept;
+  /// Asks for ever more clearance at rest by `ask`, until something is nearer or time is over.
+  template <typename Ask>
+  void look_ahead(const Pose& X, Ahead& ahead, double at_most, Ask ask) noexcept;
+  /// A bound on how near (m) the held part at X is to a part: from above.
+  double least_gap_at_most(const Pose& X, std::uint32_t part) const noexcept;
 
   Vec3 center_;
   double radius_;
@@ -47,7 +62,10 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
   std::vector<std::uint32_t> cuts_;      ///< of each front: calls in a row that ran out of time or work
-  std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
+  std::vector<Ahead> ahead_;             ///< of each front
+  Ahead cells_ahead_;
+  std::size_t guessed_ = 0;
+  std::vector<std::uint64_t> seen_;  ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
   std::vector<std::uint8_t>

@@ -1,7 +1,9 @@
 // Fast motions past thin things, and starts at tiny gaps.
 #include "catch.hpp"
 #include "narrowphase/patch_front.hpp"
+#include "narrowphase/patch_motion_check.hpp"
 #include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -127,5 +129,34 @@ TEST_CASE("the path with a linear file-frame origin is covered too", "[patch]") 
     Fixture f(point, wall, center);
     REQUIRE(f({}, {}) == CertifyStatus::certified);
     REQUIRE(f({}, d) != CertifyStatus::certified);
+  }
+}
+
+TEST_CASE("what is prepared at rest needs no time when the part moves", "[patch]") {
+  const double gap = 5e-4, size = 0.1;
+  const MeshPtr sheet = wave(size, 0.002, 0.05, 80);
+  const Pose X{Quat::Identity(), Vec3(0, 0, gap)};
+  const Oracle oracle(sheet, sheet);
+  std::vector<FacePair> blocking;
+  blocking.reserve(64);
+  for (const bool prepared : {false, true}) {
+    CAPTURE(prepared);
+    PatchMotionCheck check(sheet, Vec3::Zero(), size, {sheet}, {Pose{}});
+    check.begin({0}, kNoDeadline);
+    if (prepared) check.prepare(X, kNoDeadline);
+    check.begin({0}, 1);  // long past
+    for (const Displacement& d :
+         {Displacement{Vec3(0, 0, -5e-5), Vec3::Zero()}, Displacement{Vec3(2e-5, -2e-5, -2e-5), Vec3(1e-4, 0, 1e-4)}}) {
+      blocking.clear();
+      const MotionAnswer answer = check.check(X, d, 1.1e-6, blocking);
+      CHECK(answer == (prepared ? MotionAnswer::free : MotionAnswer::unknown));
+      REQUIRE(oracle.hits(X, Vec3::Zero(), d, 8) == 0);
+    }
+    // Nothing that is in the way is let through for it.
+    const Displacement down{Vec3(0, 0, -2 * gap), Vec3::Zero()};
+    REQUIRE(oracle.hits(X, Vec3::Zero(), down, 8) > 0);
+    blocking.clear();
+    CHECK(check.check(X, down, 1.1e-6, blocking) != MotionAnswer::free);
+    CHECK(oracle.hits(X, Vec3::Zero(), check.free_share() * down, 32) == 0);
   }
 }
