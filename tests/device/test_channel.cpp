@@ -137,7 +137,7 @@ TEST_CASE("a segment is private, unique and gone afterwards", "[device]") {
     CHECK(moved.name() == name);
     CHECK_NOTHROW(Channel::attach(name));
   }
-  CHECK_THROWS_WITH(Channel::attach(name), Catch::Contains(name) && Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(Channel::attach(name), Catch::Contains(name) && Catch::Contains("there is none"));
 }
 
 TEST_CASE("a segment that is not of this user and protocol is refused", "[device]") {
