@@ -30,7 +30,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     // The right wing.
     {"mesh", {"core"}},
     {"broadphase", {"core", "mesh"}},
-    {"narrowphase", {"core", "mesh", "broadphase"}},
+    {"curve", {"core", "mesh"}},
+    {"narrowphase", {"core", "mesh", "broadphase", "curve"}},
     {"feature", {"core", "mesh", "narrowphase"}},
     {"contact", {"core", "mesh", "narrowphase", "feature"}},
     {"resolve", {"core", "lp", "mesh", "contact"}},

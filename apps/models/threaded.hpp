@@ -1,0 +1,38 @@
+#pragma once
+
+#include "tegotae/mesh/triangle_mesh.hpp"
+
+/// Screws and nuts with an ISO metric thread (ISO 68-1: flanks of 60°, crests and roots cut flat), axis z, lengths in
+/// m. Closed, facing outward. Impossible sizes throw tegotae::Error.
+namespace tegotae::shapes {
+
+struct Thread {
+  double diameter = 0.016;  ///< nominal (major)
+  double pitch = 0.002;     ///< rise of a turn; all threads have one start
+  bool left_hand = false;
+  int segments = 96;  ///< around, a multiple of 6
+  int rows = 3;       ///< bands of triangles on a flank, 1 to 16
+};
+
+/// A hexagon bolt: the thread from its tip at z = 0 up to the head.
+struct Bolt {
+  Thread thread;
+  double length = 0.030;
+  double chamfer = 0.001;  ///< at the tip, 45°
+  double head_width = 0.024, head_height = 0.010;
+};
+/// Corners lie on the thread's surface, so the facets of the flanks lie below it.
+TriangleMesh bolt(const Bolt& b);
+
+/// A hexagon nut from z = 0 to z = `height`; it fits over a bolt of the same thread, both unturned, where its z is a
+/// multiple of the pitch. `play` is what it can go up or down from there, flank to flank.
+struct Nut {
+  Thread thread;
+  double height = 0.013;
+  double width = 0.024;    ///< across flats
+  double chamfer = 0.001;  ///< at both mouths, 45°
+  double play = 1e-4;      ///< m, along the axis
+};
+TriangleMesh nut(const Nut& n);
+
+}  // namespace tegotae::shapes

@@ -1,0 +1,187 @@
+#include "curve/axis_refine.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace tegotae {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Facets that are used, rounds, and the size of the cells of the profile (of the mesh's size) and of its normals.
+constexpr std::size_t kMostUsed = 4000;
+constexpr int kRounds = 6, kNormalCells = 24;
+constexpr double kCell = 0.02;
+/// A rise that is only rounding, of the size.
+constexpr double kNoRise = 1e-10;
+/// Keeps what the facets leave open where it is, relative to the trace.
+constexpr double kDamping = 1e-9;
+/// Changes of the axis beyond this say that the facets are no screw surface.
+constexpr double kMostChange = 0.1;
+
+using Vec5 = Eigen::Matrix<double, 5, 1>;
+using Mat5 = Eigen::Matrix<double, 5, 5>;
+
+struct Frame {
+  Vec3 e1, e2, c, p;
+  double rise;
+
+  explicit Frame(const ScrewMotion& m) : c(m.c), p(m.axis_point()), rise(std::abs(m.rise()) < kNoRise ? 0 : m.rise()) {
+    e1 = c.unitOrthogonal();
+    e2 = c.cross(e1);
+  }
+  Vec3 local(const Vec3& x) const { return Vec3((x - p).dot(e1), (x - p).dot(e2), (x - p).dot(c)); }
+};
+
+/// A corner in profile coordinates, with the normal of its facet there.
+struct Sample {
+  std::tuple<int, int, int> cell;
+  double r, w, nr, nw, area;
+  double cos, sin, z, phi;  ///< φ of the turn that w is of
+};
+
+std::vector<Sample> samples_of(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const Frame& f) {
+  std::vector<Sample> out;
+  const std::size_t stride = std::max<std::size_t>(1, of.size() / kMostUsed);
+  for (std::size_t i = 0; i < of.size(); i += stride) {
+    const Facet& t = facets[of[i]];
+    const Vec3 middle = f.local(t.center);
+    const double rm = middle.head<2>().norm();
+    if (!(rm > 0)) continue;
+    const Vec3 n(t.normal.dot(f.e1), t.normal.dot(f.e2), t.normal.dot(f.c));
+    double nr = (n.x() * middle.x() + n.y() * middle.y()) / rm, nw = n.z();
+    const double length = std::hypot(nr, nw);
+    if (!(length > 0.5)) continue;
+    // Both senses of a normal are one.
+    if (nw < 0 || (nw == 0 && nr < 0)) nr = -nr, nw = -nw;
+    nr /= length;
+    nw /= length;
+    const int turn = static_cast<int>(std::lround(std::atan2(nw, nr) / kPi * kNormalCells)) % kNormalCells;
+    for (const Vec3& x : t.corners()) {
+      const Vec3 q = f.local(x);
+      Sample s;
+      s.r = q.head<2>().norm();
+      if (!(s.r > 0)) continue;
+      s.cos = q.x() / s.r;
+      s.sin = q.y() / s.r;
+      s.z = q.z();
+      s.phi = std::atan2(q.y(), q.x());
+      s.w = s.z - f.rise * s.phi;
+      if (f.rise != 0) {
+        const double pitch = 2 * kPi * f.rise, turns = std::floor(s.w / pitch);
+        s.w -= pitch * turns;
+        s.phi += 2 * kPi * turns;
+      }
+      s.nr = nr;
+      s.nw = nw;
+      s.area = t.area;
+      s.cell = {static_cast<int>(std::floor(s.r / kCell)), static_cast<int>(std::floor(s.w / kCell)), turn};
+      out.push_back(s);
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const Sample& a, const Sample& b) {
+    return std::tie(a.cell, a.phi, a.r, a.z) < std::tie(b.cell, b.phi, b.r, b.z);
+  });
+  return out;
+}
+
+/// Least squares of how far the corners of a cell lie off their common line, over all cells.
+class Equations {
+ public:
+  Equations(const std::vector<Sample>& samples, double rise, double scale) : rise_(rise), scale_(scale) {
+    for (std::size_t i = 0, j = 0; i < samples.size(); i = j) {
+      while (j < samples.size() && samples[j].cell == samples[i].cell) ++j;
+      if (j - i >= 4) add_cell(samples, i, j);
+    }
+  }
+
+  Vec5 solve() const {
+    const Mat5 damped = A_ + kDamping * A_.trace() * Mat5::Identity();
+    return damped.ldlt().solve(b_);
+  }
+  double rms() const { return weight_ > 0 ? std::sqrt(square_ / weight_) : 0; }
+
+ private:
+  void add_cell(const std::vector<Sample>& samples, std::size_t begin, std::size_t end) {
+    double nr = 0, nw = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      // In one cell of normals, but perhaps around the turn.
+      const double sign = nr * samples[i].nr + nw * samples[i].nw < 0 ? -1 : 1;
+      nr += sign * samples[i].area * samples[i].nr;
+      nw += sign * samples[i].area * samples[i].nw;
+    }
+    const double length = std::hypot(nr, nw);
+    if (!(length > 0)) return;
+    nr /= length;
+    nw /= length;
+    std::vector<double> weight(end - begin);
+    double mean = middle(samples, begin, end, nr, nw), g_mean = 0, sum = 0;
+    Vec5 j_mean = Vec5::Zero();
+    for (std::size_t i = begin; i < end; ++i) {
+      const double g = nr * samples[i].r + nw * samples[i].w, x = (g - mean) / scale_;
+      weight[i - begin] = samples[i].area / ((1 + x * x) * (1 + x * x));
+      sum += weight[i - begin];
+      g_mean += weight[i - begin] * g;
+      j_mean += weight[i - begin] * change(samples[i], nr, nw);
+    }
+    if (!(sum > 0)) return;
+    g_mean /= sum;
+    j_mean /= sum;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double g = nr * samples[i].r + nw * samples[i].w - g_mean;
+      const Vec5 j = change(samples[i], nr, nw) - j_mean;
+      A_ += weight[i - begin] * j * j.transpose();
+      b_ -= weight[i - begin] * j * g;
+      square_ += weight[i - begin] * g * g;
+      weight_ += weight[i - begin];
+    }
+  }
+
+  static double middle(const std::vector<Sample>& samples, std::size_t begin, std::size_t end, double nr, double nw) {
+    std::vector<double> g;
+    for (std::size_t i = begin; i < end; ++i) g.push_back(nr * samples[i].r + nw * samples[i].w);
+    std::nth_element(g.begin(), g.begin() + static_cast<std::ptrdiff_t>(g.size() / 2), g.end());
+    return g[g.size() / 2];
+  }
+
+  /// By how much the corner moves along the profile's normal when the axis goes by (1, 0) and (0, 1), leans by them,
+  /// and rises by 1 more.
+  Vec5 change(const Sample& s, double nr, double nw) const {
+    const double h = rise_ / s.r;
+    Vec5 j;
+    j << -nr * s.cos - nw * h * s.sin, -nr * s.sin + nw * h * s.cos,
+        -s.z * nr * s.cos + nw * (s.r * s.cos - h * s.z * s.sin),
+        -s.z * nr * s.sin + nw * (s.r * s.sin + h * s.z * s.cos), rise_ == 0 ? 0 : -nw * s.phi;
+    return j;
+  }
+
+  double rise_, scale_;
+  Mat5 A_ = Mat5::Zero();
+  Vec5 b_ = Vec5::Zero();
+  double square_ = 0, weight_ = 0;
+};
+
+}  // namespace
+
+ScrewMotion refined(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const ScrewMotion& motion) {
+  ScrewMotion best = motion;
+  double scale = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kRounds; ++round) {
+    const Frame f(best);
+    const Equations equations(samples_of(facets, of, f), f.rise, scale);
+    scale = std::max(2 * equations.rms(), 1e-9);
+    const Vec5 x = equations.solve();
+    if (!x.allFinite() || x.norm() > kMostChange) return round == 0 ? motion : best;
+    ScrewMotion next;
+    next.c = (f.c + x[2] * f.e1 + x[3] * f.e2).normalized();
+    const Vec3 p = f.p + x[0] * f.e1 + x[1] * f.e2;
+    next.c_bar = -next.c.cross(p) + (f.rise == 0 ? 0.0 : f.rise + x[4]) * next.c;
+    if (f.rise == 0) next.c_bar -= next.c * next.c.dot(next.c_bar);
+    best = next;
+  }
+  return best;
+}
+
+}  // namespace tegotae

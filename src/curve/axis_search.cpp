@@ -1,0 +1,483 @@
+#include "curve/axis_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "curve/axis_refine.hpp"
+#include "curve/screw_fit.hpp"
+
+namespace tegotae {
+namespace {
+
+/// Facets that are looked at; of larger meshes a sample.
+constexpr std::size_t kMostFacets = 8000;
+/// Places at which the search begins, and facets around each of them that the first fit takes.
+constexpr int kSeeds = 40;
+constexpr std::size_t kNearest[] = {1200, 300, 60};
+/// Every so many facets are asked first, and this part of the surface must follow a motion or it is dropped.
+constexpr std::size_t kFirstStride = 8;
+constexpr double kLeastShare = 0.01;
+/// How far a facet's normal may be from square to the motion (rad) beyond what its own width explains: a corner of a
+/// chord of length d over the radius r is off by d / 2r, and more where the facet is no chord's half.
+constexpr double kTolerance = 0.02, kWidthShare = 0.75, kMostWidth = 0.15;
+/// The last rounds weigh facets by their angle against this: a cone beside a flank must not bend the flank's rise.
+constexpr double kSharpAngle = 0.008;
+constexpr int kSharpRounds = 4, kRiseRounds = 3;
+constexpr double kRounds[] = {4 * kTolerance, 2 * kTolerance, kTolerance, kTolerance};
+/// Of facets that merely cross the motion as they happen to lie, four times as many are within four tolerances.
+constexpr double kMostWider = 1.35;
+/// A rough surface spreads its normals; what is most of a part is taken all the same.
+constexpr double kMuch = 0.3, kMostWiderOfMuch = 1.75;
+/// So many motions that turn out to be none end the search.
+constexpr int kMostFailures = 16;
+/// Normals within 11° of the axis are those of ends and shoulders, which follow any motion about it.
+constexpr double kEndNormal = 0.98;
+/// A surface that turns about an axis has normals in at least so many of the sectors around it; prisms do not.
+constexpr int kSectors = 32, kLeastSectors = 8;
+constexpr double kSectorShare = 0.002;
+/// On a sphere all axes through its center fit alike: the second least mean square is as small as the least.
+constexpr double kDistinct = 8, kLeastSecond = 1e-3;
+/// Facets that lean less than this along the axis (cosine) say nothing about a rise.
+constexpr double kLeastLean = 0.3;
+/// What is left of a chord's angle at its middle, for facets that are no chord's half.
+constexpr double kChordError = 0.05;
+/// Facets are of one rise where their own ones lie within so many times their spread, which is at least this part of
+/// the size.
+constexpr double kSameSpread = 2, kLeastSpread = 1e-4;
+/// Rises from which the most frequent one is looked for, steps of each.
+constexpr int kStarts = 16, kSteps = 12;
+/// Two motions are one where axes and rises agree to this (rad, shares of the size).
+constexpr double kSameAngle = 0.02, kSamePlace = 0.01, kSameRise = 0.1;
+
+using Key = std::array<double, 9>;
+
+/// The three corners, least first: the same for every order in which they are listed.
+Key key_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  std::array<Vec3, 3> v{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  std::sort(v.begin(), v.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  return {v[0].x(), v[0].y(), v[0].z(), v[1].x(), v[1].y(), v[1].z(), v[2].x(), v[2].y(), v[2].z()};
+}
+
+std::uint64_t hash_of(const Key& key) {
+  std::uint64_t h = 0x9e3779b97f4a7c15ull;
+  for (const double x : key) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    h = (h ^ bits) * 0xd6e8feb86659fd93ull;
+    h ^= h >> 29;
+  }
+  return h;
+}
+
+/// The mesh's triangles as facets, by place; of many the same sample whatever their order.
+class Facets {
+ public:
+  explicit Facets(const TriangleMesh& mesh) {
+    Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+    for (const auto& t : mesh.triangles) {
+      for (const std::uint32_t v : t) {
+        lo = lo.cwiseMin(mesh.vertices[v]);
+        hi = hi.cwiseMax(mesh.vertices[v]);
+      }
+    }
+    middle = 0.5 * (lo + hi);
+    size = 0.5 * (hi - lo).norm();
+    if (!(size > 0) || !std::isfinite(size)) return;
+    std::vector<Key> keys;
+    for (const std::uint32_t t : sample(mesh)) keys.push_back(key_of(mesh, mesh.triangles[t]));
+    std::sort(keys.begin(), keys.end());
+    for (const Key& k : keys) add(k);
+  }
+
+  std::vector<Facet> all;
+  Vec3 middle;
+  double size = 0;  ///< half the diagonal of the box, m
+  double area = 0;  ///< of all facets, in size²
+
+ private:
+  static std::vector<std::uint32_t> sample(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> chosen(mesh.triangles.size());
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    if (chosen.size() <= kMostFacets) return chosen;
+    std::vector<std::uint64_t> hash(chosen.size());
+    for (const std::uint32_t t : chosen) hash[t] = hash_of(key_of(mesh, mesh.triangles[t]));
+    std::vector<std::uint64_t> sorted = hash;
+    std::nth_element(sorted.begin(), sorted.begin() + kMostFacets, sorted.end());
+    // Equal faces have equal hashes and stay or go together.
+    const std::uint64_t bound = sorted[kMostFacets];
+    chosen.erase(std::remove_if(chosen.begin(), chosen.end(), [&](std::uint32_t t) { return hash[t] >= bound; }),
+                 chosen.end());
+    return chosen;
+  }
+
+  void add(const Key& k) {
+    std::array<Vec3, 3> v;
+    for (int i = 0; i < 3; ++i) v[i] = (Vec3(k[3 * i], k[3 * i + 1], k[3 * i + 2]) - middle) / size;
+    Facet f;
+    f.center = (v[0] + v[1] + v[2]) / 3;
+    for (int i = 0; i < 3; ++i) f.edge[i] = v[(i + 1) % 3] - v[i];
+    f.normal = f.edge[0].cross(f.edge[1]);
+    const double length = f.normal.norm();
+    const double longest = std::max({f.edge[0].squaredNorm(), f.edge[1].squaredNorm(), f.edge[2].squaredNorm()});
+    if (!(length > 1e-6 * longest)) return;
+    f.normal /= length;
+    f.area = 0.5 * length;
+    area += f.area;
+    all.push_back(f);
+  }
+};
+
+/// The angle between the facet and the motion at the middle of its chord.
+double angle_at_middle(const Facet& f, const ScrewMotion& m) {
+  const Vec3 v = m.velocity(chord_middle(f, m));
+  const double speed = v.norm();
+  return speed > 0 ? std::abs(f.normal.dot(v)) / speed : 0;
+}
+
+/// How far the facet is from being tangent to the motion, as an angle, at the worst of its corners, beyond what its
+/// width explains: a facet of width d across the motion is a chord.
+double angle_off(const Facet& f, const ScrewMotion& m) {
+  const Vec3 middle = m.velocity(f.center);
+  const double speed2 = middle.squaredNorm();
+  if (!(speed2 > 0)) return 1;
+  double width = 0, worst = 0;
+  for (const Vec3& e : f.edge) width = std::max(width, std::abs(e.dot(middle)));
+  for (const Vec3& x : f.corners()) {
+    const Vec3 v = m.velocity(x);
+    const double speed = v.norm();
+    worst = std::max(worst, speed > 0 ? std::abs(f.normal.dot(v)) / speed : 1.0);
+  }
+  return std::max(0.0, worst - std::min(kWidthShare * width / speed2, kMostWidth));
+}
+
+class Search {
+ public:
+  explicit Search(const TriangleMesh& mesh) : facets_(mesh), free_(facets_.all.size(), 1) {}
+
+  std::vector<ScrewAxis> run() {
+    std::vector<double> apart(facets_.all.size(), std::numeric_limits<double>::infinity());
+    for (int i = 0; i < kSeeds && found_.size() < kMostAxes && failures_ < kMostFailures; ++i) {
+      const std::size_t seed = next_seed(apart);
+      if (seed == facets_.all.size()) break;
+      spread(seed, apart);
+      for (const std::size_t k : kNearest)
+        if (try_seed(seed, k)) break;
+    }
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const ScrewAxis& a, const ScrewAxis& b) { return a.area > b.area; });
+    return found_;
+  }
+
+ private:
+  /// The largest facet first, then whatever is farthest from all seeds and follows no axis yet.
+  std::size_t next_seed(const std::vector<double>& apart) const {
+    std::size_t best = facets_.all.size();
+    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
+      if (!free_[i] || !(apart[i] > 0)) continue;
+      if (best == facets_.all.size() || apart[i] > apart[best] ||
+          (apart[i] == apart[best] && facets_.all[i].area > facets_.all[best].area))
+        best = i;
+    }
+    return best;
+  }
+
+  static double distance2(const Facet& a, const Facet& b) {
+    constexpr double kTurn = 0.1;  // a normal of another direction is like a way of this part of the size
+    return (a.center - b.center).squaredNorm() + kTurn * kTurn * (1 - std::pow(a.normal.dot(b.normal), 2));
+  }
+
+  void spread(std::size_t seed, std::vector<double>& apart) const {
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      apart[i] = std::min(apart[i], distance2(facets_.all[seed], facets_.all[i]));
+  }
+
+  bool try_seed(std::size_t seed, std::size_t count) {
+    if (facets_.all.size() < 12) return false;
+    near_.clear();
+    for (std::size_t i = 0; i < facets_.all.size(); ++i)
+      near_.emplace_back(distance2(facets_.all[seed], facets_.all[i]), i);
+    const std::size_t n = std::min(count, near_.size());
+    std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(n - 1), near_.end());
+    of_.clear();
+    for (std::size_t i = 0; i < n; ++i) of_.push_back(near_[i].second);
+    std::sort(of_.begin(), of_.end());
+    ScrewMotion motion;
+    if (!fit_locally(motion)) return false;
+    if (share_within(motion, kRounds[0], kFirstStride) < kLeastShare) return false;
+    const bool grown = grow(motion);
+    failures_ += !grown;
+    return grown;
+  }
+
+  /// Weights that fall off with the angle keep what belongs to another surface out.
+  bool fit_locally(ScrewMotion& motion) {
+    double scale = 0.3;
+    for (int round = 0; round < 5; ++round, scale = std::max(kTolerance, 0.5 * scale)) {
+      weight_.clear();
+      for (const std::size_t i : of_) {
+        const Facet& f = facets_.all[i];
+        const double x = round == 0 ? 0 : angle_off(f, motion) / scale;
+        weight_.push_back(f.area / ((1 + x * x) * (1 + x * x)));
+      }
+      const ScrewFit fit = fit_screw(facets_.all, of_, weight_);
+      if (!fit.found) return false;
+      motion = fit.motion;
+    }
+    return true;
+  }
+
+  double share_within(const ScrewMotion& motion, double tolerance, std::size_t stride) const {
+    double in = 0, all = 0;
+    for (std::size_t i = 0; i < facets_.all.size(); i += stride) {
+      const Facet& f = facets_.all[i];
+      all += f.area;
+      if (free_[i] && !is_end(f, motion) && angle_off(f, motion) < tolerance) in += f.area;
+    }
+    return all > 0 ? in / all : 0;
+  }
+
+  static bool is_end(const Facet& f, const ScrewMotion& m) { return std::abs(f.normal.dot(m.c)) > kEndNormal; }
+
+  /// From a first motion to the one of all facets that follow it, and whether that is a surface that turns.
+  bool grow(ScrewMotion motion) {
+    ScrewFit fit;
+    for (const double tolerance : kRounds) {
+      take(motion, tolerance);
+      if (of_.size() < 8) return false;
+      fit = fit_screw(facets_.all, of_, weight_);
+      if (!fit.found) return false;
+      motion = fit.motion;
+    }
+    for (int round = 0; round < kSharpRounds; ++round) {
+      take(motion, kTolerance);
+      sharpen(motion);
+      fit = fit_screw(facets_.all, of_, weight_, &motion);
+      if (!fit.found) return false;
+      motion = fit.motion;
+    }
+    for (int round = 0; round < kRiseRounds; ++round)
+      if (!settle_rise(motion)) return false;
+    if (!(fit.second > kDistinct * fit.best && fit.second > kLeastSecond) || !turns(motion)) return false;
+    const double in = share_within(motion, kTolerance, 1), wider = share_within(motion, 4 * kTolerance, 1);
+    if (in < kLeastShare || wider > (in > kMuch ? kMostWiderOfMuch : kMostWider) * in) return false;
+    motion = refined(facets_.all, of_, motion);
+    use_up(motion);
+    add(motion, in);
+    return true;
+  }
+
+  /// What follows the motion, or nearly, begins no other search, nor do ends and shoulders; a cone beside a thread
+  /// does.
+  void use_up(const ScrewMotion& motion) {
+    const ScrewMotion plain = with_rise(motion, -motion.rise());
+    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
+      const Facet& f = facets_.all[i];
+      if (is_end(f, motion)) free_[i] = 0;
+      if (!free_[i] || angle_off(f, motion) > 4 * kTolerance) continue;
+      if (std::abs(f.normal.dot(motion.c)) >= kLeastLean) {
+        const double own = own_rise(f, plain).rise, rise = motion.rise();
+        const bool other = std::abs(rise) < kLeastSpread ? std::abs(own) > 2 * kSameSpread * spread_
+                                                         : std::abs(own) < std::abs(own - rise);
+        if (other) continue;
+      }
+      free_[i] = 0;
+    }
+  }
+
+  /// The facets that follow the motion, weighted so that squares are of angles.
+  void take(const ScrewMotion& motion, double tolerance) {
+    of_.clear();
+    weight_.clear();
+    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
+      const Facet& f = facets_.all[i];
+      if (!free_[i] || is_end(f, motion) || angle_off(f, motion) > tolerance) continue;
+      const double speed2 = motion.velocity(f.center).squaredNorm();
+      of_.push_back(i);
+      weight_.push_back(f.area / std::max(speed2, 1e-4));
+    }
+  }
+
+  void sharpen(const ScrewMotion& motion) {
+    for (std::size_t k = 0; k < of_.size(); ++k) {
+      const double x = angle_at_middle(facets_.all[of_[k]], motion) / kSharpAngle;
+      weight_[k] /= (1 + x * x) * (1 + x * x);
+    }
+  }
+
+  /// The rise that one facet asks for by itself, what its width may make of it, and its weight.
+  struct OwnRise {
+    double rise, spread, weight;
+  };
+
+  OwnRise own_rise(const Facet& f, const ScrewMotion& plain) const {
+    const double lean = f.normal.dot(plain.c);
+    const Vec3 v = plain.velocity(chord_middle(f, plain));
+    double width = 0;
+    for (const Vec3& e : f.edge) width = std::max(width, std::abs(e.dot(v)));
+    const double speed = std::max(v.norm(), 1e-6),
+                 chord = kChordError * width / speed * std::sqrt(1 - std::min(1.0, lean * lean));
+    return {-f.normal.dot(v) / lean, (chord + rough_ * speed) / std::abs(lean), f.area * lean * lean};
+  }
+
+  /// How far normals are off anyway, rad: a part of the facets follows any rise, so a quantile of them tells.
+  double roughness(const ScrewMotion& motion) const {
+    std::vector<double> angle;
+    for (const std::size_t i : of_) angle.push_back(angle_at_middle(facets_.all[i], motion));
+    const auto place = angle.begin() + static_cast<std::ptrdiff_t>(0.3 * static_cast<double>(angle.size()));
+    std::nth_element(angle.begin(), place, angle.end());
+    return 2.6 * *place;  // of a normal distribution, 30 % are within 1 / 2.6 of the deviation
+  }
+
+  /// The most frequent rise of the facets that have one (mean shift), and the facets of it alone: the cone beside a
+  /// thread turns about the same axis, and would draw the fit to a rise between both.
+  bool settle_rise(ScrewMotion& motion) {
+    ScrewMotion plain = motion;
+    plain.c_bar -= motion.rise() * motion.c;
+    take(motion, kTolerance);
+    if (of_.size() < 8) return false;
+    rough_ = roughness(motion);
+    std::vector<OwnRise> own;
+    double spread = 0, weight = 0;
+    for (const std::size_t i : of_) {
+      if (std::abs(facets_.all[i].normal.dot(motion.c)) < kLeastLean) continue;
+      own.push_back(own_rise(facets_.all[i], plain));
+      spread += own.back().weight * own.back().spread;
+      weight += own.back().weight;
+    }
+    double rise = 0;
+    if (weight > 0) {
+      spread = std::max(kLeastSpread, spread / weight);
+      rise = most_frequent(own, spread);
+      if (std::abs(rise) < spread) rise = 0;
+    }
+    const bool turned_only = rise == 0;
+    const ScrewMotion wanted = with_rise(plain, rise);
+    keep_rise(wanted, plain, rise, spread);
+    if (of_.size() < 8) return false;
+    if (turned_only) {
+      motion = without_rise(facets_.all, of_, weight_, wanted);
+    } else {
+      const ScrewFit fit = fit_screw(facets_.all, of_, weight_, &wanted);
+      if (!fit.found) return false;
+      motion = fit.motion;
+    }
+    take(motion, kTolerance);
+    spread_ = spread;
+    plain = with_rise(motion, -motion.rise());
+    keep_rise(motion, plain, motion.rise(), spread);
+    return of_.size() >= 8;
+  }
+
+  static ScrewMotion with_rise(ScrewMotion plain, double rise) {
+    plain.c_bar += rise * plain.c;
+    return plain;
+  }
+
+  /// Drops those of of_ whose own rise is another.
+  void keep_rise(const ScrewMotion& motion, const ScrewMotion& plain, double rise, double spread) {
+    std::size_t kept = 0;
+    for (const std::size_t i : of_) {
+      const Facet& f = facets_.all[i];
+      if (std::abs(f.normal.dot(motion.c)) >= kLeastLean &&
+          std::abs(own_rise(f, plain).rise - rise) > kSameSpread * spread)
+        continue;
+      of_[kept++] = i;
+    }
+    of_.resize(kept);
+    weight_.clear();
+    for (const std::size_t i : of_)
+      weight_.push_back(facets_.all[i].area / std::max(motion.velocity(facets_.all[i].center).squaredNorm(), 1e-4));
+  }
+
+  static double most_frequent(std::vector<OwnRise>& own, double spread) {
+    std::sort(own.begin(), own.end(), [](const OwnRise& a, const OwnRise& b) {
+      return a.rise != b.rise ? a.rise < b.rise : a.weight < b.weight;
+    });
+    double best = 0, most = -1;
+    for (int k = 0; k < kStarts; ++k) {
+      double at = own[own.size() * static_cast<std::size_t>(2 * k + 1) / (2 * kStarts)].rise, density = 0;
+      for (int step = 0; step < kSteps; ++step) {
+        double sum = 0;
+        density = 0;
+        for (const OwnRise& o : own) {
+          const double x = (o.rise - at) / spread;
+          if (std::abs(x) > 3) continue;
+          const double w = o.weight * std::exp(-0.5 * x * x);
+          sum += w * o.rise;
+          density += w;
+        }
+        if (!(density > 0)) break;
+        at = sum / density;
+      }
+      if (density > most) most = density, best = at;
+    }
+    return best;
+  }
+
+  bool turns(const ScrewMotion& motion) const {
+    std::array<double, kSectors> sector{};
+    double all = 0;
+    const Vec3 u = motion.c.unitOrthogonal(), v = motion.c.cross(u);
+    for (const std::size_t i : of_) {
+      const Facet& f = facets_.all[i];
+      if (is_end(f, motion)) continue;
+      // Which of the two sides a face shows is not known of all meshes; its place tells.
+      const Vec3 x = f.center - motion.axis_point();
+      const double x_u = x.dot(u), x_v = x.dot(v);
+      const double side = f.normal.dot(x_u * u + x_v * v) < 0 ? -1 : 1;
+      const double angle = std::atan2(side * f.normal.dot(v), side * f.normal.dot(u));
+      sector[static_cast<std::size_t>((angle / 6.283185307179586 + 1) * kSectors) % kSectors] += f.area;
+      all += f.area;
+    }
+    return std::count_if(sector.begin(), sector.end(), [&](double a) { return a > kSectorShare * all; }) >=
+           kLeastSectors;
+  }
+
+  void add(const ScrewMotion& motion, double share) {
+    ScrewAxis axis;
+    // The same axis comes out with either sign; the first coordinate that is not nearly zero is positive.
+    Vec3 c = motion.c;
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(c[k]) < 1e-6) continue;
+      if (c[k] < 0) c = -c;
+      break;
+    }
+    axis.direction = c;
+    axis.origin = facets_.middle + facets_.size * motion.axis_point();
+    axis.rise = std::abs(motion.rise()) < kLeastSpread ? 0 : facets_.size * motion.rise();
+    axis.area = share * facets_.area * facets_.size * facets_.size;
+    for (ScrewAxis& known : found_) {
+      const Vec3 apart = axis.origin - known.origin;
+      const double rises = std::max(std::abs(axis.rise), std::abs(known.rise));
+      if (known.direction.cross(c).norm() > kSameAngle || apart.cross(c).norm() > kSamePlace * facets_.size ||
+          std::abs(axis.rise - known.rise) > kSameRise * rises)
+        continue;
+      known.area += axis.area;
+      return;
+    }
+    found_.push_back(axis);
+  }
+
+  Facets facets_;
+  std::vector<char> free_;  ///< follows no axis yet
+  std::vector<ScrewAxis> found_;
+  int failures_ = 0;
+  double rough_ = 0, spread_ = 0;  ///< of the motion that is looked at
+  std::vector<std::pair<double, std::size_t>> near_;
+  std::vector<std::size_t> of_;
+  std::vector<double> weight_;
+};
+
+}  // namespace
+
+std::vector<ScrewAxis> find_axes(const TriangleMesh& mesh) {
+  return Search(mesh).run();
+}
+
+}  // namespace tegotae
