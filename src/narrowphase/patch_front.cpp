@@ -46,18 +46,21 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
       pool_(4 * std::size_t{capacity.pairs} + kFan),
       boxes_{LaneBlocks(capacity.pairs, kBoxFields), std::vector<std::uint32_t>(capacity.pairs), 0},
       triangles_{LaneBlocks(capacity.pairs, kTriFields), std::vector<std::uint32_t>(capacity.pairs), 0},
+      curved_(capacity.curved, capacity.curved > 0 ? kMostAxisPairs : 0),
       failures_(capacity.pairs) {
   stack_.reserve(capacity.pairs);
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
 }
 
-void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept {
+void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b,
+                        const std::vector<AxisPair>* axes) noexcept {
   a_ = &a;
   b_ = &b;
   center_ = center_A;
   offset_a_ = a.origin() - center_A;
   boxes_.count = triangles_.count = 0;
+  curved_.attach(axes);
   blocking_.clear();
   splits_.clear();
   pool_used_ = 1;
@@ -66,7 +69,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   debt_ = 0;
   effort_ = kMostTries;
   motion_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, false, false, {0, 0, 0}};
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}};
   enter(0);
 }
 
@@ -106,6 +109,7 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
 
 void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_ = Sweep(X_BA, d, center_, *b_, a_->radius() + offset_a_.norm(), clearance_);
+  curved_.begin(*a_, center_, *b_, sweep_);
   const double carried = d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm();
   if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
 }
@@ -147,6 +151,8 @@ bool PatchFront::collect_failures() {
       failure_count_ += n;
     }
   }
+  if (past(limit_.deadline_ns)) return false;
+  failure_count_ += curved_.collect_failures(failures_.data() + failure_count_);
   return true;
 }
 
@@ -179,13 +185,17 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
         return Outcome::blocked;
       continue;
     }
+    // What was curved is asked so first, what was flat last.
+    if (p.curved > 0 && bend(id, 0)) continue;
     PatchNode scratch_a, scratch_b;
     const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
     const BoxPair boxes(a, node_center(a), b, sweep_);
     if (separate_boxes(boxes, sweep_, node_reach(a), 0, n)) {
+      flatten(id);
       set_plane(id, n);
       continue;
     }
+    if (p.curved == 0 && bend(id, 0)) continue;
     if (!split(id)) {
       report_.overflow = true;
       return Outcome::out_of_work;
@@ -210,10 +220,10 @@ void PatchFront::raise() {
   effort_ = std::max(effort_, fewest);
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
   int tries = 0;
-  // Round robin over both groups, once around at most.
+  // Round robin over all groups, once around at most.
   for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries < most; --looks) {
-    if (++cursor_ >= boxes_.count + triangles_.count) cursor_ = 0;
-    const std::uint32_t id = cursor_ < boxes_.count ? boxes_.owner[cursor_] : triangles_.owner[cursor_ - boxes_.count];
+    if (++cursor_ >= static_cast<std::uint32_t>(pairs())) cursor_ = 0;
+    const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
     if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
@@ -232,10 +242,12 @@ bool PatchFront::try_raise(std::uint32_t id) {
   // With some gap to spare, or the next motion splits it again.
   const double spare = std::min(kRaiseSpare * motion_, kMostSpare);
   Vec3 n = plane(p.child);
-  if (!separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) return false;
-  collapse(id);
-  set_plane(id, n);
-  return true;
+  if (separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) {
+    collapse(id);
+    set_plane(id, n);
+    return true;
+  }
+  return bend(id, spare);
 }
 
 }  // namespace tegotae

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "narrowphase/certify.hpp"
+#include "narrowphase/curved_pairs.hpp"
 #include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/patch_separate.hpp"
 #include "narrowphase/patch_tree.hpp"
@@ -16,6 +17,7 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
+  std::uint32_t curved = 0;        ///< pairs about each of kMostAxisPairs common axes
 };
 
 /// Two triangles that stop a motion.
@@ -32,8 +34,10 @@ class PatchFront {
   explicit PatchFront(const FrontCapacity& capacity = {});
 
   /// Starts over between `a` (with its center of mass `center_A`, m, file frame) and `b`; they must outlive the front's
-  /// use. The next call of certify builds the front (a few hundred µs in a tight fit).
-  void attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b) noexcept;
+  /// use, and so must `axes`, about which pairs that no plane keeps apart may be kept apart instead. The next call of
+  /// certify builds the front (a few hundred µs in a tight fit).
+  void attach(const PatchTree& a, const Vec3& center_A, const PatchTree& b,
+              const std::vector<AxisPair>* axes = nullptr) noexcept;
 
   /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.
   void set_clearance(double clearance) noexcept { clearance_ = clearance; }
@@ -50,7 +54,9 @@ class PatchFront {
   /// Length of the mean normal of all planes: 1 when they face one way, 0 when they face each other.
   double one_sidedness() const noexcept;
 
-  int pairs() const { return static_cast<int>(boxes_.count + triangles_.count); }
+  int pairs() const { return static_cast<int>(boxes_.count + triangles_.count + curved_.count()); }
+  /// Of them those that are kept apart about a common axis.
+  int curved_pairs() const { return static_cast<int>(curved_.count()); }
 
   /// Calls f(a, a_is_face, b, b_is_face) for every pair of the front: nodes of the trees, or faces.
   template <typename F>
@@ -61,6 +67,7 @@ class PatchFront {
         f(p.a, p.face_a, p.b, p.face_b);
       }
     }
+    curved_.for_each([&](std::uint32_t id) { f(pool_[id].a, false, pool_[id].b, false); });
   }
 
  private:
@@ -70,9 +77,10 @@ class PatchFront {
     std::uint32_t parent;         ///< kNoPair for the root
     std::uint32_t child;          ///< first of `children` in a row
     std::uint32_t slot;           ///< in its group, while in the front
-    std::uint16_t children;       ///< 0: in the front
+    std::uint8_t children;        ///< 0: in the front
+    std::uint8_t curved;          ///< kept apart about the axis pair of this number less one; 0: by a plane
     bool face_a, face_b;          ///< which of a and b are faces
-    std::array<float, 3> normal;  ///< last plane, kept here while split
+    std::array<float, 3> normal;  ///< last plane, kept here while split or curved
   };
   /// The pairs of the front of one kind, dense.
   struct Group {
@@ -96,7 +104,10 @@ class PatchFront {
   void collapse(std::uint32_t id);
   void roll_back();
   void raise();
-  bool all_in_front(std::uint32_t id) const;  ///< the children
+  bool bend(std::uint32_t id, double spare);
+  void flatten(std::uint32_t id);
+  std::uint32_t in_front(std::uint32_t i) const;  ///< the i-th of pairs()
+  bool all_in_front(std::uint32_t id) const;      ///< the children
   bool try_raise(std::uint32_t id);
 
   std::uint32_t allocate(std::uint32_t children);
@@ -130,6 +141,7 @@ class PatchFront {
   std::uint32_t pool_used_ = 0;
   std::uint32_t free_twos_ = 0, free_fans_ = 0;  ///< heads of the free lists, linked through `child`
   Group boxes_, triangles_;
+  CurvedPairs curved_;
   std::vector<std::uint32_t>
       failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check
   std::size_t failure_count_ = 0;

@@ -35,10 +35,12 @@ bool PatchFront::split(std::uint32_t id) {
   // The side with the larger second extent: a long strip is as good as a short one while it is narrow.
   const bool ends = a.leaf() && b.leaf();
   auto worth = [](const PatchNode& n) { return n.leaf() ? kLeafWorth : 1.0f; };
-  const bool split_a = !p.face_a && (p.face_b || worth(a) * a.half[1] > worth(b) * b.half[1]);
+  bool split_a = !p.face_a && (p.face_b || worth(a) * a.half[1] > worth(b) * b.half[1]);
+  if (!ends && !p.face_a && !p.face_b && !a.leaf() && !b.leaf())
+    if (const auto thicker = curved_.thicker(p.a, p.b)) split_a = *thicker;
   const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
   const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
-  if (boxes_.count + triangles_.count + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
+  if (static_cast<std::uint32_t>(pairs()) + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
       stack_.size() + children > stack_.capacity()) {
     return false;
   }
@@ -48,10 +50,11 @@ bool PatchFront::split(std::uint32_t id) {
   leave(id);
   PairNode& parent = pool_[id];
   parent.child = child;
-  parent.children = static_cast<std::uint16_t>(children);
+  parent.children = static_cast<std::uint8_t>(children);
+  parent.curved = 0;
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, p.face_a, p.face_b, parent.normal};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, parent.normal};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -79,6 +82,42 @@ void PatchFront::collapse(std::uint32_t id) {
   pool_[id].children = 0;
   pool_[id].child = kNoPair;
   enter(id);
+}
+
+/// Keeps the pair apart about a common axis, whether it is in the front or split into pairs that all are.
+bool PatchFront::bend(std::uint32_t id, double spare) {
+  const PairNode& p = pool_[id];
+  if (p.face_a || p.face_b) return false;
+  const auto found = curved_.separate(p.a, p.b, spare);
+  if (!found) return false;
+  if (p.children == 0 && p.curved == found->axis + 1) {
+    curved_.renew(*found, p.slot, p.a, p.b);
+    return true;
+  }
+  if (curved_.full(found->axis)) return false;
+  if (p.children > 0) collapse(id);
+  flatten(id);
+  const Vec3 n = plane(id);
+  leave(id);
+  PairNode& bent = pool_[id];
+  for (int k = 0; k < 3; ++k) bent.normal[k] = static_cast<float>(n[k]);
+  bent.curved = static_cast<std::uint8_t>(found->axis + 1);
+  bent.slot = curved_.enter(*found, bent.a, bent.b, id);
+  return true;
+}
+
+/// Back to a plane; to be followed by set_plane.
+void PatchFront::flatten(std::uint32_t id) {
+  if (pool_[id].curved == 0) return;
+  leave(id);
+  pool_[id].curved = 0;
+  enter(id);
+}
+
+std::uint32_t PatchFront::in_front(std::uint32_t i) const {
+  if (i < boxes_.count) return boxes_.owner[i];
+  i -= boxes_.count;
+  return i < triangles_.count ? triangles_.owner[i] : curved_.owner(i - triangles_.count);
 }
 
 bool PatchFront::all_in_front(std::uint32_t id) const {
@@ -116,6 +155,11 @@ void PatchFront::enter(std::uint32_t id) {
 }
 
 void PatchFront::leave(std::uint32_t id) {
+  if (const std::uint32_t curved = pool_[id].curved; curved > 0) {
+    const std::uint32_t moved = curved_.leave(curved - 1, pool_[id].slot);
+    if (moved != CurvedPairs::kNobody) pool_[moved].slot = pool_[id].slot;
+    return;
+  }
   Group& g = group(pool_[id]);
   const std::uint32_t slot = pool_[id].slot, last = --g.count;
   if (slot == last) return;
@@ -146,6 +190,7 @@ void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
 
 Vec3 PatchFront::plane(std::uint32_t id) const {
   const PairNode& p = pool_[id];
+  if (p.curved > 0) return {p.normal[0], p.normal[1], p.normal[2]};
   const LaneBlocks& lanes = (faces(p) ? triangles_ : boxes_).lanes;
   return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
 }

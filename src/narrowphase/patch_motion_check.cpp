@@ -14,6 +14,8 @@ constexpr std::size_t kMostFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kLeastPairs = 1u << 13;
 constexpr std::size_t kMostPairs = 1u << 15;
+// Of a front's pairs those about each of its axes that may be curved (about 160 bytes each).
+constexpr double kCurvedShare = 0.125;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
 constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
 constexpr int kMostRounds = 4;
@@ -52,19 +54,23 @@ constexpr double kShareKept = 0.999;
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                                    std::vector<Pose> poses)
-    : center_(center), radius_(radius), held_(cached_patch_tree(held)), poses_(std::move(poses)) {
+    : center_(center), radius_(radius), held_(cached_patch_tree(held)), pairing_(held_), poses_(std::move(poses)) {
   std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
   std::vector<CellFront::FixedPart> parts;
+  bool any_axes = false;
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     auto& tree = trees[fixed[i].get()];
     if (!tree) tree = cached_patch_tree(fixed[i]);
     fixed_.push_back(tree);
+    axes_.push_back(pairing_.with(tree));
+    any_axes = any_axes || !axes_.back()->empty();
     parts.push_back({tree, poses_[i]});
   }
   const std::size_t fronts = std::min(kMostFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
   capacity.blocking = kMostBlocking;
   capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kLeastPairs, kMostPairs));
+  if (any_axes) capacity.curved = static_cast<std::uint32_t>(kCurvedShare * capacity.pairs);
   fronts_.reserve(fronts);
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);
   part_of_.assign(fronts, kNobody);
@@ -96,7 +102,7 @@ void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   used_[front] = now_;
   cuts_[front] = 0;
   ahead_[front] = Ahead{};
-  fronts_[front].attach(*held_, center_, *fixed_[part]);
+  fronts_[front].attach(*held_, center_, *fixed_[part], axes_[part]);
 }
 
 void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 
+#include "narrowphase/axis_pairs.hpp"
 #include "narrowphase/cell_front.hpp"
 #include "narrowphase/motion_check.hpp"
 #include "narrowphase/patch_front.hpp"
@@ -55,6 +56,8 @@ class PatchMotionCheck final : public MotionCheck {
   double radius_;
   std::shared_ptr<const PatchTree> held_;
   std::vector<std::shared_ptr<const PatchTree>> fixed_;
+  AxisPairing pairing_;
+  std::vector<const std::vector<AxisPair>*> axes_;  ///< of each part with the held one
   std::vector<Pose> poses_;
   std::vector<std::uint32_t> one_ = {0};  ///< the part of stands()
   std::vector<PatchFront> fronts_;
