@@ -16,8 +16,8 @@ constexpr double kPeriod = 1e-3;  // s
 LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpeed& speed, int rounds,
                          LoopTrace& trace) {
   std::vector<Pose> way;
-  for (int i = 0; i < rounds; ++i) scene.add_round(i, way);
-  const StylusScript script(timed(way, speed));
+  for (int i = 0; i < rounds && scene.add_round; ++i) scene.add_round(i, way);
+  const StylusScript script(scene.pen ? timed(scene.pen, scene.pen_seconds, speed) : timed(way, speed));
   const auto ticks = static_cast<std::size_t>(std::ceil(script.end() / kPeriod)) + 1;
   const std::size_t stride = std::max<std::size_t>(ticks / static_cast<std::size_t>(scene.most_fcl_poses), 1);
 
@@ -39,7 +39,7 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
         for (const Pose& X : r.pieces) trace.committed.add(X);
         trace.checked += static_cast<std::int64_t>(r.pieces.size());
       }
-      if (r.contacts == 0 && !r.flags.timed_out) continue;
+      if (r.contacts == 0 && !r.flags.timed_out && !scene.all_ticks) continue;
       wall.push_back(wall1 - wall0);
       cpu.push_back(cpu1 - cpu0);
       f.contacts += r.contacts;

@@ -1,6 +1,7 @@
 #include "bench/path.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tegotae::bench {
 namespace {
@@ -30,6 +31,14 @@ std::vector<StylusScript::Key> timed(const std::vector<Pose>& way, const PenSpee
     }
     keys.push_back({t, way[i]});
   }
+  return keys;
+}
+
+std::vector<StylusScript::Key> timed(const std::function<Pose(double t)>& pen, double seconds, const PenSpeed& speed) {
+  constexpr double kStep = 0.002;  // s of the hand
+  std::vector<StylusScript::Key> keys;
+  const int n = static_cast<int>(std::ceil(seconds / kStep));
+  for (int i = 0; i <= n; ++i) keys.push_back({seconds * i / n / speed.pace, pen(seconds * i / n)});
   return keys;
 }
 

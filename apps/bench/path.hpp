@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "tegotae/device/script.hpp"
@@ -10,12 +11,16 @@ namespace tegotae::bench {
 struct PenSpeed {
   double linear;
   double angular;
+  double pace;  ///< of a pen that follows the clock
 };
-inline constexpr PenSpeed kHandSpeed = {0.1, 0.5};
-inline constexpr PenSpeed kFastSpeed = {0.4, 4.0};
+inline constexpr PenSpeed kHandSpeed = {0.1, 0.5, 1};
+inline constexpr PenSpeed kFastSpeed = {0.4, 4.0, 2};
 
 /// A pen's way through poses, all of it at one speed: each leg takes as long as its slower part, moving or turning.
 std::vector<StylusScript::Key> timed(const std::vector<Pose>& way, const PenSpeed& speed);
+
+/// A pen that follows the clock: `pen` at hand speed for `seconds`.
+std::vector<StylusScript::Key> timed(const std::function<Pose(double t)>& pen, double seconds, const PenSpeed& speed);
 
 /// A round of a peg (tip at `tip` in its file frame, axis z) at a blind hole of `depth` (m) whose top is at z = 0 and
 /// whose axis is z: approach, rim, tilted entry, two-sided jams on the way down, a turn, bottom, rocking at the bottom,

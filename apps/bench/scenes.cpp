@@ -6,6 +6,7 @@
 
 #include "bench/path.hpp"
 #include "bench/seat_scenes.hpp"
+#include "bench/thread_scenes.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -135,6 +136,7 @@ const std::vector<std::string>& scene_names() {
     for (const PegCase& c : kPegCases) all.emplace_back(c.name);
     all.emplace_back(kKnots);
     all.emplace_back(kParts);
+    for (const std::string& name : thread_scene_names()) all.push_back(name);
     for (const std::string& name : seat_scene_names()) all.push_back(name);
     return all;
   }();
@@ -148,6 +150,11 @@ BenchScene make_scene(const std::string& name, int jams) {
   for (const std::string& seated : seat_scene_names()) {
     if (name != seated) continue;
     bench = make_seat_scene(name);
+    known = true;
+  }
+  for (const std::string& threaded : thread_scene_names()) {
+    if (name != threaded) continue;
+    bench = make_thread_scene(name);
     known = true;
   }
   for (const PegCase& c : kPegCases) {

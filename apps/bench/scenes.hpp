@@ -45,6 +45,10 @@ struct BenchScene {
   std::size_t fixed_triangles = 0;  ///< of all fixed parts, instances counted
   /// One round of the pen; rounds follow each other.
   std::function<void(int round, std::vector<Pose>& way)> add_round;
+  /// Or a pen that follows the clock (s, at hand speed) for so long; a fast one does the same in half of the time.
+  std::function<Pose(double t)> pen;
+  double pen_seconds = 0;
+  bool all_ticks = false;  ///< also ticks without contact count: the part is near everywhere
   /// Pegs: a point whose deepest z says how far they went in (file frame, m).
   std::optional<Vec3> tip;
   double depth = 0;  ///< pegs: of the hole, m
