@@ -6,7 +6,7 @@
 #include <functional>
 #include <iostream>
 
-#include "cli/length_option.hpp"
+#include "shared/length_option.hpp"
 #include "cli/scene_writer.hpp"
 #include "cli/watched_child.hpp"
 #include "shared/run_options.hpp"

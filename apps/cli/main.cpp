@@ -7,10 +7,11 @@
 #include "bench/scenes.hpp"
 #include "cli/check.hpp"
 #include "cli/import.hpp"
-#include "cli/length_option.hpp"
 #include "cli/view_command.hpp"
 #include "experiments/experiments.hpp"
+#include "plan/plan_command.hpp"
 #include "review/review_command.hpp"
+#include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/import/isolated_load.hpp"
@@ -75,6 +76,9 @@ int main(int argc, char** argv) {
   tries::TryOptions try_options;
   const CLI::App* tries = tries::add_try(app, try_options);
 
+  plan::PlanCommand plan_options;
+  const CLI::App* plan = plan::add_plan(app, plan_options);
+
   bool trusted = false;
   for (CLI::App* reads : {run, view, check})
     reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
@@ -124,6 +128,7 @@ int main(int argc, char** argv) {
     if (experiment->parsed()) return experiments::run(trials);
     if (review->parsed()) return review::run_review(review_options);
     if (tries->parsed()) return tries::run_tries(try_options);
+    if (plan->parsed()) return plan::run_plan(plan_options);
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};
     SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);

@@ -123,6 +123,19 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   return true;
 }
 
+void ContactLoop::stand_at(const Pose& X) {
+  X_ = last_Y_ = X;
+  at_.contacts->clear();
+  near_.clear();
+  at_.check->begin(near_, kNoDeadline);  // nothing is near: what the check knew of parts that were goes
+  tracked_ = was_cut_ = comes_ = looked_ = false;
+  owed_.reset();
+  keep_ = most_keep_;
+  trust_ = piece_cap_;
+  moved_ = 0;
+  still_ticks_ = 0;
+}
+
 void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
   deadline_ns_ = deadline_ns;

@@ -36,6 +36,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"contact", {"core", "mesh", "narrowphase", "feature"}},
     {"resolve", {"core", "lp", "mesh", "contact"}},
     {"loop", {"core", "lp", "coupling", "mesh", "broadphase", "narrowphase", "feature", "contact", "resolve"}},
+    // What asks it about paths.
+    {"plan", {"core", "coupling", "mesh", "broadphase", "narrowphase", "contact", "resolve", "loop"}},
     // Files.
     {"import", {"core", "mesh"}},
     {"record", {"core"}},
@@ -91,7 +93,8 @@ std::string violation(const std::string& file, const std::string& line) {
                                                                 {"meshoptimizer.h", "src/import/gltf_"},
                                                                 {"import/cgltf/", "src/import/gltf_"},
                                                                 {"pugixml.hpp", "src/import/threemf_"},
-                                                                {"minizip/", "src/import/zip_archive"}};
+                                                                {"minizip/", "src/import/zip_archive"},
+                                                                {"ompl/", "src/plan/ompl_"}};
   for (const auto& [library, place] : kOnlyIn)
     if (!test && starts_with(inc, library) && !starts_with(file, place))
       return std::string(library) + " belongs to " + place + "*";
@@ -128,6 +131,8 @@ TEST_CASE("the check sees an arrow through a wall", "[include]") {
   CHECK(violation("apps/a.cpp", "#include <assimp/scene.h>") == "assimp belongs to src/import/load*");
   CHECK(violation("src/import/a.cpp", "#include <pugixml.hpp>") == "pugixml.hpp belongs to src/import/threemf_*");
   CHECK(violation("src/import/a.cpp", "#include <BRep_Tool.hxx>") == "OpenCASCADE belongs to src/import/*occt*");
+  CHECK(violation("src/plan/a.cpp", "#include <ompl/base/State.h>") == "ompl/ belongs to src/plan/ompl_*");
+  CHECK(violation("src/plan/a.cpp", "#include \"tegotae/device/device.hpp\"") == "plan may not include device");
   CHECK(violation("include/tegotae/loop/a.hpp", "#include <toml++/toml.h>") == "toml++/toml.h is no public include");
   CHECK(violation("include/tegotae/loop/a.hpp", "#include \"loop/a.hpp\"") == "loop/a.hpp is no public include");
   CHECK(violation("include/tegotae/loop/a.hpp", "#include <vector>").empty());

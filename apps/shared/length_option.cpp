@@ -1,4 +1,4 @@
-#include "cli/length_option.hpp"
+#include "shared/length_option.hpp"
 
 #include <charconv>
 #include <cmath>

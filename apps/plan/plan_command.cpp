@@ -1,0 +1,113 @@
+#include "plan/plan_command.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+#include "broadphase/bounding_spheres.hpp"
+#include "core/output_file.hpp"
+#include "core/same_file.hpp"
+#include "loop/scene_parts.hpp"
+#include "plan/plan_output.hpp"
+#include "plan/planner.hpp"
+#include "shared/format.hpp"
+#include "shared/length_option.hpp"
+#include "shared/pose_option.hpp"
+#include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae::plan {
+namespace {
+
+constexpr std::int64_t kIterations = 20000;  // unless told, where no clock ends the search
+constexpr double kSeconds = 60;              // unless told, where one does
+
+PlanOptions plan_options(const PlanCommand& o, const Scene& scene, apps::StatusLine& status) {
+  PlanOptions options;
+  if (!o.goal.empty()) options.goal = apps::parse_pose(o.goal, scene);
+  options.clearance = o.clearance;
+  options.seed = o.seed.value_or(1);
+  // Who names a seed or a number of iterations wants the same again: no clock ends that.
+  const bool counted = o.seed || o.iterations;
+  options.iterations =
+      o.iterations.value_or(counted && !o.seconds ? kIterations : std::numeric_limits<std::int64_t>::max());
+  if (o.seconds || !counted) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(o.seconds.value_or(kSeconds));
+    options.search_ends = [end] { return std::chrono::steady_clock::now() > end; };
+  }
+  options.stop = &apps::catch_interrupts();
+  options.progress = [&status](const PlanProgress& p) {
+    status.say(apps::format("%s: %lld iterations, %zu poses, %.1f mm from the start", p.what,
+                            static_cast<long long>(p.iterations), p.poses, 1e3 * p.way));
+  };
+  return options;
+}
+
+/// Measures the path, and writes it.
+void finish(PlanReport& r, apps::StatusLine& status) {
+  held_part(r.file.scene).pose = r.plan.path.front();
+  const review::Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
+    status.show(what, done, total);
+  };
+  // A part's center is where its contact loop has it, which the scan tells; radius and rows only set the pace.
+  const Sphere ball = bounding_sphere(*held_part(r.file.scene).mesh);
+  const std::vector<RecordFrame> rows = path_rows(r.plan.path, r.plan.center, ball.radius);
+  const review::Scan scan = review::scan_path(r.file.scene, r.file.path, rows, progress);
+  std::vector<StylusScript::Key> keys = {{0, rows.front().x}, {1, rows.back().x}};
+  r.file.script = StylusScript(std::move(keys));
+  const review::Findings found = review::find(r.file, rows, scan, scan.center);
+  r.way = found.way;
+  r.turn = found.turn;
+  r.tightest = found.clearances;
+  write_path(r.file, rows, scan, r.folder);
+  write_file(r.folder + "/plan.json", plan_json(r) + "\n");
+}
+
+}  // namespace
+
+CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
+  CLI::App* plan = app.add_subcommand("plan", "Find a path by which the held part comes out, or goes to a goal");
+  plan->add_option("SCENE", o.scene, "Scene file (TOML)")->required();
+  plan->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
+  CLI::Option* goal = apps::add_pose_option(*plan, "--goal", o.goal, "Where the part is to go");
+  plan->add_flag("--out", o.out, "Out of all other parts (the default without --goal)")->excludes(goal);
+  apps::add_length_option(*plan, "--clearance", o.clearance, "That the path is to leave at least");
+  plan->add_option("--seed", o.seed, "Of all that is random; the same seed gives the same path")->type_name("N");
+  plan->add_option("--iterations", o.iterations, "Of the search, at most")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
+      ->type_name("N");
+  plan->add_option("--seconds", o.seconds, "Of the search, at most (60, and with --seed or --iterations no such end)")
+      ->check(CLI::Range(0.1, 1e6))
+      ->type_name("S");
+  plan->add_option("--to", o.folder, "Folder for what it writes")->capture_default_str()->type_name("DIR");
+  plan->add_flag("--json", o.json, "Print what came out as one line of JSON");
+  return plan;
+}
+
+int run_plan(const PlanCommand& o) {
+  if (!has_planner()) throw Error(missing_planner());
+  SceneOptions how;
+  how.hold = o.hold;
+  PlanReport r(apps::load_with_progress(o.scene, how));
+  r.to_goal = !o.goal.empty();
+  r.folder = o.folder;
+  apps::print_notes(r.file.scene);
+  std::vector<std::string> outputs = path_files(o.folder);
+  outputs.push_back(o.folder + "/plan.json");
+  refuse_to_replace(outputs, r.file.files);
+  std::filesystem::create_directories(o.folder);
+  {
+    apps::StatusLine status;
+    r.plan = plan_path(r.file.scene, plan_options(o, r.file.scene, status));
+    finish(r, status);
+  }
+  if (o.json)
+    std::cout << plan_json(r) << std::endl;
+  else
+    std::cout << plan_text(r) << std::flush;
+  return r.plan.found ? apps::kDone : apps::kRunFailed;
+}
+
+}  // namespace tegotae::plan

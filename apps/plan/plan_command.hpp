@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tegotae::plan {
+
+struct PlanCommand {
+  std::string scene, hold;
+  std::string goal;  ///< empty: out of the other parts
+  bool out = false;  ///< said so
+  double clearance = 0;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> iterations;
+  std::optional<double> seconds;
+  std::string folder = "plan";  ///< for what it writes
+  bool json = false;
+};
+
+/// The subcommand `plan`.
+CLI::App* add_plan(CLI::App& app, PlanCommand& options);
+
+/// Plans, writes the path and says what came out. Returns the exit code. Throws Error.
+int run_plan(const PlanCommand& options);
+
+}  // namespace tegotae::plan

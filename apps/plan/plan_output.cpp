@@ -1,0 +1,65 @@
+#include "plan/plan_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/output_file.hpp"
+#include "loop/scene_parts.hpp"
+#include "review/path_exports.hpp"
+#include "tegotae/core/version.hpp"
+#include "tegotae/record/recorder.hpp"
+
+namespace tegotae::plan {
+namespace {
+
+constexpr double kSpeed = 0.02;  // m/s
+constexpr double kRow = 0.01;    // s
+
+}  // namespace
+
+std::vector<RecordFrame> path_rows(const std::vector<Pose>& path, const Vec3& center, double radius) {
+  std::vector<RecordFrame> rows;
+  const auto add = [&rows](double t, const Pose& X) {
+    RecordFrame row;
+    row.tick = rows.size();
+    row.t = t;
+    row.x = row.y = X;
+    rows.push_back(row);
+  };
+  add(0, path.front());
+  double t = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Displacement d = displacement(path[i - 1], path[i], center);
+    const double time = (d.dp.norm() + radius * d.dr.norm()) / kSpeed;
+    const int parts = std::max(1, static_cast<int>(std::ceil(time / kRow)));
+    for (int k = 1; k <= parts; ++k) {
+      const double share = static_cast<double>(k) / parts;
+      t += std::max(time / parts, 1e-4);  // rows have times that ascend, however short a motion is
+      add(t, k == parts ? path[i] : displaced(path[i - 1], center, share * d));
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> path_files(const std::string& folder) {
+  std::vector<std::string> out;
+  for (const char* name : {"/path.csv", "/path.glb", "/script.csv", "/recording.csv", "/recording.csv.info.json"})
+    out.push_back(folder + name);
+  return out;
+}
+
+void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
+                const std::string& folder) {
+  write_file(folder + "/path.csv", review::path_csv(file.scene, rows, scan));
+  write_file(folder + "/path.glb", review::path_gltf(file.scene, rows, true));
+  write_file(folder + "/script.csv", review::path_script(file, rows, scan.center));
+  RecordingInfo info;
+  info.scene = file.path;
+  info.held = held_part(file.scene).name;
+  info.program = "tegotae " TEGOTAE_VERSION_STRING;
+  Recorder recorder(folder + "/recording.csv", RecordMode::synchronous, info);
+  for (const RecordFrame& row : rows) recorder.push(row);
+  recorder.close();
+}
+
+}  // namespace tegotae::plan

@@ -1,0 +1,107 @@
+#include <nlohmann/json.hpp>
+
+#include "loop/scene_parts.hpp"
+#include "plan/plan_output.hpp"
+#include "shared/format.hpp"
+#include "shared/start_text.hpp"
+
+namespace tegotae::plan {
+namespace {
+
+using apps::format;
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 57.29577951308232;
+constexpr std::size_t kMostListed = 5;  // parts
+
+std::int64_t stops(const Plan& plan) {
+  std::int64_t sum = 0;
+  for (const PartInTheWay& p : plan.in_the_way) sum += p.stops;
+  return sum;
+}
+
+/// What is certified, in words.
+std::string certificate(const PlanReport& r) {
+  std::string text = format("every motion of it is proved to leave %.3g um", 1e6 * r.plan.clearance);
+  for (const InitialContact& pair : r.plan.start.pairs) {
+    const std::string name = '"' + r.file.scene.parts[pair.part].name + '"';
+    if (pair.state == InitialContactState::filtered) text += "; " + name + ", in which it starts, was not looked at";
+    if (pair.state == InitialContactState::shrunk)
+      text +=
+          "; to a copy of " + name + format(" that is smaller by %.3g um, for it starts in contact", 1e6 * pair.relief);
+  }
+  return text;
+}
+
+std::string found_text(const PlanReport& r) {
+  std::string text =
+      format("\"%s\" %s: %.4g mm and %.3g degrees, in %zu motions\n  ", held_part(r.file.scene).name.c_str(),
+             r.to_goal ? "goes to its goal" : "comes out", 1e3 * r.way, kDegrees * r.turn, r.plan.path.size() - 1) +
+      certificate(r) + "\n";
+  for (std::size_t i = 0; i < std::min(kMostListed, r.tightest.size()); ++i) {
+    const review::PartClearance& c = r.tightest[i];
+    text += format("  nearest to \"%s\": %.4g mm at %.2f s, at %.6g %.6g %.6g mm\n",
+                   r.file.scene.parts[c.part].name.c_str(), 1e3 * c.distance, c.t, 1e3 * c.place_W.x(),
+                   1e3 * c.place_W.y(), 1e3 * c.place_W.z());
+  }
+  return text;
+}
+
+std::string not_found_text(const PlanReport& r) {
+  std::string text =
+      format("no way %s was found for \"%s\" in %.1f s (%lld iterations)%s; that is no proof that there is none\n",
+             r.to_goal ? "to the goal" : "out", held_part(r.file.scene).name.c_str(), r.plan.seconds,
+             static_cast<long long>(r.plan.iterations), r.plan.interrupted ? ", interrupted" : "");
+  text += format("  it came %.4g mm from its start at most, and turned by up to %.3g degrees\n", 1e3 * r.plan.way,
+                 kDegrees * r.plan.turn);
+  const double all = static_cast<double>(stops(r.plan));
+  for (std::size_t i = 0; i < std::min(kMostListed, r.plan.in_the_way.size()); ++i) {
+    const PartInTheWay& p = r.plan.in_the_way[i];
+    text += format("  in the way: \"%s\" stopped %.0f %% of the motions that were stopped\n",
+                   r.file.scene.parts[p.part].name.c_str(), 100 * static_cast<double>(p.stops) / all);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string plan_text(const PlanReport& r) {
+  std::string text = r.plan.found ? found_text(r) : not_found_text(r);
+  text += format("  searched: %lld iterations, %zu poses, %lld motions checked, %lld led along contacts, %.2f s\n",
+                 static_cast<long long>(r.plan.iterations), r.plan.poses, static_cast<long long>(r.plan.motions),
+                 static_cast<long long>(r.plan.complied), r.plan.seconds);
+  text += (r.plan.found ? "path: " : "the way to the farthest pose: ") + r.folder + "\n";
+  return text;
+}
+
+std::string plan_json(const PlanReport& r) {
+  Json j;
+  j["scene"] = r.file.path;
+  j["held"] = held_part(r.file.scene).name;
+  j["task"] = r.to_goal ? "goal" : "out";
+  j["found"] = r.plan.found;
+  j["interrupted"] = r.plan.interrupted;
+  j["clearance_m"] = r.plan.clearance;
+  j["motions"] = r.plan.path.size() - 1;
+  j["way_m"] = r.way;
+  j["turn_rad"] = r.turn;
+  j["farthest_m"] = r.plan.way;
+  j["farthest_turn_rad"] = r.plan.turn;
+  j["tightest"] = Json::array();
+  for (const review::PartClearance& c : r.tightest)
+    j["tightest"].push_back({{"part", r.file.scene.parts[c.part].name},
+                             {"distance_m", c.distance},
+                             {"t", c.t},
+                             {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}}});
+  j["in_the_way"] = Json::array();
+  for (const PartInTheWay& p : r.plan.in_the_way)
+    j["in_the_way"].push_back({{"part", r.file.scene.parts[p.part].name}, {"stops", p.stops}});
+  j["start"] = apps::start_json(r.plan.start, r.file.scene);
+  j["searched"] = {{"iterations", r.plan.iterations},
+                   {"poses", r.plan.poses},
+                   {"motions_checked", r.plan.motions},
+                   {"motions_led", r.plan.complied}};
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace tegotae::plan

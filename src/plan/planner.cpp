@@ -1,0 +1,225 @@
+#include "plan/planner.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "loop/scene_parts.hpp"
+#include "plan/exit.hpp"
+#include "plan/motion_world.hpp"
+#include "plan/search.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/loop/clash.hpp"
+
+namespace tegotae {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kTellEvery = std::chrono::milliseconds(100);
+// Of the clearance that start and goal have: a path that was found is shortened with the first one asked for.
+constexpr double kShortenShare = 0.9;
+// A path with so much of it is searched for, the first that is found is taken; each time with at most as many motions
+// that the contact loop is led through as for the first path, and some more.
+constexpr double kWiderShares[] = {0.5, 0.1};
+constexpr std::int64_t kWiderMore = 30;
+// Motions that are asked about to shorten a path, and for each of its poses.
+constexpr std::int64_t kShortenChecks = 200, kShortenTimes = 2;
+// How often the proof of a motion of the path is taken up again.
+constexpr int kProofs = 16;
+// A wider path is worth it when it leaves so many times as much.
+constexpr double kWorthwhile = 1.5;
+// Clearances are told to this share of them.
+constexpr double kClearanceStep = 0.02;
+
+/// Processor time of this thread, s.
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+class Planning {
+ public:
+  Planning(const Scene& scene, const PlanOptions& options)
+      : options_(options),
+        cpu_began_(thread_seconds()),
+        began_(Clock::now()),
+        world_(scene, std::max(options.clearance, kGapFloor)),
+        exit_(world_.scene(), world_.center(), world_.radius()) {}
+
+  Plan plan() {
+    const SearchTask task = make_task();
+    const SearchResult result = search(world_, task);
+    Plan plan;
+    plan.search_cpu = thread_seconds() - cpu_began_;
+    plan.found = result.found;
+    plan.path = result.path;
+    fill(result, plan);
+    if (plan.found) improve(task, plan);
+    tell({"certifying", result.iterations, result.poses, result.way});
+    plan.clearance = certified(world_, plan.path);
+    count(world_, plan);
+    plan.interrupted = stopped();
+    plan.seconds = seconds();
+    plan.cpu = thread_seconds() - cpu_began_;
+    return plan;
+  }
+
+ private:
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  bool ended() const { return stopped() || (options_.search_ends && options_.search_ends()); }
+
+  void tell(const PlanProgress& progress) {
+    if (!options_.progress || Clock::now() < next_tell_) return;
+    options_.progress(progress);
+    next_tell_ = Clock::now() + kTellEvery;
+  }
+
+  std::string name(const std::optional<std::size_t>& part) const {
+    return part ? '"' + world_.scene().parts[*part].name + '"' : "another part";
+  }
+
+  static void include(WorldBox& room, const Vec3& p) {
+    room.low = room.low.cwiseMin(p);
+    room.high = room.high.cwiseMax(p);
+  }
+
+  /// Throws unless the part can stand there.
+  Pose checked_goal(Pose goal) {
+    goal.q.normalize();
+    Scene there = world_.scene();
+    held_part(there).pose = goal;
+    ClashOptions look;
+    look.held_only = true;
+    look.tolerance = 0;
+    for (const Clash& c : find_clashes(there, look))
+      if (c.kind == ClashKind::overlap || c.gap <= 0)
+        throw Error("at the goal the held part is in " + name(there.parts[c.a].held ? c.b : c.a));
+    if (world_.free_share(goal, goal) < 1)
+      throw Error("at the goal the held part is nearer to " + name(world_.blocker()) +
+                  " than the clearance that the path is to leave");
+    return goal;
+  }
+
+  SearchTask make_task() {
+    const Pose& start = world_.start();
+    if (world_.free_share(start, start) < 1)
+      throw Error("the held part starts nearer to " + name(world_.blocker()) +
+                  " than the clearance that the path is to leave");
+    SearchTask task;
+    task.start = start;
+    task.room = exit_.room();
+    if (options_.goal) {
+      task.goals = {checked_goal(*options_.goal)};
+      include(task.room, *options_.goal * world_.center());
+    } else {
+      task.goals = exit_.straight_out(start);
+      task.exit = &exit_;
+    }
+    task.seed = options_.seed;
+    task.iterations = options_.iterations;
+    task.ended = [this] { return ended(); };
+    task.progress = [this](std::int64_t iterations, std::size_t poses, double way) {
+      tell({"searching", iterations, poses, way});
+    };
+    return task;
+  }
+
+  static bool leaves(MotionWorld& world, const std::vector<Pose>& path, double clearance) {
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+      if (world.free_share(path[i], path[i + 1], clearance, kProofs) < 1) return false;
+    return path.size() > 1 || world.free_share(path.front(), path.front(), clearance) == 1;
+  }
+
+  /// The most that a path is proved to leave, to a hundredth or two; 0: not even what is asked for.
+  static double certified(MotionWorld& world, const std::vector<Pose>& path) {
+    double low = world.clearance();
+    if (!leaves(world, path, low)) return 0;
+    double high = 2 * low;
+    while (high < world.radius() && leaves(world, path, high)) {
+      low = high;
+      high *= 2;
+    }
+    while (high > (1 + kClearanceStep) * low) {
+      const double middle = std::sqrt(low * high);
+      (leaves(world, path, middle) ? low : high) = middle;
+    }
+    return low;
+  }
+
+  /// Shortens a path by motions that leave `clearance`; whether the whole path then does. Whatever a library makes of
+  /// it: what is handed out is certified here, or is what the search proved.
+  bool shorten_path(MotionWorld& world, const WorldBox& room, double clearance, std::vector<Pose>& path) {
+    tell({"shortening", 0, path.size(), 0});
+    const std::int64_t most =
+        world.counts().checked + kShortenChecks + kShortenTimes * static_cast<std::int64_t>(path.size());
+    std::vector<Pose> shorter = shorten(world, path, room, clearance, options_.seed,
+                                        [this, &world, most] { return stopped() || world.counts().checked > most; });
+    if (!leaves(world, shorter, clearance)) return false;
+    path = std::move(shorter);
+    return true;
+  }
+
+  /// Shortens the path of a plan, and looks for one that leaves more.
+  void improve(const SearchTask& task, Plan& plan) {
+    const std::int64_t led = world_.counts().complied;
+    const double most = std::min(certified(world_, {plan.path.front()}), certified(world_, {plan.path.back()}));
+    if (kShortenShare * most > world_.clearance() && shorten_path(world_, task.room, kShortenShare * most, plan.path))
+      return;
+    shorten_path(world_, task.room, world_.clearance(), plan.path);
+    const double now = certified(world_, plan.path);
+    for (const double share : kWiderShares) {
+      const double clearance = share * most;
+      if (stopped() || clearance < kWorthwhile * now) return;
+      MotionWorld wider(world_.scene(), clearance);
+      SearchTask again = task;
+      again.ended = [this, &wider, most_led = led + kWiderMore] {
+        return stopped() || wider.counts().complied > most_led;
+      };
+      SearchResult result = search(wider, again);
+      const bool taken = result.found && shorten_path(wider, task.room, clearance, result.path);
+      count(wider, plan);
+      if (!taken) continue;
+      plan.path = std::move(result.path);
+      return;
+    }
+  }
+
+  static void count(const MotionWorld& world, Plan& plan) {
+    plan.motions += world.counts().checked;
+    plan.complied += world.counts().complied;
+  }
+
+  void fill(const SearchResult& result, Plan& plan) const {
+    plan.center = world_.center();
+    plan.start = world_.start_report();
+    plan.way = result.way;
+    plan.turn = result.turn;
+    for (const auto& [part, stops] : result.stops) plan.in_the_way.push_back({part, stops});
+    std::stable_sort(plan.in_the_way.begin(), plan.in_the_way.end(),
+                     [](const PartInTheWay& a, const PartInTheWay& b) { return a.stops > b.stops; });
+    plan.iterations = result.iterations;
+    plan.poses = result.poses;
+  }
+
+  PlanOptions options_;
+  double cpu_began_;  // s
+  Clock::time_point began_, next_tell_{};
+  MotionWorld world_;
+  Exit exit_;
+};
+
+}  // namespace
+
+Plan plan_path(const Scene& scene, const PlanOptions& options) {
+  if (!has_planner()) throw Error(missing_planner());
+  return Planning(scene, options).plan();
+}
+
+}  // namespace tegotae
