@@ -63,6 +63,7 @@ class Planning {
     if (plan.found) improve(task, plan);
     tell({"certifying", result.iterations, result.poses, result.way});
     plan.clearance = certified(world_, plan.path);
+    plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
     plan.interrupted = stopped();
     plan.seconds = seconds();
