@@ -9,6 +9,8 @@
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "loop/scene_parts.hpp"
+#include "plan/disassembly.hpp"
+#include "plan/order_output.hpp"
 #include "plan/plan_output.hpp"
 #include "plan/planner.hpp"
 #include "shared/format.hpp"
@@ -65,29 +67,60 @@ void finish(PlanReport& r, apps::StatusLine& status) {
   write_file(r.folder + "/plan.json", plan_json(r) + "\n");
 }
 
+/// `--all`.
+int run_all(const PlanCommand& o) {
+  SceneOptions how;
+  how.held_needed = false;
+  const SceneFile file = apps::load_with_progress(o.scene, how);
+  apps::print_notes(file.scene);
+  refuse_to_replace(order_files(o.folder), file.files);
+  std::filesystem::create_directories(o.folder);
+  DisassemblyOptions options;
+  options.clearance = o.clearance;
+  options.seed = o.seed.value_or(1);
+  options.iterations = o.iterations.value_or(options.iterations);
+  options.stop = &apps::catch_interrupts();
+  Disassembly order;
+  {
+    apps::StatusLine status;
+    options.progress = [&](const std::vector<std::size_t>& parts, std::size_t left) {
+      status.say(apps::format("%zu parts left, trying ", left) + file.scene.parts[parts.front()].name);
+    };
+    order = take_apart(file.scene, options);
+    write_order(file, order, o.folder);
+  }
+  std::cout << order_text(file.scene, order) << "order: " << o.folder << "/order.html" << std::endl;
+  return order.left.size() == 1 && order.together.empty() ? apps::kDone : apps::kRunFailed;
+}
+
 }  // namespace
 
 CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
   CLI::App* plan = app.add_subcommand("plan", "Find a path by which the held part comes out, or goes to a goal");
   plan->add_option("SCENE", o.scene, "Scene file (TOML)")->required();
-  plan->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
+  CLI::Option* hold =
+      plan->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   CLI::Option* goal = apps::add_pose_option(*plan, "--goal", o.goal, "Where the part is to go");
   plan->add_flag("--out", o.out, "Out of all other parts (the default without --goal)")->excludes(goal);
+  CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whoever is held");
   apps::add_length_option(*plan, "--clearance", o.clearance, "That the path is to leave at least");
   plan->add_option("--seed", o.seed, "Of all that is random; the same seed gives the same path")->type_name("N");
   plan->add_option("--iterations", o.iterations, "Of the search, at most")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
       ->type_name("N");
-  plan->add_option("--seconds", o.seconds, "Of the search, at most (60, and with --seed or --iterations no such end)")
-      ->check(CLI::Range(0.1, 1e6))
-      ->type_name("S");
+  CLI::Option* seconds = plan->add_option("--seconds", o.seconds,
+                                          "Of the search, at most (60, and with --seed or --iterations no such end)")
+                             ->check(CLI::Range(0.1, 1e6))
+                             ->type_name("S");
   plan->add_option("--to", o.folder, "Folder for what it writes")->capture_default_str()->type_name("DIR");
-  plan->add_flag("--json", o.json, "Print what came out as one line of JSON");
+  CLI::Option* json = plan->add_flag("--json", o.json, "Print what came out as one line of JSON");
+  for (CLI::Option* one : {goal, hold, seconds, json}) all->excludes(one);
   return plan;
 }
 
 int run_plan(const PlanCommand& o) {
   if (!has_planner()) throw Error(missing_planner());
+  if (o.all) return run_all(o);
   SceneOptions how;
   how.hold = o.hold;
   PlanReport r(apps::load_with_progress(o.scene, how));

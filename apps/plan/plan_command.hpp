@@ -11,6 +11,7 @@ struct PlanCommand {
   std::string scene, hold;
   std::string goal;  ///< empty: out of the other parts
   bool out = false;  ///< said so
+  bool all = false;  ///< take everything apart
   double clearance = 0;
   std::optional<std::uint64_t> seed;
   std::optional<std::int64_t> iterations;

@@ -66,7 +66,8 @@ std::string missing_planner();
 
 /// Looks for a path of the held part to a goal, or out. The same scene, options and build give the same plan as long as
 /// neither `search_ends` nor `stop` ends it. Throws Error as HapticLoop's constructor, when the goal is not free, when
-/// the held part starts nearer to another one than `clearance`, and where has_planner() is false.
+/// the held part starts nearer to another one than `clearance`, and where has_planner() is false. One at a time in a
+/// process: OMPL's random numbers are the process's.
 Plan plan_path(const Scene& scene, const PlanOptions& options);
 
 }  // namespace tegotae

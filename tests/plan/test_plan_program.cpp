@@ -83,6 +83,24 @@ TEST_CASE("where nothing is found it says how far it got, what is in the way, an
   CHECK(read_recording(to + "/recording.csv").frames.size() > 1);
 }
 
+TEST_CASE("an assembly is taken apart") {
+  const TempFolder folder;
+  const std::string to = folder / "out";
+  const Output o = run_program("tegotae", "plan " + scene("key") + " --all --to " + to);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("1. key: ") && Contains("Left: lock"));
+  CHECK(read_text(to + "/order.csv").find("1,\"key\",") != std::string::npos);
+  CHECK_THAT(read_text(to + "/order.dot"), Contains("digraph") && Contains("1. key"));
+  CHECK_THAT(read_text(to + "/order.html"), Contains("Order of disassembly"));
+  CHECK(read_text(to + "/step-01.glb").substr(0, 4) == "glTF");
+  CHECK(read_text(to + "/step-01.csv").substr(0, 5) == "t,px,");
+  const Output stays =
+      run_program("tegotae", "plan " + scene("locked-in") + " --all --iterations 30 --to " + (folder / "in"));
+  CHECK(stays.code == 1);
+  CHECK_THAT(stays.out, Contains("Did not come apart: key, lock") && Contains("key was stopped by lock"));
+}
+
 TEST_CASE("what cannot be planned is an error of one line") {
   const TempFolder folder;
   const std::string to = " --to " + (folder / "out");

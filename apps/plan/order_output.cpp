@@ -1,0 +1,153 @@
+#include "plan/order_output.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "broadphase/bounding_spheres.hpp"
+#include "core/output_file.hpp"
+#include "loop/scene_parts.hpp"
+#include "plan/plan_output.hpp"
+#include "review/path_exports.hpp"
+#include "shared/format.hpp"
+#include "web/page.hpp"
+
+namespace tegotae::plan {
+namespace {
+
+using apps::format;
+using Json = nlohmann::json;
+using Parts = std::vector<std::size_t>;
+
+std::string names(const Scene& scene, const Parts& parts, const char* between) {
+  std::string text;
+  for (const std::size_t p : parts) text += (text.empty() ? "" : between) + scene.parts[p].name;
+  return text;
+}
+
+/// In quotes, for CSV.
+std::string cell(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+/// In quotes, for Graphviz.
+std::string node(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  return out + '"';
+}
+
+/// The parts that stopped a step's parts when they were last tried in vain.
+Parts waited_for(const Disassembly& order, const Removal& step) {
+  Parts out;
+  for (const Blocked& b : order.blocked)
+    for (const std::size_t by : b.by)
+      if (std::find(step.parts.begin(), step.parts.end(), b.part) != step.parts.end() &&
+          std::find(out.begin(), out.end(), by) == out.end())
+        out.push_back(by);
+  return out;
+}
+
+std::string order_csv(const Scene& scene, const Disassembly& order) {
+  std::string text = "step,parts,motions,clearance_um,tried_after\n";
+  for (std::size_t i = 0; i < order.order.size(); ++i) {
+    const Removal& r = order.order[i];
+    text += format("%zu,", i + 1) + cell(names(scene, r.parts, "; ")) +
+            format(",%zu,%.6g,", r.plan.path.size() - 1, 1e6 * r.plan.clearance) +
+            cell(names(scene, waited_for(order, r), "; ")) + "\n";
+  }
+  return text;
+}
+
+/// An arrow from each part to those that stopped it.
+std::string order_dot(const Scene& scene, const Disassembly& order) {
+  std::string text = "digraph disassembly {\n  rankdir=LR;\n";
+  for (std::size_t i = 0; i < order.order.size(); ++i)
+    for (const std::size_t p : order.order[i].parts)
+      text +=
+          "  " + node(scene.parts[p].name) + " [label=" + node(format("%zu. ", i + 1) + scene.parts[p].name) + "];\n";
+  for (const Blocked& b : order.blocked)
+    for (const std::size_t by : b.by)
+      text += "  " + node(scene.parts[b.part].name) + " -> " + node(scene.parts[by].name) + ";\n";
+  return text + "}\n";
+}
+
+Json order_table(const Scene& scene, const Disassembly& order) {
+  Json t = {{"head", {"step", "part", "motions", "clearance proved (µm)", "tried in vain before, stopped by", "path"}},
+            {"rows", Json::array()}};
+  for (std::size_t i = 0; i < order.order.size(); ++i) {
+    const Removal& r = order.order[i];
+    t["rows"].push_back({std::to_string(i + 1), names(scene, r.parts, " + "), std::to_string(r.plan.path.size() - 1),
+                         format("%.3g", 1e6 * r.plan.clearance), names(scene, waited_for(order, r), ", "),
+                         format("step-%02zu.glb, step-%02zu.csv", i + 1, i + 1)});
+  }
+  return t;
+}
+
+Json blocked_table(const Scene& scene, const Disassembly& order) {
+  Json t = {{"head", {"part", "stopped by", "not tried, because"}}, {"rows", Json::array()}};
+  for (const Blocked& b : order.blocked)
+    t["rows"].push_back({scene.parts[b.part].name, names(scene, b.by, ", "), b.error});
+  return t;
+}
+
+std::string left_text(const Scene& scene, const Disassembly& order) {
+  std::string text = order.left.size() == 1 ? "Left: " : "Did not come apart: ";
+  text += names(scene, order.left, ", ");
+  for (const Parts& group : order.together) text += "; out, and not apart: " + names(scene, group, " + ");
+  return text;
+}
+
+std::string order_html(const SceneFile& file, const Disassembly& order) {
+  Json report = {{"title", "Order of disassembly"}, {"subtitle", file.path}};
+  report["intro"] = left_text(file.scene, order) + ". Assembly is the same, backwards.";
+  report["sections"] = {{{"title", "Steps"}, {"tables", {order_table(file.scene, order)}}},
+                        {{"title", "What blocked what"},
+                         {"text", "The last try of each part that failed; order.dot has it as a graph."},
+                         {"tables", {blocked_table(file.scene, order)}}}};
+  return apps::report_page(report);
+}
+
+/// The path of a step, among the parts that are there then.
+void write_step(const Scene& scene, const Removal& step, const std::string& path) {
+  Scene then = removal_scene(scene, step.there, step.parts);
+  Part& held = held_part(then);
+  const std::vector<RecordFrame> rows = path_rows(step.plan.path, step.plan.center, bounding_sphere(*held.mesh).radius);
+  held.pose = rows.front().x;
+  write_file(path + ".glb", review::path_gltf(then, rows, true));
+  const review::Scan scan = review::scan_path(then, path, rows, {});
+  write_file(path + ".csv", review::path_csv(then, rows, scan));
+}
+
+}  // namespace
+
+std::vector<std::string> order_files(const std::string& folder) {
+  return {folder + "/order.csv", folder + "/order.dot", folder + "/order.html"};
+}
+
+void write_order(const SceneFile& file, const Disassembly& order, const std::string& folder) {
+  write_file(folder + "/order.csv", order_csv(file.scene, order));
+  write_file(folder + "/order.dot", order_dot(file.scene, order));
+  write_file(folder + "/order.html", order_html(file, order));
+  for (std::size_t i = 0; i < order.order.size(); ++i)
+    write_step(file.scene, order.order[i], folder + format("/step-%02zu", i + 1));
+}
+
+std::string order_text(const Scene& scene, const Disassembly& order) {
+  std::string text;
+  for (std::size_t i = 0; i < order.order.size(); ++i) {
+    const Removal& r = order.order[i];
+    text += format("%zu. ", i + 1) + names(scene, r.parts, " + ") +
+            format(": %zu motions, proved to leave %.3g um\n", r.plan.path.size() - 1, 1e6 * r.plan.clearance);
+  }
+  text += left_text(scene, order) + (order.interrupted ? " (interrupted)" : "") + "\n";
+  for (const Blocked& b : order.blocked) {
+    if (std::find(order.left.begin(), order.left.end(), b.part) == order.left.end()) continue;
+    text += "  " + scene.parts[b.part].name +
+            (b.error.empty() ? " was stopped by " + names(scene, b.by, ", ") : " was not tried: " + b.error) + "\n";
+  }
+  return text;
+}
+
+}  // namespace tegotae::plan

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plan/disassembly.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
+
+namespace tegotae::plan {
+
+/// The files that write_order() makes in `folder`, but for those of single steps.
+std::vector<std::string> order_files(const std::string& folder);
+
+/// Writes order.csv, order.dot (for Graphviz), order.html and, for each step, step-NN.csv (poses) and step-NN.glb into
+/// `folder`. Throws Error.
+void write_order(const SceneFile& file, const Disassembly& order, const std::string& folder);
+
+/// What came out, for a person.
+std::string order_text(const Scene& scene, const Disassembly& order);
+
+}  // namespace tegotae::plan
