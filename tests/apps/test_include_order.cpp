@@ -89,12 +89,10 @@ std::string violation(const std::string& file, const std::string& line) {
   if (!test && inc.size() > 4 && inc.substr(inc.size() - 4) == ".hxx" && !starts_with(file, "src/import/occt") &&
       !starts_with(file, "src/import/step_occt"))
     return "OpenCASCADE belongs to src/import/*occt*";
-  static const std::pair<const char*, const char*> kOnlyIn[] = {{"draco/", "src/import/gltf_"},
-                                                                {"meshoptimizer.h", "src/import/gltf_"},
-                                                                {"import/cgltf/", "src/import/gltf_"},
-                                                                {"pugixml.hpp", "src/import/threemf_"},
-                                                                {"minizip/", "src/import/zip_archive"},
-                                                                {"ompl/", "src/plan/ompl_"}};
+  static const std::pair<const char*, const char*> kOnlyIn[] = {
+      {"draco/", "src/import/gltf_"},         {"meshoptimizer.h", "src/import/gltf_"},
+      {"import/cgltf/", "src/import/gltf_"},  {"pugixml.hpp", "src/import/threemf_"},
+      {"minizip/", "src/import/zip_archive"}, {"ompl/", "src/plan/ompl_"}};
   for (const auto& [library, place] : kOnlyIn)
     if (!test && starts_with(inc, library) && !starts_with(file, place))
       return std::string(library) + " belongs to " + place + "*";
