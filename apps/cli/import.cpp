@@ -9,7 +9,6 @@
 #include "cli/scene_writer.hpp"
 #include "cli/watched_child.hpp"
 #include "shared/length_option.hpp"
-#include "shared/process.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
