@@ -10,7 +10,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # pkg-config, dpkg-dev, file: the tests of the package.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev libdraco-dev libmeshoptimizer-dev
           libpugixml-dev libminizip-dev zlib1g-dev libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-          libcivetweb-dev catch2 python3-venv libspnav-dev libsdl2-dev libocct-data-exchange-dev libompl-dev pkg-config dpkg-dev file)
+          libcivetweb-dev catch2 python3-venv python3-dev libspnav-dev libsdl2-dev libocct-data-exchange-dev libompl-dev
+          pkg-config dpkg-dev file)
 
 browser=false
 tools=()

@@ -45,7 +45,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     // The hall.
     {"session",
      {"core", "lp", "device", "operator", "coupling", "transport", "servo", "mesh", "broadphase", "narrowphase",
-      "feature", "contact", "resolve", "loop", "import", "record", "scene_file"}}};
+      "feature", "contact", "resolve", "loop", "import", "record", "scene_file"}},
+    // The door for Python.
+    {"python",
+     {"core", "device", "servo", "transport", "mesh", "resolve", "loop", "import", "record", "scene_file", "session"}}};
 
 std::string included(const std::string& line) {
   static const std::regex pattern(R"(^\s*#\s*include\s*["<]([^">]+)[">].*)");

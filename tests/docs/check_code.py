@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Code in the documents is code that is compiled or run: every ```cpp, ```c and ```python block of README.md and docs/*.md
-(but docs/api.md, which is made of the headers) stands, line by line and in this order, in one of apps/examples or in
-snippets.cpp. A line `…` stands for lines left out."""
+(but docs/api.md, which is made of the headers, and docs/python.md, whose blocks tests/python runs) stands, line by line
+and in this order, in one of apps/examples or in snippets.cpp. A line `…` stands for lines left out."""
 import glob
 import os
 import re
@@ -35,7 +35,7 @@ def main():
             sources[path] = lines(file.read())
     count, bad = 0, []
     for page in [os.path.join(ROOT, "README.md")] + sorted(glob.glob(os.path.join(ROOT, "docs", "*.md"))):
-        if os.path.basename(page) == "api.md":
+        if os.path.basename(page) in ("api.md", "python.md"):
             continue
         with open(page, encoding="utf-8") as file:
             for _, block in BLOCK.findall(file.read()):

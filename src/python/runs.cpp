@@ -1,0 +1,252 @@
+// Runs of scenes, and recordings.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+#include "python/pen.hpp"
+#include "python/running.hpp"
+#include "python/scenes.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/record/recording.hpp"
+#include "tegotae/session/session.hpp"
+
+namespace tegotae::python {
+namespace {
+
+nb::dict to_dict(const LatencySummary& us) {
+  nb::dict d;
+  d["p50"] = us.p50;
+  d["p99"] = us.p99;
+  d["p999"] = us.p999;
+  d["max"] = us.max;
+  return d;
+}
+
+nb::dict lag_of(const LagSummary& lag) {
+  nb::dict ticks, d;
+  for (int i = 1; i < kLagReasons; ++i)
+    ticks[to_string(static_cast<LagReason>(i))] = lag.ticks[static_cast<std::size_t>(i)];
+  d["max_m"] = lag.max_m;
+  d["unexplained_ticks"] = lag.unexplained;
+  d["ticks"] = ticks;
+  return d;
+}
+
+nb::dict to_dict(const RunSummary& s) {
+  nb::dict servo, d;
+  servo["rate_hz"] = s.servo.rate_hz;
+  servo["missed"] = s.servo.missed;
+  servo["late_us"] = to_dict(s.servo.late_us);
+  servo["compute_us"] = to_dict(s.servo.compute_us);
+  d["ticks"] = s.ticks;
+  d["seconds"] = s.seconds;
+  d["completed"] = s.completed;
+  d["depth_m"] = s.depth_m;
+  d["contacts_max"] = s.contacts_max;
+  d["lag"] = lag_of(s.lag);
+  d["penetrating"] = s.penetrating;
+  d["checked"] = s.checked;
+  d["poses"] = s.poses;
+  d["deepest_m"] = s.deepest_m;
+  d["tick_us"] = to_dict(s.tick_us);
+  d["servo"] = servo;
+  d["recordings"] = s.recordings;
+  d["record_dropped"] = s.record_dropped;
+  d["record_failure"] = s.record_failure;
+  d["ignored"] = s.ignored;
+  d["force_max_n"] = s.force_max_n;
+  d["torque_max_nm"] = s.torque_max_nm;
+  d["missing_realtime"] = s.missing_realtime;
+  d["stability"] = s.stability;
+  return d;
+}
+
+/// What is to be run: a scene file, by its path too, or a scene with a pen.
+SceneFile file_of(nb::handle scene, const ScriptPen* pen) {
+  SceneFile file{"", {}, {}, StylusScript({{0, Pose()}})};
+  if (nb::isinstance<Scene>(scene)) {
+    if (pen == nullptr) throw Error(ErrorKind::setting, "run: a Scene needs a pen");
+    file.scene = nb::cast<Scene>(scene);
+  } else {
+    file = nb::isinstance<SceneFile>(scene) ? nb::cast<SceneFile>(scene) : read_scene_file(scene, "", false);
+  }
+  if (pen != nullptr) {
+    file.device = pen->settings;
+    file.script = pen->script;
+  }
+  return file;
+}
+
+nb::dict run(nb::handle scene, const ScriptPen* pen, const std::optional<std::filesystem::path>& record, bool real_time,
+             double seconds, bool check_all) {
+  const SceneFile file = file_of(scene, pen);
+  std::atomic<bool> stop{false};
+  RunSettings how;
+  how.real_time = real_time;
+  how.seconds = seconds;
+  how.check_all = check_all;
+  how.record = record ? record->string() : "";
+  how.program =
+      "tegotae for Python " + std::string(nb::cast<std::string>(nb::module_::import_("tegotae").attr("__version__")));
+  how.stop = &stop;
+  how.stop_check = &stop;
+  RunSummary summary;
+  interruptible([&] { summary = run_session(file, how); }, [&stop] { stop = true; });
+  return to_dict(summary);
+}
+
+/// A row of Recording.forces.
+struct ForceRow {
+  double point[3], normal[3], gap, force, friction[3], mu;
+  std::int64_t row;
+  std::uint32_t part;
+  bool slides;
+};
+
+nb::object forces_of(const Recording& recording) {
+  static PyObject* const type = row_type({{"row", "i8", offsetof(ForceRow, row)},
+                                          {"part", "u4", offsetof(ForceRow, part)},
+                                          {"point", "(3,)f8", offsetof(ForceRow, point)},
+                                          {"normal", "(3,)f8", offsetof(ForceRow, normal)},
+                                          {"gap", "f8", offsetof(ForceRow, gap)},
+                                          {"force", "f8", offsetof(ForceRow, force)},
+                                          {"friction", "(3,)f8", offsetof(ForceRow, friction)},
+                                          {"mu", "f8", offsetof(ForceRow, mu)},
+                                          {"slides", "?", offsetof(ForceRow, slides)}},
+                                         sizeof(ForceRow))
+                                    .release()
+                                    .ptr();
+  std::vector<ForceRow> rows;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const ContactForces& forces = recording.frames[i].forces;
+    for (int k = 0; k < forces.count; ++k) {
+      const ContactForce& c = forces.items[static_cast<std::size_t>(k)];
+      ForceRow row{};
+      Vec3::Map(row.point) = c.point;
+      Vec3::Map(row.normal) = c.n;
+      Vec3::Map(row.friction) = c.friction;
+      row.gap = c.gap;
+      row.force = c.force;
+      row.mu = c.mu;
+      row.row = static_cast<std::int64_t>(i);
+      row.part = c.part.index;
+      row.slides = c.slides;
+      rows.push_back(row);
+    }
+  }
+  return row_array(type, rows.data(), rows.size(), sizeof(ForceRow));
+}
+
+/// One value of each row.
+template <class T, class Get>
+nb::object column_of(const std::vector<RecordFrame>& frames, Get get) {
+  std::vector<T> values;
+  values.reserve(frames.size());
+  for (const RecordFrame& f : frames) values.push_back(static_cast<T>(get(f)));
+  return column(std::move(values));
+}
+
+template <class Get>
+nb::object poses_of(const std::vector<RecordFrame>& frames, Get get) {
+  std::vector<double> rows(16 * frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) write_rows(get(frames[i]), rows.data() + 16 * i);
+  return nb::cast(owned<nb::ndarray<nb::numpy, double, nb::shape<-1, 4, 4>>>(std::move(rows), {frames.size(), 4, 4}));
+}
+
+nb::object wrenches_of(const std::vector<RecordFrame>& frames) {
+  std::vector<double> rows;
+  rows.reserve(6 * frames.size());
+  for (const RecordFrame& f : frames) {
+    rows.insert(rows.end(), f.wrench.force.data(), f.wrench.force.data() + 3);
+    rows.insert(rows.end(), f.wrench.torque.data(), f.wrench.torque.data() + 3);
+  }
+  return nb::cast(owned<nb::ndarray<nb::numpy, double, nb::shape<-1, 6>>>(std::move(rows), {frames.size(), 6}));
+}
+
+nb::dict info_of(const RecordingInfo& info) {
+  nb::dict d;
+  d["scene"] = info.scene;
+  d["held"] = info.held;
+  d["resolver"] = info.resolver;
+  d["program"] = info.program;
+  d["suspended"] = info.suspended;
+  d["follows"] = info.follows;
+  d["goes_on"] = info.goes_on;
+  return d;
+}
+
+nb::dict read(const std::filesystem::path& path) {
+  Recording recording;
+  {
+    const nb::gil_scoped_release others_go_on;
+    recording = read_recording(path.string());
+  }
+  const auto& frames = recording.frames;
+  nb::dict d;
+  d["path"] = path.string();
+  d["info"] = info_of(recording.info);
+  d["damage"] = recording.damage;
+  d["tick"] = column_of<std::uint64_t>(frames, [](const RecordFrame& f) { return f.tick; });
+  d["substep"] = column_of<std::uint32_t>(frames, [](const RecordFrame& f) { return f.substep; });
+  d["t"] = column_of<double>(frames, [](const RecordFrame& f) { return f.t; });
+  d["pen"] = poses_of(frames, [](const RecordFrame& f) -> const Pose& { return f.y; });
+  d["part"] = poses_of(frames, [](const RecordFrame& f) -> const Pose& { return f.x; });
+  d["wrench"] = wrenches_of(frames);
+  d["contacts"] = column_of<std::int32_t>(frames, [](const RecordFrame& f) { return f.contacts; });
+  d["gap"] = column_of<double>(frames, [](const RecordFrame& f) { return f.gap; });
+  d["tick_us"] = column_of<double>(frames, [](const RecordFrame& f) { return f.tick_us; });
+  d["lag_reason"] = column_of<std::uint8_t>(frames, [](const RecordFrame& f) { return f.lag_reason; });
+  d["forces"] = forces_of(recording);
+  return d;
+}
+
+}  // namespace
+
+void bind_runs(nb::module_& m) {
+  m.def("_read_recording", &read, nb::arg("path"),
+        nb::sig("def _read_recording(path: str | os.PathLike) -> dict[str, typing.Any]"),
+        "The columns of tegotae.Recording.");
+  m.def("run", &run, nb::arg("scene"), nb::arg("pen") = nb::none(), nb::kw_only(), nb::arg("record") = nb::none(),
+        nb::arg("real_time") = false, nb::arg("seconds") = 0.0, nb::arg("check_all") = false,
+        nb::sig("def run(scene: str | os.PathLike | SceneFile | Scene, pen: ScriptPen | None = None, *, record: str | "
+                "os.PathLike | None = None, real_time: bool = False, seconds: float = 0.0, check_all: bool = False) -> "
+                "dict[str, typing.Any]"),
+        R"(Runs a scene with a simulated pen to the end of its script, and asks FCL about the poses.
+
+It never waits for Python, and other Python threads go on; Ctrl-C ends it.
+
+Parameters
+----------
+scene : str, os.PathLike, SceneFile or Scene
+    A scene file, or a scene in memory, which needs a `pen`.
+pen : ScriptPen, optional
+    Instead of the file's.
+record : str or os.PathLike, optional
+    Recording, CSV or (by its ending) MCAP, for read_recording() and review().
+real_time : bool
+    False: simulated time, as fast as it goes and the same each time.
+seconds : float
+    s; 0: to the end of the script and half a second more.
+check_all : bool
+    FCL is asked about every pose, however long it takes; otherwise for a quarter of the run's time or 2 s.
+
+Returns
+-------
+dict
+    As `tegotae run --json`: `completed`, `depth_m`, `ticks`, `seconds`, `contacts_max`, `lag`, `penetrating` of
+    `checked` of `poses`, `force_max_n`, `torque_max_nm`, `tick_us`, `servo`, `recordings` and more.
+
+Raises
+------
+Error
+    The scene cannot be used or held, or the recording cannot be written.)");
+}
+
+}  // namespace tegotae::python

@@ -1,0 +1,29 @@
+"""What is raised for bad input and for set-up that fails."""
+
+
+class Error(RuntimeError):
+    """Bad input or a failed set-up step: a file, a scene, a setting, a device.
+
+    Its text is one line that names the file, line, key or part, what is wrong with it and, where it helps, what to do.
+
+    Attributes
+    ----------
+    kind : str
+        "file", "setting", "overlap", "device" or "other".
+    file : str
+        Path; empty: none.
+    line : int
+        In the file, from 1 on; 0: none.
+    key : str
+        Dotted, as in scene files; empty: none.
+    part : str
+        Name of the part; empty: none.
+    """
+
+    def __init__(self, text: str, kind: str = "other", file: str = "", line: int = 0, key: str = "", part: str = ""):
+        super().__init__(text)
+        self.kind = kind
+        self.file = file
+        self.line = line
+        self.key = key
+        self.part = part
