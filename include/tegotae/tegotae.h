@@ -66,8 +66,8 @@ TEGOTAE_C_EXPORT const char* tegotae_last_error(void);
 TEGOTAE_C_EXPORT tegotae_scene* tegotae_scene_create(void);
 /** The scene of a file (docs/scene-file.md). Fails in a library that was built without file formats. */
 TEGOTAE_C_EXPORT tegotae_scene* tegotae_scene_load(const char* path);
-/** What is not as the mesh files of the scene say (docs/formats.md), "FILE: what" in UTF-8, a line each that ends with a
- * line feed. Writes at most `capacity` bytes to `text`, of which the last is 0, and returns how many bytes the whole
+/** What is not as the mesh files of the scene say (docs/formats.md), "FILE: what" in UTF-8, a line each that ends with
+ * a line feed. Writes at most `capacity` bytes to `text`, of which the last is 0, and returns how many bytes the whole
  * has without that one: 0 when there is nothing to tell. */
 TEGOTAE_C_EXPORT int64_t tegotae_scene_notes(const tegotae_scene* scene, char* text, size_t capacity);
 /** Adds a part: `vertex_count` times x, y, z, and `triangle_count` times three indices, counterclockwise seen from

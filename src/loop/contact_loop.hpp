@@ -22,8 +22,8 @@ class ContactLoop final : public ProxyLoop {
   void step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) override;
   bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
                  std::int64_t deadline_ns) override;
-  /// Puts the part at `X`, which is known to be free, as if pen and part had stood there: of contacts and motions before,
-  /// nothing is kept.
+  /// Puts the part at `X`, which is known to be free, as if pen and part had stood there: of contacts and motions
+  /// before, nothing is kept.
   void stand_at(const Pose& X);
   const Pose& pose() const override { return X_; }
   /// The limits at the end of the last tick.
