@@ -19,7 +19,7 @@ class Hildreth : public Resolver {
     Resolution r;
     r.motion = wanted;
     std::fill(force_.begin(), force_.end(), 0.0);
-    for (r.iterations = 1; r.iterations <= 2000; ++r.iterations) {
+    for (r.iterations = 1; r.iterations <= 20000; ++r.iterations) {
       double worst = 0;  // m
       for (int i = 0; i < rows.rows(); ++i) {
         const Vec6 g = rows.row(i);

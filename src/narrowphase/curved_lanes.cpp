@@ -200,7 +200,8 @@ void CurvedBlocks::move(std::size_t from, std::size_t to) {
 }
 
 void CurvedBlocks::spoil(std::size_t slot) {
-  at(slot, kCurvedFields + kSideBase) = -std::numeric_limits<double>::infinity();
+  at(slot, static_cast<std::size_t>(kCurvedFields) + static_cast<std::size_t>(kSideBase)) =
+      -std::numeric_limits<double>::infinity();
 }
 
 TEGOTAE_WIDE std::size_t curved_failures(const CurvedBlocks& pairs, std::size_t end, const AxisMotion& m,
