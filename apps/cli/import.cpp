@@ -8,6 +8,7 @@
 
 #include "cli/scene_writer.hpp"
 #include "cli/watched_child.hpp"
+#include "core/name_list.hpp"
 #include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -21,10 +22,9 @@ void require_part(const Assembly& assembly, const ImportOptions& options) {
   if (options.hold.empty()) return;
   const auto& parts = assembly.parts;
   if (std::any_of(parts.begin(), parts.end(), [&](const AssemblyPart& p) { return p.name == options.hold; })) return;
-  std::string names;
-  for (std::size_t i = 0; i < parts.size() && i < 8; ++i) names += (i > 0 ? ", " : "") + parts[i].name;
-  throw Error(options.file + ": no part is named " + options.hold + " (there are " + names +
-              (parts.size() > 8 ? ", ...)" : ")"));
+  std::vector<std::string> names;
+  for (const AssemblyPart& part : parts) names.push_back(part.name);
+  throw Error(options.file + ": no part is named " + options.hold + " (there are " + name_list(names) + ")");
 }
 
 int import_here(const ImportOptions& options, const std::function<void(const std::string&)>& at) {

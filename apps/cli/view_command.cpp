@@ -1,11 +1,11 @@
 #include "cli/view_command.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
+#include "import/file_check.hpp"
 #include "review/review_command.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
@@ -34,14 +34,6 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
-
-/// In lower case, with the dot.
-std::string ending_of(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 /// A page is looked at before anybody knows what to hold: the smallest part is most often what goes into another.
 std::string smallest_part(const Scene& scene) {
@@ -91,7 +83,7 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options) {
 }
 
 int view_file(const ViewOptions& options, const MeshLoader& load) {
-  const std::string ending = ending_of(options.file);
+  const std::string ending = lower_extension(options.file);
   if (ending == ".csv" || ending == ".mcap") return show_recording(options.file, "", "", options.run.view_address);
   if (ending == ".toml") return view_scene(options.file, options, load);
   const TemporaryFolder folder;

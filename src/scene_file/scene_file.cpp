@@ -1,7 +1,6 @@
 #include "tegotae/scene_file/scene_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "core/name_list.hpp"
+#include "import/file_check.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/held_weight.hpp"
 #include "scene_file/scene_friction.hpp"
@@ -72,18 +73,6 @@ Pose read_pose(const TomlTable& t) {
   return X;
 }
 
-/// Names for a message: not all of thousands.
-std::string some_of(const std::set<std::string>& names) {
-  constexpr std::size_t kMaxShown = 12;
-  std::string list;
-  std::size_t shown = 0;
-  for (const std::string& name : names) {
-    if (++shown > kMaxShown) return list + ", and " + std::to_string(names.size() - kMaxShown) + " more";
-    list += (shown > 1 ? ", " : "") + name;
-  }
-  return list;
-}
-
 std::optional<Color> read_color(const TomlTable& t) {
   if (!t.has("color")) return std::nullopt;
   const std::vector<double> given = t.numbers("color", 3, 4);
@@ -93,6 +82,12 @@ std::optional<Color> read_color(const TomlTable& t) {
     color[i] = given[i];
   }
   return color;
+}
+
+std::vector<std::string> part_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Part& part : scene.parts) names.push_back(part.name);
+  return names;
 }
 
 void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene,
@@ -125,7 +120,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
   }
   if (scene.parts.empty()) top.fail("part", "the scene has no [[part]]");
   if (held.empty() && !options.hold.empty())
-    top.fail("part", "no part is named " + options.hold + " (there are " + some_of(names) + ")");
+    top.fail("part", "no part is named " + options.hold + " (there are " + name_list(part_names(scene)) + ")");
   if (held.empty() && options.held_needed)
     top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME");
 }
@@ -226,10 +221,7 @@ StylusScript rest(const Scene& scene) {
 /// A part file would be "not valid TOML" in its second line.
 void check_is_no_part(const std::string& path) {
   static const std::set<std::string> parts = {".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".3mf", ".stp", ".step"};
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (parts.count(ending) == 0) return;
+  if (parts.count(lower_extension(path)) == 0 || !std::filesystem::exists(path)) return;
   throw Error(ErrorKind::file,
               path + ": is a file of parts, not a scene; `tegotae import " + path + " -o FOLDER` makes a scene of it",
               {path, 0, {}, {}});
@@ -238,8 +230,8 @@ void check_is_no_part(const std::string& path) {
 }  // namespace
 
 SceneFile load_scene(const std::string& path, const SceneOptions& options) {
+  check_is_no_part(path);  // before all of it is read
   std::string text = read_file(path);
-  check_is_no_part(path);
   const toml::table parsed = parse_toml(text, path);
   const TomlTable top(parsed, path, "",
                       {"unit", "weight", "gravity", "part", "contact", "friction", "coupling", "safety", "device"});
