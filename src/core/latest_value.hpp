@@ -18,10 +18,9 @@ class LatestValue {
   void write(const Values& values) noexcept {
     const std::uint64_t next = written_.load(std::memory_order_relaxed) + 1;
     begun_.store(next, std::memory_order_relaxed);
-    // Nobody sees a number of this write before its beginning.
-    std::atomic_thread_fence(std::memory_order_release);
+    // Who sees a number of this write sees its beginning: each is released, for ThreadSanitizer knows no fences.
     auto& slot = slots_[next % kKept];
-    for (std::size_t i = 0; i < kCount; ++i) slot[i].store(values[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < kCount; ++i) slot[i].store(values[i], std::memory_order_release);
     written_.store(next, std::memory_order_release);
   }
 
@@ -32,8 +31,7 @@ class LatestValue {
     for (int i = 0; i < kTries; ++i) {
       const std::uint64_t at = written_.load(std::memory_order_acquire);
       const auto& slot = slots_[at % kKept];
-      for (std::size_t k = 0; k < kCount; ++k) values[k] = slot[k].load(std::memory_order_relaxed);
-      std::atomic_thread_fence(std::memory_order_acquire);
+      for (std::size_t k = 0; k < kCount; ++k) values[k] = slot[k].load(std::memory_order_acquire);
       if (begun_.load(std::memory_order_relaxed) - at < kKept) break;
     }
     return values;
