@@ -21,7 +21,7 @@ constexpr double kLMin = 1e-5;
 // Each figure is measured for about this long, s.
 constexpr double kSeconds = 0.3, kQuickSeconds = 0.01;
 // GLPK's dense matrix of 10 000 rows would take gigabytes.
-constexpr int kMostGlpkRows = 1000;
+constexpr int kMaxGlpkRows = 1000;
 
 std::vector<Program> instances(int rows, bool on_ball) {
   Random random(5);
@@ -67,7 +67,7 @@ LpTimes measure(int rows, bool on_ball, double seconds) {
   t.us = mean_us(seconds, [&](std::size_t k) { lp.solve(g[k], all[k].d.data()); });
   LeastDistanceSolver qp(rows);
   t.qp_us = mean_us(seconds, [&](std::size_t k) { qp.solve(g[k], all[k].d.data(), Vec6::Zero()); });
-  if (!GlpkSolver::available() || rows > kMostGlpkRows) return t;
+  if (!GlpkSolver::available() || rows > kMaxGlpkRows) return t;
 
   std::vector<std::unique_ptr<GlpkSolver>> solvers;
   for (const Program& p : all) solvers.push_back(std::make_unique<GlpkSolver>(p));

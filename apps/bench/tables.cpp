@@ -12,10 +12,10 @@ constexpr double kBudgetSlack = 100;
 constexpr int kGlpkRows = 64;
 constexpr double kGlpkRatio = 25;
 // Hierarchies: µs and bytes a triangle.
-constexpr double kMostBuildUs = 2, kMostBytes = 160;
-constexpr double kMostGrowth = 3;
+constexpr double kMaxBuildUs = 2, kMaxBytes = 160;
+constexpr double kMaxGrowth = 3;
 // A tick with friction by one without, and the most that it takes (p99.9, µs).
-constexpr double kMostFriction = 1.5, kMostTick = 900;
+constexpr double kMaxFriction = 1.5, kMaxTick = 900;
 // How near (m) a peg comes to the bottom of its hole when it is pressed on it.
 constexpr double kArrived = 1e-4;
 
@@ -87,7 +87,7 @@ std::string checks_table(const Results& r) {
       "mean | "
       "committed poses that intersect |\n|---|---|---|---|---|---|---|\n";
   for (const SceneFigures& s : r.rows) {
-    const bool met = s.build.us_per_triangle <= kMostBuildUs && s.build.bytes_per_triangle <= kMostBytes;
+    const bool met = s.build.us_per_triangle <= kMaxBuildUs && s.build.bytes_per_triangle <= kMaxBytes;
     text += format("| `%s` | %.2f | %.0f | %s | %zu of %zu | %.0f | %lld of %lld |\n", s.scene.c_str(),
                    s.build.us_per_triangle, s.build.bytes_per_triangle, verdict(met).c_str(), s.fcl.overlap,
                    s.fcl.poses, s.fcl.pairs, static_cast<long long>(s.intersecting), static_cast<long long>(s.checked));
@@ -130,7 +130,7 @@ std::string growth_line(const Results& r) {
   }
   if (!std::isfinite(last / first)) return "";
   return format("\nGrowth of the median from 2 k to 200 k triangles at 0.99: %.1f × (at most 3): ", last / first) +
-         verdict(last <= kMostGrowth * first) + ".\n";
+         verdict(last <= kMaxGrowth * first) + ".\n";
 }
 
 std::string budget_table(const Results& r) {
@@ -159,7 +159,7 @@ std::string friction_table(const Results& r) {
     if (!s.friction) continue;
     const LoopFigures& f = s.friction->loop;
     const double ratio = f.tick_us.p50 / s.hand.tick_us.p50;
-    const bool met = ratio <= kMostFriction && f.tick_us.p999 <= kMostTick && s.friction->intersecting == 0;
+    const bool met = ratio <= kMaxFriction && f.tick_us.p999 <= kMaxTick && s.friction->intersecting == 0;
     text += format("| `%s` | %.2g | %s / %s | %s / %s | %.2f | %.1f | %zu of %zu | %lld of %lld | ", s.scene.c_str(),
                    s.friction->mu, number(f.tick_us.p50).c_str(), number(f.tick_us.p999).c_str(),
                    number(s.hand.tick_us.p50).c_str(), number(s.hand.tick_us.p999).c_str(), ratio, f.resolves, f.cut,

@@ -10,10 +10,10 @@ namespace tegotae::experiments {
 
 namespace {
 
-constexpr int kMostTicks = 4000;  // on the way to the stop
-constexpr double kLead = 2e-4;    // m, of the pen on that way
-constexpr int kHoldTicks = 100;   // of the pen held still, so many times
-constexpr int kMostHolds = 12;
+constexpr int kMaxTicks = 4000;  // on the way to the stop
+constexpr double kLead = 2e-4;   // m, of the pen on that way
+constexpr int kHoldTicks = 100;  // of the pen held still, so many times
+constexpr int kMaxHolds = 12;
 constexpr double kForceShare = 0.005;  // of the force, by which what comes back may differ
 constexpr double kRest = 1e-6;         // m
 constexpr double kTick = 1e-3;         // s
@@ -30,14 +30,14 @@ class Press {
       : loop_(scene), stiffness_(scene.coupling.stiffness), direction_(direction), start_(loop_.report().proxy.X) {}
 
   Stop to(double force) {
-    for (int tick = 0; tick < kMostTicks; ++tick) {
+    for (int tick = 0; tick < kMaxTicks; ++tick) {
       const double before = way();
       step(before + kLead);
       if (loop_.report().proxy.touching && way() - before < 0.5 * kLead) break;
     }
     // The pen is then held still, and its place set right until the force that comes back is the one asked for.
     Stop stop;
-    for (double pen = way() + force / stiffness_; kMostHolds > holds_ && !stop.held; ++holds_) {
+    for (double pen = way() + force / stiffness_; kMaxHolds > holds_ && !stop.held; ++holds_) {
       for (int tick = 0; tick < kHoldTicks; ++tick) step(pen);
       const double rest = way(), missing = force - stiffness_ * (pen - rest);
       for (int tick = 0; tick < kHoldTicks; ++tick) step(pen);

@@ -23,8 +23,8 @@ constexpr double kBottom = 0.5e-3;
 // Ticks between two looks at how deep the parts are in each other, and poses asked of FCL.
 constexpr std::size_t kDepthEvery = 10, kFclPoses = 60;
 constexpr double kVibrationHz = 30;
-constexpr double kChamfer = 0.001;                    // m
-constexpr double kMostTilt = 5 * 0.0174532925199433;  // rad
+constexpr double kChamfer = 0.001;                   // m
+constexpr double kMaxTilt = 5 * 0.0174532925199433;  // rad
 
 std::shared_ptr<const TriangleMesh> shared(TriangleMesh mesh) {
   return std::make_shared<const TriangleMesh>(weld(mesh));
@@ -79,7 +79,7 @@ InsertionTask PegTask::tilted_task(std::size_t person, int i, int n) const {
   const double share = static_cast<double>(i + 1) / n;
   const double a = 2.4 * i + 1.3 * static_cast<double>(person), b = 1.1 * i + 2.1 * static_cast<double>(person);
   out.own_errors = false;
-  out.tilt = share * kMostTilt * Vec3(std::cos(a), std::sin(a), 0);
+  out.tilt = share * kMaxTilt * Vec3(std::cos(a), std::sin(a), 0);
   out.offset = share * kChamfer * Vec3(std::cos(b), std::sin(b), 0);
   return out;
 }

@@ -22,9 +22,9 @@ constexpr int kPlanes = 6;
 constexpr double kPlay = 1e-4;  // m, of every corner from its plane
 constexpr double kGap = 2e-6;   // m, what contacts keep
 constexpr double kFlat = 0.05;  // a corner is the only one near a plane when the others are so much of the size farther
-constexpr int kMostSteps = 100;
-constexpr double kLeastForce = 0.3;  // N
-constexpr double kLeastArm = 0.1;    // of the torque, by the size
+constexpr int kMaxSteps = 100;
+constexpr double kMinForce = 0.3;  // N
+constexpr double kMinArm = 0.1;    // of the torque, by the size
 
 /// A plane that a corner of the part may not pass: n · x >= height.
 struct Wall {
@@ -71,7 +71,7 @@ std::optional<Vec6> least(const std::vector<Row>& J, const std::vector<double>& 
 /// Where the part rests for the pen at `Y`; nothing when it finds no rest, or another corner would pass a wall.
 std::optional<Pose> rest(const TriangleMesh& mesh, const std::vector<Wall>& walls, const Pose& Y, double radius2) {
   Pose X;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     std::vector<Row> J;
     std::vector<double> b;
     for (const Wall& w : walls) {
@@ -179,7 +179,7 @@ WrenchScene cage(const std::string& name, const TriangleMesh& shape, double size
     const Wrench expected{k.stiffness * d.dp, k.torsional_stiffness * d.dr};
     // Of less nothing would be left above the gap that contacts keep, and a torque of nearly nothing has no direction.
     const double force = expected.force.norm(), torque = expected.torque.norm();
-    if (force > kLeastForce && torque > kLeastArm * size * force) w.probes.push_back({Y, expected});
+    if (force > kMinForce && torque > kMinArm * size * force) w.probes.push_back({Y, expected});
   }
   return w;
 }

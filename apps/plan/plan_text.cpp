@@ -12,7 +12,7 @@ using apps::format;
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 57.29577951308232;
-constexpr std::size_t kMostListed = 5;  // parts
+constexpr std::size_t kMaxListed = 5;  // parts
 
 std::int64_t stops(const Plan& plan) {
   std::int64_t sum = 0;
@@ -38,7 +38,7 @@ std::string found_text(const PlanReport& r) {
       format("\"%s\" %s: %.4g mm and %.3g degrees, in %zu motions\n  ", held_part(r.file.scene).name.c_str(),
              r.to_goal ? "goes to its goal" : "comes out", 1e3 * r.way, kDegrees * r.turn, r.plan.path.size() - 1) +
       certificate(r) + "\n";
-  for (std::size_t i = 0; i < std::min(kMostListed, r.tightest.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxListed, r.tightest.size()); ++i) {
     const review::PartClearance& c = r.tightest[i];
     text += format("  nearest to \"%s\": %.4g mm at %.2f s, at %.6g %.6g %.6g mm\n",
                    r.file.scene.parts[c.part].name.c_str(), 1e3 * c.distance, c.t, 1e3 * c.place_W.x(),
@@ -55,7 +55,7 @@ std::string not_found_text(const PlanReport& r) {
   text += format("  it came %.4g mm from its start at most, and turned by up to %.3g degrees\n", 1e3 * r.plan.way,
                  kDegrees * r.plan.turn);
   const double all = static_cast<double>(stops(r.plan));
-  for (std::size_t i = 0; i < std::min(kMostListed, r.plan.in_the_way.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxListed, r.plan.in_the_way.size()); ++i) {
     const PartInTheWay& p = r.plan.in_the_way[i];
     text += format("  in the way: \"%s\" stopped %.0f %% of the motions that were stopped\n",
                    r.file.scene.parts[p.part].name.c_str(), 100 * static_cast<double>(p.stops) / all);

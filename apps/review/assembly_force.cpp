@@ -18,7 +18,7 @@ constexpr double kMoves = 1e-7;
 // Of the deepest: who stands there is seated.
 constexpr double kSeated = 0.01;
 // Ways that are shorter (m) are none.
-constexpr double kLeastWay = 1e-3;
+constexpr double kMinWay = 1e-3;
 constexpr double kPeriod = 1e-3;  // s, of the contact loop in runs
 constexpr std::size_t kTellEvery = 256;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -105,13 +105,13 @@ double mean_of(const std::vector<Sum>& stretches) {
 Vec3 direction_of(const Review& r) {
   const Vec3 from = r.recording.frames.front().x * r.center;
   const Pose goal = r.file.script.pose(r.file.script.end());
-  Vec3 way = RunGoal(r.file, r.center).way() > kLeastWay ? Vec3(goal * r.center - from) : Vec3::Zero();
-  if (way.norm() > kLeastWay) return way.normalized();
+  Vec3 way = RunGoal(r.file, r.center).way() > kMinWay ? Vec3(goal * r.center - from) : Vec3::Zero();
+  if (way.norm() > kMinWay) return way.normalized();
   for (const RecordFrame& row : r.recording.frames) {
     const Vec3 gone = row.x * r.center - from;
     if (gone.norm() > way.norm()) way = gone;
   }
-  return way.norm() > kLeastWay ? Vec3(way.normalized()) : Vec3::Zero();
+  return way.norm() > kMinWay ? Vec3(way.normalized()) : Vec3::Zero();
 }
 
 /// The last row of each tick.
@@ -155,7 +155,7 @@ AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progr
     out.known |= tick.forces.count > 0;
     for (int i = 0; i < tick.forces.count; ++i) out.rubs |= tick.forces.items[static_cast<std::size_t>(i)].mu > 0;
   }
-  out.known &= out.way > kLeastWay;
+  out.known &= out.way > kMinWay;
   if (!out.known) return out;
   const Profile nominal = profile(ticks, direction, out.way, r.file.scene);
   Profile low, high;

@@ -15,9 +15,9 @@ namespace {
 
 // Breaks that are no end of an episode, s: a part that slides over facets lets go for a tick now and then.
 constexpr double kJoin = 0.05;
-constexpr double kLeastTwoSided = 5e-3;  // s
+constexpr double kMinTwoSided = 5e-3;  // s
 // A stall: slower than this over the window while the pen is ahead by so much, for so long.
-constexpr double kStallSpeed = 1e-3, kWindow = 0.05, kAhead = 0.5e-3, kLeastStall = 0.2;
+constexpr double kStallSpeed = 1e-3, kWindow = 0.05, kAhead = 0.5e-3, kMinStall = 0.2;
 
 class Finder {
  public:
@@ -140,7 +140,7 @@ class Finder {
 
   std::vector<TwoSidedEpisode> two_sided() const {
     std::vector<TwoSidedEpisode> out;
-    for (const auto& s : runs([&](std::size_t i) { return scan_.rows[i].two_sided; }, kLeastTwoSided)) {
+    for (const auto& s : runs([&](std::size_t i) { return scan_.rows[i].two_sided; }, kMinTwoSided)) {
       TwoSidedEpisode e{span(s), parts_in(s, 0), -1, Vec3::Zero()};
       for (std::size_t i = s.first; i <= s.second; ++i) {
         if (!scan_.rows[i].two_sided || force(i) <= e.force) continue;
@@ -165,7 +165,7 @@ class Finder {
                   size(displacement(row(i).x, row(i).y, center_)) > kAhead;
     }
     std::vector<Stall> out;
-    for (const auto& s : runs([&](std::size_t i) { return stands[i]; }, kLeastStall)) out.push_back(stall(s));
+    for (const auto& s : runs([&](std::size_t i) { return stands[i]; }, kMinStall)) out.push_back(stall(s));
     return out;
   }
 

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsigned = 5125, kVertices = 34962, kIndices = 34963;
-constexpr std::size_t kMostKeys = 20000;
+constexpr std::size_t kMaxKeys = 20000;
 
 /// Everything of the file but its container.
 class Gltf {
@@ -115,7 +115,7 @@ class Gltf {
   void animate(const std::vector<RecordFrame>& rows) {
     std::vector<float> times, places, turns;
     Quat last = rows.front().x.q;
-    for (const std::size_t i : looked_at(rows.size(), kMostKeys)) {
+    for (const std::size_t i : looked_at(rows.size(), kMaxKeys)) {
       const RecordFrame& row = rows[i];
       const auto t = static_cast<float>(row.t - rows.front().t);
       if (!times.empty() && t <= times.back()) {  // pieces of one tick: the last stands for it

@@ -10,11 +10,11 @@
 namespace tegotae::review {
 namespace {
 
-constexpr std::size_t kMostRows = 20000;
+constexpr std::size_t kMaxRows = 20000;
 // Of the held part's radius: nearer parts have their distances told, whichever is nearest.
 constexpr double kReachShare = 0.2;
 constexpr double kTwoSided = 0.1736;  // sine of 10 degrees
-constexpr int kMostSteps = 500;
+constexpr int kMaxSteps = 500;
 constexpr std::size_t kTellEvery = 64;  // rows
 
 /// Contacts at a row whose clearances are known: those of the led loop, which knows many places of one part but only of
@@ -51,7 +51,7 @@ bool holds_from_two_sides(const std::vector<Vec3>& normals) {
   if (normals.empty()) return false;
   // Gilbert's way to the point of the hull that is nearest to the origin.
   Vec3 x = normals.front();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double length = x.norm();
     if (length <= kTwoSided) return true;
     const Vec3& n = *std::min_element(normals.begin(), normals.end(),
@@ -66,7 +66,7 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
                const Progress& progress) {
   Scan scan;
   scan.reach = kReachShare * bounding_sphere(*held_part(scene).mesh).radius;
-  const std::vector<std::size_t> numbers = looked_at(rows.size(), kMostRows);
+  const std::vector<std::size_t> numbers = looked_at(rows.size(), kMaxRows);
   scan.every = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
   ClearanceProbe probe(scene);
   view::Follower follower(scene, file, rows.front().x);

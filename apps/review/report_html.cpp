@@ -17,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 // Of the colored part, and poses that its colors are of.
-constexpr std::size_t kMostTriangles = 8000, kMostColorPoses = 2000;
-constexpr std::size_t kMostPoses = 3000;  // that the page's part goes through
+constexpr std::size_t kMaxTriangles = 8000, kMaxColorPoses = 2000;
+constexpr std::size_t kMaxPoses = 3000;  // that the page's part goes through
 constexpr std::size_t kGhosts = 9;
 
 const char* word(Outcome outcome) {
@@ -41,7 +41,7 @@ void add_path(view::Bundle& bundle, const Review& r) {
   std::vector<float> path;
   std::vector<double> way;
   const RecordFrame* last = nullptr;
-  for (const std::size_t i : looked_at(rows.size(), kMostPoses)) {
+  for (const std::size_t i : looked_at(rows.size(), kMaxPoses)) {
     const RecordFrame& row = rows[i];
     const Displacement d = last ? displacement(last->x, row.x, r.center) : Displacement();
     way.push_back((way.empty() ? 0 : way.back()) + d.dp.norm() + radius * d.dr.norm());
@@ -63,8 +63,8 @@ void add_path(view::Bundle& bundle, const Review& r) {
 
 void add_surface(view::Bundle& bundle, const Review& r, const Progress& progress) {
   const Scene& scene = r.file.scene;
-  ColoredSurface surface = sampled_surface(held_part(scene).mesh, kMostTriangles);
-  const std::vector<std::size_t> numbers = looked_at(r.recording.frames.size(), kMostColorPoses);
+  ColoredSurface surface = sampled_surface(held_part(scene).mesh, kMaxTriangles);
+  const std::vector<std::size_t> numbers = looked_at(r.recording.frames.size(), kMaxColorPoses);
   add_clearance(scene, r.recording.frames, numbers, r.scan.reach, progress, surface);
   bundle.about["surface"] = {{"positions", bundle.add(surface.positions)}, {"indices", bundle.add(surface.indices)},
                              {"clearance", bundle.add(surface.clearance)}, {"reach", surface.reach},

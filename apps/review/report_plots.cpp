@@ -12,11 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostPoints = 1500;  // of a line: more than pixels
-constexpr std::size_t kMostParts = 5;
-constexpr double kLeastShown = 1e-4;  // mm: where the logarithm of an intersection is drawn
+constexpr std::size_t kMaxPoints = 1500;  // of a line: more than pixels
+constexpr std::size_t kMaxParts = 5;
+constexpr double kMinShown = 1e-4;  // mm: where the logarithm of an intersection is drawn
 // A limit farther above the largest value than this is told in the title: drawn, it would press the line to the ground.
-constexpr double kMostAbove = 4;
+constexpr double kMaxAbove = 4;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 json number(double x) {
@@ -27,7 +27,7 @@ json number(double x) {
 class Buckets {
  public:
   explicit Buckets(const Review& r) : r_(r), rows_(r.scan.rows.size()) {}
-  std::size_t size() const { return std::min(rows_, kMostPoints); }
+  std::size_t size() const { return std::min(rows_, kMaxPoints); }
   double time(std::size_t k) const { return row(begin(k)).t; }
   json times() const {
     json out = json::array();
@@ -76,11 +76,11 @@ json level(const std::string& name, const json& times, double value) {
 
 json clearance_plot(const Review& r, const Buckets& buckets, const json& times) {
   json series = json::array();
-  for (std::size_t k = 0; k < std::min(kMostParts, r.findings.clearances.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMaxParts, r.findings.clearances.size()); ++k) {
     const std::size_t part = r.findings.clearances[k].part;
     const auto value = [&](std::size_t i) {
       for (const Clearance& c : r.scan.rows[i].clearances)
-        if (c.part == part) return std::max(1e3 * c.distance, kLeastShown);
+        if (c.part == part) return std::max(1e3 * c.distance, kMinShown);
       return kNan;
     };
     series.push_back({{"name", r.file.scene.parts[part].name},
@@ -124,7 +124,7 @@ json load_plot(const Review& r, const Buckets& buckets, const json& times, bool 
   const double most = torque ? l.asked_torque : l.asked_force, limit = torque ? l.limit_torque : l.limit_force;
   std::string title = torque ? "Torque" : "Force";
   const auto add_limit = [&](const char* name, double value) {
-    if (value <= kMostAbove * most)
+    if (value <= kMaxAbove * most)
       series.push_back(level(name, times, unit * value));
     else
       title += apps::format(", %s %.3g %s", name, unit * value, torque ? "mN·m" : "N");

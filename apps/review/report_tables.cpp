@@ -12,7 +12,7 @@ namespace {
 using apps::format;
 using nlohmann::json;
 
-constexpr std::size_t kMostRows = 200;
+constexpr std::size_t kMaxRows = 200;
 
 json table(const std::string& title, const std::string& text, const std::vector<std::string>& head) {
   return {{"title", title}, {"text", text}, {"head", head}, {"rows", json::array()}};
@@ -21,18 +21,18 @@ json table(const std::string& title, const std::string& text, const std::vector<
 /// The longest episodes, in order of time.
 template <typename Episode>
 std::vector<Episode> longest(std::vector<Episode> episodes) {
-  if (episodes.size() <= kMostRows) return episodes;
+  if (episodes.size() <= kMaxRows) return episodes;
   const auto longer = [](const Episode& a, const Episode& b) { return a.span.length() > b.span.length(); };
-  std::nth_element(episodes.begin(), episodes.begin() + kMostRows, episodes.end(), longer);
-  episodes.resize(kMostRows);
+  std::nth_element(episodes.begin(), episodes.begin() + kMaxRows, episodes.end(), longer);
+  episodes.resize(kMaxRows);
   std::stable_sort(episodes.begin(), episodes.end(),
                    [](const Episode& a, const Episode& b) { return a.span.begin < b.span.begin; });
   return episodes;
 }
 
 std::string counted(std::size_t all, const std::string& text) {
-  if (all <= kMostRows) return text;
-  return text + (text.empty() ? "" : " ") + "The " + std::to_string(kMostRows) + " longest of " + std::to_string(all) +
+  if (all <= kMaxRows) return text;
+  return text + (text.empty() ? "" : " ") + "The " + std::to_string(kMaxRows) + " longest of " + std::to_string(all) +
          ".";
 }
 
@@ -46,10 +46,10 @@ std::string newtons(double f) {
 json clearances(const Review& r) {
   json t = table("Closest parts", "", {"part", "least clearance", "time (s)", "place"});
   const auto& list = r.findings.clearances;
-  for (std::size_t i = 0; i < std::min(kMostRows, list.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxRows, list.size()); ++i)
     t["rows"].push_back({r.file.scene.parts[list[i].part].name, length_text(list[i].distance), seconds(list[i].t),
                          place_text(list[i].place_W)});
-  if (list.size() > kMostRows) t["text"] = format("The closest %zu of %zu.", kMostRows, list.size());
+  if (list.size() > kMaxRows) t["text"] = format("The closest %zu of %zu.", kMaxRows, list.size());
   return t;
 }
 

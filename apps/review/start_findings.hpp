@@ -24,7 +24,7 @@ struct StartFindings {
   std::int64_t intersecting = 0;  ///< poses that intersect a part after it had come free, or one that was free
 };
 
-/// Asks FCL about every pose (of more than PoseCheck::kMost every second, ...), about parts that were relieved or
+/// Asks FCL about every pose (of more than PoseCheck::kMax every second, ...), about parts that were relieved or
 /// suspended (Scan::start) from when they had come free on.
 StartFindings find_start(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan);
 

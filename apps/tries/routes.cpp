@@ -14,8 +14,8 @@ namespace {
 // Of the held part's radius: between two poses that are looked at on a line, how far they are looked at, and the
 // clearance at which the part counts as out.
 constexpr double kStep = 1.0 / 25, kFarthest = 6, kOut = 0.05;
-constexpr double kHoverShare = 0.1, kMostHover = 4e-3;  // over the rim: of the radius, at most (m)
-constexpr double kSameDirection = 0.996;                // cosine of 5 degrees
+constexpr double kHoverShare = 0.1, kMaxHover = 4e-3;  // over the rim: of the radius, at most (m)
+constexpr double kSameDirection = 0.996;               // cosine of 5 degrees
 
 struct Direction {
   std::string name;
@@ -94,7 +94,7 @@ class Planner {
     t.tip = tip(d.along);
     t.inward = d.along;
     t.depth = depth;
-    t.hover = std::min(kHoverShare * radius_, kMostHover);
+    t.hover = std::min(kHoverShare * radius_, kMaxHover);
     return {d.name, {t}, false};
   }
 

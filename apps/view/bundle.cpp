@@ -52,7 +52,7 @@ void add_scene(Bundle& bundle, const Scene& scene, const Vec3& center) {
       number = static_cast<int>(meshes.size());
       const std::size_t triangles = part.mesh->triangles.size();
       // Each mesh gets its share of what can be shown.
-      const std::size_t most = total <= kMostTriangles ? triangles : kMostTriangles * triangles / total + 100;
+      const std::size_t most = total <= kMaxTriangles ? triangles : kMaxTriangles * triangles / total + 100;
       const DisplayMesh shown = display_mesh(*part.mesh, most);
       meshes.push_back({{"triangles", triangles},
                         {"shown", shown.indices.size() / 3},

@@ -26,7 +26,7 @@ class Bundle {
 };
 
 /// Triangles of all meshes together that a page gets to draw.
-inline constexpr std::size_t kMostTriangles = 300'000;
+inline constexpr std::size_t kMaxTriangles = 300'000;
 
 /// Adds the parts and meshes of a scene: about.parts [{name, mesh, held, pose}], about.meshes [{triangles, shown,
 /// positions, indices}] and about.center, the held part's center of mass in its file frame.

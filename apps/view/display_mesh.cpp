@@ -8,7 +8,7 @@
 namespace tegotae::view {
 namespace {
 
-constexpr int kMostTries = 12;
+constexpr int kMaxTries = 12;
 
 DisplayMesh whole(const TriangleMesh& mesh) {
   DisplayMesh out;
@@ -61,7 +61,7 @@ DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t most) {
   // Between cells that are surely too coarse and cells that are surely too fine (and 2^20 a side fit into a key).
   double coarse = (high - low).maxCoeff(), fine = coarse / (1 << 20);
   DisplayMesh best = clustered(mesh, low, coarse);
-  for (int i = 0; i < kMostTries; ++i) {
+  for (int i = 0; i < kMaxTries; ++i) {
     const double size = std::sqrt(coarse * fine);
     DisplayMesh next = clustered(mesh, low, size);
     const bool fits = next.indices.size() <= 3 * most;

@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kPeriod(25);
 constexpr std::int64_t kPatienceNs = 2'000'000'000, kShortNs = 100'000'000;
 constexpr std::size_t kMany = 8;  // strangers
 
-constexpr std::size_t kMostHeader = 8192;  // of the server's
+constexpr std::size_t kMaxHeader = 8192;  // of the server's
 
 struct Open {
   int fd, remote_port;
@@ -84,7 +84,7 @@ void Doorkeeper::work() {
 }
 
 bool Doorkeeper::brings_token(int fd) const {
-  char bytes[kMostHeader];
+  char bytes[kMaxHeader];
   const ssize_t n = recv(fd, bytes, sizeof bytes, MSG_PEEK | MSG_DONTWAIT);
   return n > 0 && std::string_view(bytes, static_cast<std::size_t>(n)).find(token_) != std::string_view::npos;
 }

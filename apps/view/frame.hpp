@@ -17,7 +17,7 @@ struct FramePair {
 };
 
 /// Pairs that a frame can hold. Contacts go first, and a free body rests on few of them.
-inline constexpr std::size_t kMostPairs = 128;
+inline constexpr std::size_t kMaxPairs = 128;
 
 /// The force of a contact on the held part.
 struct FrameForce {
@@ -50,7 +50,7 @@ struct Frame {
   std::uint64_t force_count = 0;
   std::array<FrameForce, ContactForces::kMax> forces;  ///< the first `force_count` hold
   std::uint64_t pair_count = 0;
-  std::array<FramePair, kMostPairs> pairs;  ///< what lies behind `pair_count` is not transported
+  std::array<FramePair, kMaxPairs> pairs;  ///< what lies behind `pair_count` is not transported
 };
 
 void store(const Pose& pose, double (&out)[7]);

@@ -20,7 +20,7 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
   for (const bool touching : {true, false})
     for (const Contact& c : limits) {
       if ((c.age != kOneShotAge && c.gap <= report.contact_gap) != touching) continue;
-      if (frame.pair_count == kMostPairs) return;
+      if (frame.pair_count == kMaxPairs) return;
       FramePair& p = frame.pairs[frame.pair_count++];
       for (int i = 0; i < 3; ++i) {
         p.point[i] = center[i] + c.r[i];

@@ -53,7 +53,7 @@ void get(const Words& words, Frame& frame, std::size_t from, std::size_t to) {
 }
 
 std::size_t used_bytes(const Frame& frame) {
-  return kHeadBytes + std::min<std::size_t>(frame.pair_count, kMostPairs) * sizeof(FramePair);
+  return kHeadBytes + std::min<std::size_t>(frame.pair_count, kMaxPairs) * sizeof(FramePair);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 // How often a held run looks whether it may go on.
 constexpr auto kPausePoll = std::chrono::milliseconds(2);
 // Most ticks that one command may ask for.
-constexpr int kMostSteps = 10'000;
+constexpr int kMaxSteps = 10'000;
 // A pen farther from the world's origin (m) is a mistake.
 constexpr double kFarthest = 100;
 
@@ -191,7 +191,7 @@ void LiveView::command(const json& command) {
   } else if (what == "step") {
     paused_ = true;
     steps_ =
-        std::min<std::int64_t>(steps_ + std::clamp(whole_number<int>(command.at("ticks")), 1, kMostSteps), kMostSteps);
+        std::min<std::int64_t>(steps_ + std::clamp(whole_number<int>(command.at("ticks")), 1, kMaxSteps), kMaxSteps);
   } else if (what == "speed") {
     const json& factor = command.at("factor");
     speed_ = factor.is_null() ? std::numeric_limits<double>::infinity() : std::clamp(factor.get<double>(), 0.01, 10.0);

@@ -12,7 +12,7 @@ namespace tegotae::view {
 namespace {
 
 // A part farther from the world's origin (m), or turned by more than this (rad) at once, is a mistake.
-constexpr double kFarthest = 100, kMostTurn = 10;
+constexpr double kFarthest = 100, kMaxTurn = 10;
 
 Vec3 three(const nlohmann::json& values, double most) {
   if (!values.is_array() || values.size() != 3) throw Error("a move has three numbers");
@@ -60,7 +60,7 @@ void PageParts::edit(const nlohmann::json& command) {
   } else if (what == "remove") {
     removed_[i] = true;
   } else {
-    part.pose = moved(part, three(command.at("by"), kFarthest), three(command.at("turn"), kMostTurn));
+    part.pose = moved(part, three(command.at("by"), kFarthest), three(command.at("turn"), kMaxTurn));
   }
 }
 

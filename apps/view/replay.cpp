@@ -27,7 +27,7 @@ namespace tegotae::view {
 namespace {
 
 // Frames that a page gets: more than pixels in a plot, and a file of some megabytes.
-constexpr std::size_t kMostFrames = 12'000;
+constexpr std::size_t kMaxFrames = 12'000;
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
 /// The frame of a row: recorded values, with the contacts found.
@@ -107,7 +107,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   refuse_to_replace(html, inputs);
   Follower follower(file.scene, path, rows.front().x);
   const FrameMaker maker;
-  const std::size_t every = (rows.size() + kMostFrames - 1) / kMostFrames;
+  const std::size_t every = (rows.size() + kMaxFrames - 1) / kMaxFrames;
   std::vector<float> frames, pairs, forces;
   std::vector<std::uint32_t> pair_begin, force_begin;
   Frame frame;

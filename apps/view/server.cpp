@@ -25,13 +25,13 @@ namespace {
 
 // Threads that serve; each watcher keeps one, the rest is for requests, and for strangers while the doorkeeper lets
 // them. The servo locks their stacks into memory, so they are not many.
-const std::string kThreads = std::to_string(kMostWatchers + 12);
+const std::string kThreads = std::to_string(kMaxWatchers + 12);
 // Connections that wait for a thread where the doorkeeper sees them.
 constexpr const char* kQueue = "200";
 // CivetWeb gives up on a client that it waits for so long (ms) without a byte going either way.
 constexpr const char* kTimeout = "10000";
-constexpr std::size_t kMostHeader = 8192;
-constexpr std::size_t kMostCommand = 2048;
+constexpr std::size_t kMaxHeader = 8192;
+constexpr std::size_t kMaxCommand = 2048;
 // A drag sends one a frame.
 constexpr double kCommandsPerSecond = 200;
 constexpr auto kFramePeriod = std::chrono::milliseconds(33);
@@ -145,7 +145,7 @@ struct Server::Impl {
 
   void serve_command(mg_connection* connection, long long length) {
     constexpr const char* text = "text/plain; charset=utf-8";
-    if (length < 0 || length > static_cast<long long>(kMostCommand))
+    if (length < 0 || length > static_cast<long long>(kMaxCommand))
       return respond(connection, 413, "Content Too Large", text, "a command has a length of at most 2 KB\n");
     if (!rate.take()) return respond(connection, 429, "Too Many Requests", text, "slower\n");
     std::string body(static_cast<std::size_t>(length), '\0');
@@ -168,7 +168,7 @@ struct Server::Impl {
   }
 
   void serve_stream(mg_connection* connection) {
-    if (++watchers > kMostWatchers)
+    if (++watchers > kMaxWatchers)
       respond(connection, 503, "Service Unavailable", "text/plain; charset=utf-8", "too many pages are watching\n");
     else
       stream(connection);
@@ -221,7 +221,7 @@ struct Server::Impl {
 
 Server::Server(const Address& address, ViewSource& source) : impl_(std::make_unique<Impl>(source)) {
   const std::string port = address.text();
-  const std::string header = std::to_string(kMostHeader);
+  const std::string header = std::to_string(kMaxHeader);
   const char* options[] = {"listening_ports", port.c_str(), "num_threads", kThreads.c_str(), "request_timeout_ms",
                            kTimeout, "keep_alive_timeout_ms", "5000", "enable_keep_alive", "yes", "max_request_size",
                            header.c_str(), "tcp_nodelay", "1", "connection_queue", kQueue,

@@ -30,6 +30,6 @@ class Server {
 };
 
 /// Most pages that may watch at the same time.
-inline constexpr int kMostWatchers = 8;
+inline constexpr int kMaxWatchers = 8;
 
 }  // namespace tegotae::view

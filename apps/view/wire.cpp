@@ -11,7 +11,7 @@ namespace {
 
 // Whole numbers above 2^24 are no floats any more, and neither are milliseconds of a long run: two floats each.
 constexpr std::uint64_t kTickSplit = 1u << 20;
-constexpr int kMostDepth = 3;
+constexpr int kMaxDepth = 3;
 
 void append(std::vector<float>& out, double value) {
   out.push_back(static_cast<float>(value));
@@ -50,7 +50,7 @@ void append_frame(const Frame& f, std::vector<float>& out) {
 }
 
 void append_pairs(const Frame& frame, std::vector<float>& out) {
-  for (std::size_t i = 0; i < std::min<std::size_t>(frame.pair_count, kMostPairs); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(frame.pair_count, kMaxPairs); ++i) {
     const FramePair& p = frame.pairs[i];
     for (const double v : p.point) append(out, v);
     for (const double v : p.normal) append(out, v);
@@ -72,7 +72,7 @@ void append_forces(const Frame& frame, std::vector<float>& out) {
 
 std::string frame_message(const Frame& frame) {
   std::vector<float> values;
-  values.reserve(kFrameFloats + kPairFloats * kMostPairs + kForceFloats * ContactForces::kMax);
+  values.reserve(kFrameFloats + kPairFloats * kMaxPairs + kForceFloats * ContactForces::kMax);
   append_frame(frame, values);
   append_pairs(frame, values);
   append_forces(frame, values);
@@ -85,7 +85,7 @@ std::string status_message(std::string_view json) {
 
 nlohmann::json parse_command(std::string_view text) {
   const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    if (depth > kMostDepth) throw Error("a command is too deep");
+    if (depth > kMaxDepth) throw Error("a command is too deep");
     return true;
   };
   return nlohmann::json::parse(text, shallow);

@@ -10,17 +10,17 @@ namespace tegotae {
 /// 1e300 and -1 too.
 template <typename T>
 T whole_number(const nlohmann::json& value) {
-  constexpr T kLeast = std::numeric_limits<T>::lowest(), kMost = std::numeric_limits<T>::max();
+  constexpr T kMin = std::numeric_limits<T>::lowest(), kMax = std::numeric_limits<T>::max();
   if (value.is_number_unsigned()) {
     const auto number = value.get<std::uint64_t>();
-    if (number <= static_cast<std::uint64_t>(kMost)) return static_cast<T>(number);
+    if (number <= static_cast<std::uint64_t>(kMax)) return static_cast<T>(number);
   } else if (value.is_number_integer() && std::numeric_limits<T>::is_signed) {
     const auto number = value.get<std::int64_t>();
-    if (number >= static_cast<std::int64_t>(kLeast) && number <= static_cast<std::int64_t>(kMost))
+    if (number >= static_cast<std::int64_t>(kMin) && number <= static_cast<std::int64_t>(kMax))
       return static_cast<T>(number);
   }
   throw nlohmann::json::type_error::create(
-      302, "a whole number from " + std::to_string(kLeast) + " to " + std::to_string(kMost) + " is expected", &value);
+      302, "a whole number from " + std::to_string(kMin) + " to " + std::to_string(kMax) + " is expected", &value);
 }
 
 }  // namespace tegotae

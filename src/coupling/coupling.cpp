@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 // A part of a tenth of a millimeter, and one of a house: beyond, the program would be badly scaled.
-constexpr double kLeastRadius = 1e-4, kMostRadius = 10;
+constexpr double kMinRadius = 1e-4, kMaxRadius = 10;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ double coupling_radius(const CouplingSettings& settings, double scale) noexcept 
   const double square = settings.torsional_stiffness / settings.stiffness;
   // 0 / 0: nothing is felt, and any radius will do.
   return std::isnan(square) ? scale * coupling_radius({})
-                            : std::clamp(scale * std::sqrt(square), kLeastRadius, kMostRadius);
+                            : std::clamp(scale * std::sqrt(square), kMinRadius, kMaxRadius);
 }
 
 double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept {

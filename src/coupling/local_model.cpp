@@ -11,9 +11,9 @@ namespace {
 
 // A part turned by more than this (rad) is past what flat planes tell about rotations; so is a pen that turned so much
 // since they were taken.
-constexpr double kMostTurn = 0.5;
+constexpr double kMaxTurn = 0.5;
 // From here on (rad) the shortest way from part to pen may turn round.
-constexpr double kMostError = 3.0;
+constexpr double kMaxError = 3.0;
 // Normals may be off unit length by so much.
 constexpr double kUnitTolerance = 1e-6;
 // A target that changes by no more than this (m) is left as it is: a force of 1 nN.
@@ -21,9 +21,9 @@ constexpr double kSettled = 1e-12;
 // With friction, by this part of the target: so well is the program solved.
 constexpr double kSettledRubbing = 1e-8;
 // No pair of surfaces has more friction.
-constexpr double kMostMu = 10;
+constexpr double kMaxMu = 10;
 // Each round leaves about a twelfth of the squared turn (rad²) of the last one's change, so a few are enough.
-constexpr int kMostRounds = 8;
+constexpr int kMaxRounds = 8;
 
 Mat3 cross_matrix(const Vec3& v) {
   Mat3 m;
@@ -43,7 +43,7 @@ Mat3 left_jacobian(const Vec3& r) {
 }  // namespace
 
 LocalModel::LocalModel()
-    : solver_(kMostActive), friction_(ContactPlanes::kMax), rows_(ContactPlanes::kMax), active_rows_(kMostActive) {}
+    : solver_(kMaxActive), friction_(ContactPlanes::kMax), rows_(ContactPlanes::kMax), active_rows_(kMaxActive) {}
 
 Vec6 LocalModel::whiten(const Displacement& d) const noexcept {
   Vec6 z;
@@ -57,7 +57,7 @@ bool LocalModel::set_rows(const ContactPlanes& planes, const Vec3& center_W) noe
   for (int i = 0; i < planes.count; ++i) {
     const ContactPlane& plane = planes.planes[static_cast<std::size_t>(i)];
     if (!(std::abs(plane.normal.squaredNorm() - 1) < kUnitTolerance)) return false;
-    if (!(plane.mu >= 0 && plane.mu <= kMostMu)) return false;
+    if (!(plane.mu >= 0 && plane.mu <= kMaxMu)) return false;
     const auto along = [&](const Vec3& e) {
       Vec6 row;
       row << e, (plane.point - center_W).cross(e) / radius_;
@@ -93,10 +93,10 @@ bool LocalModel::nearest(const Pose& X, const Vec3& center, const Pose& Y, Vec6&
   // each answer, carried back to X, is the next target; it settles where the energy is least.
   Vec6 target = whiten(displacement(X, Y, center));
   const double settled = rubs_ ? std::max(kSettled, kSettledRubbing * target.norm()) : kSettled;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     if (!solve(target, z)) return false;
     const Displacement made = unwhiten(z);
-    if (!(made.dr.norm() < kMostTurn)) return false;
+    if (!(made.dr.norm() < kMaxTurn)) return false;
     Displacement left = displacement(displaced(X, center, made), Y, center);
     left.dr = left_jacobian(made.dr).transpose() * left.dr;
     const Vec6 next = z + whiten(left);
@@ -119,7 +119,7 @@ bool LocalModel::slide(const Vec6& pen, Vec6& velocity) noexcept {
       active_rows_.push_row(-t);
     }
   }
-  const double zeros[kMostActive] = {};
+  const double zeros[kMaxActive] = {};
   const QpResult& r = solver_.solve(active_rows_, zeros, pen);
   velocity = r.z;
   return r.status == LpStatus::optimal;
@@ -130,7 +130,7 @@ bool LocalModel::update(const ContactPlanes& planes, double radius, const Vec3& 
   if (planes.count <= 0 || planes.count > ContactPlanes::kMax || !(radius > 0) || !planes.taken_at(x.X)) return false;
   const double since = displacement(planes.pen, Y, center).dr.norm();
   const double error = displacement(x.X, Y, center).dr.norm();
-  if (!(since < kMostTurn && error < kMostError)) return false;
+  if (!(since < kMaxTurn && error < kMaxError)) return false;
   radius_ = radius;
   if (!set_rows(planes, x.X * center)) return false;
   Vec6 step;

@@ -40,7 +40,7 @@ class LocalModel {
     bool sticks;
   };
   /// Rows of a plane that carries: its normal, or normal and both tangents to and fro where it sticks.
-  static constexpr int kMostActive = 6 * ContactPlanes::kMax;
+  static constexpr int kMaxActive = 6 * ContactPlanes::kMax;
 
   LeastDistanceSolver solver_;
   FrictionSolver friction_;

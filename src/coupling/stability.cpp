@@ -19,7 +19,7 @@ std::optional<double> sampling_limit(double device_damping, double damping, doub
 constexpr double kStableShare = 0.5;
 // rad; steps of a pen's angle (0.1 mrad) are 1/500 of it. Pens have no dry friction in their gimbals to speak of, so by
 // such steps a stiffer coupling keeps a hand that rests between two of them going to and fro.
-constexpr double kLeastFullTurn = 0.05;
+constexpr double kMinFullTurn = 0.05;
 
 std::string limit_text(std::optional<double> limit, const char* unit) {
   if (!limit) return "limit not known";
@@ -44,7 +44,7 @@ StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coup
 
 double torsional_stiffness_bound(std::optional<double> limit, double torque) noexcept {
   if (!(limit.value_or(0) > 0)) return CouplingSettings().torsional_stiffness;
-  return std::min(kStableShare * *limit, torque / kLeastFullTurn);
+  return std::min(kStableShare * *limit, torque / kMinFullTurn);
 }
 
 std::string StabilityReport::text() const {

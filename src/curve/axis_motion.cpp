@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 /// Axes that lean more against each other are not looked at; nor are larger turns (rad), which the proof excludes.
-constexpr double kMostLean = 0.2, kMostTurn = 0.5;
+constexpr double kMaxLean = 0.2, kMaxTurn = 0.5;
 /// Rounding of one gap, relative to the largest terms: some 100 operations of 1.1e-16.
 constexpr double kRounding = 5e-14;
 
@@ -55,8 +55,8 @@ AxisMotion axis_motion(const FrameMotion& f, double rise, double start_floor, do
   m.rise = rise;
   m.start = AxisPose::of(f.R0, f.t0, rise, near_psi);
   m.end = AxisPose::of(f.R1, f.t1, rise, m.start.psi);
-  m.usable = f.R0(2, 2) > 0 && f.R1(2, 2) > 0 && m.start.lean < kMostLean && m.end.lean < kMostLean &&
-             f.turn.norm() < kMostTurn &&
+  m.usable = f.R0(2, 2) > 0 && f.R1(2, 2) > 0 && m.start.lean < kMaxLean && m.end.lean < kMaxLean &&
+             f.turn.norm() < kMaxTurn &&
              std::isfinite(f.size + f.t0.squaredNorm() + f.t1.squaredNorm() + f.center0.squaredNorm() +
                            f.center1.squaredNorm() + f.origin0.squaredNorm() + f.origin1.squaredNorm());
   add_reading(f.center0, f.center1, f.turn, f.reach_center, m);

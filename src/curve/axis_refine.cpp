@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 /// Facets that are used, rounds, and the size of the cells of the profile (of the mesh's size) and of its normals.
-constexpr std::size_t kMostUsed = 4000;
+constexpr std::size_t kMaxUsed = 4000;
 constexpr int kRounds = 6, kNormalCells = 24;
 constexpr double kCell = 0.02;
 /// A rise that is only rounding, of the size.
@@ -19,7 +19,7 @@ constexpr double kNoRise = 1e-10;
 /// Keeps what the facets leave open where it is, relative to the trace.
 constexpr double kDamping = 1e-9;
 /// Changes of the axis beyond this say that the facets are no screw surface.
-constexpr double kMostChange = 0.1;
+constexpr double kMaxChange = 0.1;
 
 using Vec5 = Eigen::Matrix<double, 5, 1>;
 using Mat5 = Eigen::Matrix<double, 5, 5>;
@@ -44,7 +44,7 @@ struct Sample {
 
 std::vector<Sample> samples_of(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const Frame& f) {
   std::vector<Sample> out;
-  const std::size_t stride = std::max<std::size_t>(1, of.size() / kMostUsed);
+  const std::size_t stride = std::max<std::size_t>(1, of.size() / kMaxUsed);
   for (std::size_t i = 0; i < of.size(); i += stride) {
     const Facet& t = facets[of[i]];
     const Vec3 middle = f.local(t.center);
@@ -173,7 +173,7 @@ ScrewMotion refined(const std::vector<Facet>& facets, const std::vector<std::siz
     const Equations equations(samples_of(facets, of, f), f.rise, scale);
     scale = std::max(2 * equations.rms(), 1e-9);
     const Vec5 x = equations.solve();
-    if (!x.allFinite() || x.norm() > kMostChange) return round == 0 ? motion : best;
+    if (!x.allFinite() || x.norm() > kMaxChange) return round == 0 ? motion : best;
     ScrewMotion next;
     next.c = (f.c + x[2] * f.e1 + x[3] * f.e2).normalized();
     const Vec3 p = f.p + x[0] * f.e1 + x[1] * f.e2;

@@ -14,40 +14,40 @@ namespace tegotae {
 namespace {
 
 /// Facets that are looked at; of larger meshes a sample.
-constexpr std::size_t kMostFacets = 8000;
+constexpr std::size_t kMaxFacets = 8000;
 /// Places at which the search begins, and facets around each of them that the first fit takes.
 constexpr int kSeeds = 40;
 constexpr std::size_t kNearest[] = {1200, 300, 60};
 /// Every so many facets are asked first, and this part of the surface must follow a motion or it is dropped.
 constexpr std::size_t kFirstStride = 8;
-constexpr double kLeastShare = 0.01;
+constexpr double kMinShare = 0.01;
 /// How far a facet's normal may be from square to the motion (rad) beyond what its own width explains: a corner of a
 /// chord of length d over the radius r is off by d / 2r, and more where the facet is no chord's half.
-constexpr double kTolerance = 0.02, kWidthShare = 0.75, kMostWidth = 0.15;
+constexpr double kTolerance = 0.02, kWidthShare = 0.75, kMaxWidth = 0.15;
 /// The last rounds weigh facets by their angle against this: a cone beside a flank must not bend the flank's rise.
 constexpr double kSharpAngle = 0.008;
 constexpr int kSharpRounds = 4, kRiseRounds = 3;
 constexpr double kRounds[] = {4 * kTolerance, 2 * kTolerance, kTolerance, kTolerance};
 /// Of facets that merely cross the motion as they happen to lie, four times as many are within four tolerances.
-constexpr double kMostWider = 1.35;
+constexpr double kMaxWider = 1.35;
 /// A rough surface spreads its normals; what is most of a part is taken all the same.
-constexpr double kMuch = 0.3, kMostWiderOfMuch = 1.75;
+constexpr double kMuch = 0.3, kMaxWiderOfMuch = 1.75;
 /// So many motions that turn out to be none end the search.
-constexpr int kMostFailures = 16;
+constexpr int kMaxFailures = 16;
 /// Normals within 11° of the axis are those of ends and shoulders, which follow any motion about it.
 constexpr double kEndNormal = 0.98;
 /// A surface that turns about an axis has normals in at least so many of the sectors around it; prisms do not.
-constexpr int kSectors = 32, kLeastSectors = 8;
+constexpr int kSectors = 32, kMinSectors = 8;
 constexpr double kSectorShare = 0.002;
 /// On a sphere all axes through its center fit alike: the second least mean square is as small as the least.
-constexpr double kDistinct = 8, kLeastSecond = 1e-3;
+constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// Facets that lean less than this along the axis (cosine) say nothing about a rise.
-constexpr double kLeastLean = 0.3;
+constexpr double kMinLean = 0.3;
 /// What is left of a chord's angle at its middle, for facets that are no chord's half.
 constexpr double kChordError = 0.05;
 /// Facets are of one rise where their own ones lie within so many times their spread, which is at least this part of
 /// the size.
-constexpr double kSameSpread = 2, kLeastSpread = 1e-4;
+constexpr double kSameSpread = 2, kMinSpread = 1e-4;
 /// Rises from which the most frequent one is looked for, steps of each.
 constexpr int kStarts = 16, kSteps = 12;
 /// Two motions are one where axes and rises agree to this (rad, shares of the size).
@@ -104,13 +104,13 @@ class Facets {
   static std::vector<std::uint32_t> sample(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> chosen(mesh.triangles.size());
     std::iota(chosen.begin(), chosen.end(), 0u);
-    if (chosen.size() <= kMostFacets) return chosen;
+    if (chosen.size() <= kMaxFacets) return chosen;
     std::vector<std::uint64_t> hash(chosen.size());
     for (const std::uint32_t t : chosen) hash[t] = hash_of(key_of(mesh, mesh.triangles[t]));
     std::vector<std::uint64_t> sorted = hash;
-    std::nth_element(sorted.begin(), sorted.begin() + kMostFacets, sorted.end());
+    std::nth_element(sorted.begin(), sorted.begin() + kMaxFacets, sorted.end());
     // Equal faces have equal hashes and stay or go together.
-    const std::uint64_t bound = sorted[kMostFacets];
+    const std::uint64_t bound = sorted[kMaxFacets];
     chosen.erase(std::remove_if(chosen.begin(), chosen.end(), [&](std::uint32_t t) { return hash[t] >= bound; }),
                  chosen.end());
     return chosen;
@@ -153,7 +153,7 @@ double angle_off(const Facet& f, const ScrewMotion& m) {
     const double speed = v.norm();
     worst = std::max(worst, speed > 0 ? std::abs(f.normal.dot(v)) / speed : 1.0);
   }
-  return std::max(0.0, worst - std::min(kWidthShare * width / speed2, kMostWidth));
+  return std::max(0.0, worst - std::min(kWidthShare * width / speed2, kMaxWidth));
 }
 
 class Search {
@@ -162,7 +162,7 @@ class Search {
 
   std::vector<ScrewAxis> run() {
     std::vector<double> apart(facets_.all.size(), std::numeric_limits<double>::infinity());
-    for (int i = 0; i < kSeeds && found_.size() < kMostAxes && failures_ < kMostFailures; ++i) {
+    for (int i = 0; i < kSeeds && found_.size() < kMaxAxes && failures_ < kMaxFailures; ++i) {
       const std::size_t seed = next_seed(apart);
       if (seed == facets_.all.size()) break;
       spread(seed, apart);
@@ -209,7 +209,7 @@ class Search {
     std::sort(of_.begin(), of_.end());
     ScrewMotion motion;
     if (!fit_locally(motion)) return false;
-    if (share_within(motion, kRounds[0], kFirstStride) < kLeastShare) return false;
+    if (share_within(motion, kRounds[0], kFirstStride) < kMinShare) return false;
     const bool grown = grow(motion);
     failures_ += !grown;
     return grown;
@@ -263,9 +263,9 @@ class Search {
     }
     for (int round = 0; round < kRiseRounds; ++round)
       if (!settle_rise(motion)) return false;
-    if (!(fit.second > kDistinct * fit.best && fit.second > kLeastSecond) || !turns(motion)) return false;
+    if (!(fit.second > kDistinct * fit.best && fit.second > kMinSecond) || !turns(motion)) return false;
     const double in = share_within(motion, kTolerance, 1), wider = share_within(motion, 4 * kTolerance, 1);
-    if (in < kLeastShare || wider > (in > kMuch ? kMostWiderOfMuch : kMostWider) * in) return false;
+    if (in < kMinShare || wider > (in > kMuch ? kMaxWiderOfMuch : kMaxWider) * in) return false;
     motion = refined(facets_.all, of_, motion);
     use_up(motion);
     add(motion, in);
@@ -280,10 +280,10 @@ class Search {
       const Facet& f = facets_.all[i];
       if (is_end(f, motion)) free_[i] = 0;
       if (!free_[i] || angle_off(f, motion) > 4 * kTolerance) continue;
-      if (std::abs(f.normal.dot(motion.c)) >= kLeastLean) {
+      if (std::abs(f.normal.dot(motion.c)) >= kMinLean) {
         const double own = own_rise(f, plain).rise, rise = motion.rise();
-        const bool other = std::abs(rise) < kLeastSpread ? std::abs(own) > 2 * kSameSpread * spread_
-                                                         : std::abs(own) < std::abs(own - rise);
+        const bool other = std::abs(rise) < kMinSpread ? std::abs(own) > 2 * kSameSpread * spread_
+                                                       : std::abs(own) < std::abs(own - rise);
         if (other) continue;
       }
       free_[i] = 0;
@@ -345,14 +345,14 @@ class Search {
     std::vector<OwnRise> own;
     double spread = 0, weight = 0;
     for (const std::size_t i : of_) {
-      if (std::abs(facets_.all[i].normal.dot(motion.c)) < kLeastLean) continue;
+      if (std::abs(facets_.all[i].normal.dot(motion.c)) < kMinLean) continue;
       own.push_back(own_rise(facets_.all[i], plain));
       spread += own.back().weight * own.back().spread;
       weight += own.back().weight;
     }
     double rise = 0;
     if (weight > 0) {
-      spread = std::max(kLeastSpread, spread / weight);
+      spread = std::max(kMinSpread, spread / weight);
       rise = most_frequent(own, spread);
       if (std::abs(rise) < spread) rise = 0;
     }
@@ -384,7 +384,7 @@ class Search {
     std::size_t kept = 0;
     for (const std::size_t i : of_) {
       const Facet& f = facets_.all[i];
-      if (std::abs(f.normal.dot(motion.c)) >= kLeastLean &&
+      if (std::abs(f.normal.dot(motion.c)) >= kMinLean &&
           std::abs(own_rise(f, plain).rise - rise) > kSameSpread * spread)
         continue;
       of_[kept++] = i;
@@ -435,8 +435,7 @@ class Search {
       sector[static_cast<std::size_t>((angle / 6.283185307179586 + 1) * kSectors) % kSectors] += f.area;
       all += f.area;
     }
-    return std::count_if(sector.begin(), sector.end(), [&](double a) { return a > kSectorShare * all; }) >=
-           kLeastSectors;
+    return std::count_if(sector.begin(), sector.end(), [&](double a) { return a > kSectorShare * all; }) >= kMinSectors;
   }
 
   void add(const ScrewMotion& motion, double share) {
@@ -450,7 +449,7 @@ class Search {
     }
     axis.direction = c;
     axis.origin = facets_.middle + facets_.size * motion.axis_point();
-    axis.rise = std::abs(motion.rise()) < kLeastSpread ? 0 : facets_.size * motion.rise();
+    axis.rise = std::abs(motion.rise()) < kMinSpread ? 0 : facets_.size * motion.rise();
     axis.area = share * facets_.area * facets_.size * facets_.size;
     for (ScrewAxis& known : found_) {
       const Vec3 apart = axis.origin - known.origin;

@@ -19,7 +19,7 @@ struct ScrewAxis {
 };
 
 /// Most axes that are looked for in one mesh.
-inline constexpr std::size_t kMostAxes = 6;
+inline constexpr std::size_t kMaxAxes = 6;
 
 /// The axes of the threads, bores, pegs, cones and other surfaces of revolution of `mesh`, those of most surface first.
 /// Found from the triangles alone: open surfaces, soups, degenerate and repeated faces do no harm. The same set of

@@ -11,7 +11,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// A triangle is cut into pieces over which r deviates from linear by at most this part of it, as far as so many cuts
 /// go.
 constexpr double kSagitta = 3e-5;
-constexpr int kMostCuts = 8;
+constexpr int kMaxCuts = 8;
 /// Rounding of the sums that make one bound, relative to their terms (some 10 operations of 1.1e-16).
 constexpr double kRounding = 1e-14;
 /// Enlargement of arcs: covers the rounding of angles and of their sines and cosines.
@@ -91,7 +91,7 @@ ProfileSum profile_of(const std::array<Vec3, 3>& v, double rise) {
     return p;
   }
   const double ratio = longest / p.r_lo;
-  const int cuts = std::clamp(static_cast<int>(std::ceil(ratio / std::sqrt(6 * kSagitta))), 1, kMostCuts);
+  const int cuts = std::clamp(static_cast<int>(std::ceil(ratio / std::sqrt(6 * kSagitta))), 1, kMaxCuts);
   const Vec3 middle = (v[0] + v[1] + v[2]) / 3;
   const double about = std::atan2(middle.y(), middle.x());
   double first = std::numeric_limits<double>::infinity(), last = -first;

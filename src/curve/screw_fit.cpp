@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 /// Weight of the velocity itself among the squares: it decides only what the facets leave open.
-constexpr double kLeastVelocity = 1e-7;
+constexpr double kMinVelocity = 1e-7;
 
 /// Sums of the squares Σ w (n · c_bar + (x × n) · c)², x from the weighted middle, which makes both parts alike.
 struct Squares {
@@ -37,7 +37,7 @@ struct Squares {
     mixed /= weight;
     turn /= weight;
     distance2 /= weight;
-    velocity += kLeastVelocity * Mat3::Identity();
+    velocity += kMinVelocity * Mat3::Identity();
   }
 };
 

@@ -15,7 +15,7 @@ namespace tegotae {
 namespace {
 
 // A servo that was held up for longer does not make up for it.
-constexpr std::int64_t kMostStepNs = 20'000'000;
+constexpr std::int64_t kMaxStepNs = 20'000'000;
 constexpr std::chrono::milliseconds kLookAgain(500);
 constexpr std::chrono::milliseconds kLookStep(10);  // in which a stop is noticed
 
@@ -65,7 +65,7 @@ class InputDevice final : public Device {
 
   DeviceState read() noexcept override {
     const std::int64_t now = monotonic_ns();
-    const double dt = 1e-9 * static_cast<double>(std::clamp<std::int64_t>(now - last_read_ns_, 0, kMostStepNs));
+    const double dt = 1e-9 * static_cast<double>(std::clamp<std::int64_t>(now - last_read_ns_, 0, kMaxStepNs));
     last_read_ns_ = now;
     Message message{};
     messages_.read(message);

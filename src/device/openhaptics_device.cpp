@@ -21,7 +21,7 @@ constexpr std::int64_t kStaleNs = 20'000'000;
 // Force stays off for so long after an error: the amplifiers toggle and ramp, and a fault that lasts is told in every
 // frame.
 constexpr std::int64_t kErrorHoldNs = 500'000'000;
-constexpr int kMostErrors = 8;  // the library stacks them
+constexpr int kMaxErrors = 8;  // the library stacks them
 // In which the scheduler renders the last, zero command before it is stopped.
 constexpr std::chrono::milliseconds kLastFrames(5);
 constexpr double kVelocityCutoffHz = 50.0;
@@ -117,7 +117,7 @@ struct OpenHapticsDevice::Impl {
     render(now);
     hd->end_frame(handle);
     bool good = true;
-    for (int i = 0; i < kMostErrors; ++i) {
+    for (int i = 0; i < kMaxErrors; ++i) {
       const HdApi::ErrorInfo info_now = hd->get_error();
       if (info_now.code == HdApi::kSuccess) break;
       note(info_now.code, now);
@@ -230,7 +230,7 @@ void OpenHapticsDevice::stop() {
   impl_->started = false;
   write({});
   std::this_thread::sleep_for(kLastFrames);
-  for (int i = 0; i < kMostErrors && impl_->hd->get_error().code != HdApi::kSuccess; ++i) {  // of the past
+  for (int i = 0; i < kMaxErrors && impl_->hd->get_error().code != HdApi::kSuccess; ++i) {  // of the past
   }
   impl_->shut_down();
   impl_->check("the device cannot be left in a safe state");

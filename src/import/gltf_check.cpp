@@ -20,9 +20,9 @@ constexpr std::size_t kDeepest = 1000;
 // Some JSON readers go down into lists and objects by recursion.
 constexpr int kDeepestJson = 100;
 // Streams of EXT_meshopt_compression that say that they hold more than this many times their size are damaged.
-constexpr std::uint64_t kMostCompression = 2000;
+constexpr std::uint64_t kMaxCompression = 2000;
 // Elements of an accessor without data: each costs up to 64 bytes.
-constexpr std::uint64_t kMostZeros = 10'000'000;
+constexpr std::uint64_t kMaxZeros = 10'000'000;
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
 /// Whether the extension is read, or changes nothing of shape and place.
@@ -161,7 +161,7 @@ class GltfCheck {
         filter == "NONE" || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
                                             (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL"));
     if (offset > whole || size > whole - offset || !shape || !filtered || count > bytes || count * stride != bytes ||
-        bytes > kMostCompression * size)
+        bytes > kMaxCompression * size)
       refuse("damaged: " + self + " has no sizes that " + kMeshopt + " allows");
   }
 
@@ -179,7 +179,7 @@ class GltfCheck {
     }
     if (accessor.contains("bufferView")) {
       check_elements(accessor, count, size, self);
-    } else if (count > kMostZeros) {
+    } else if (count > kMaxZeros) {
       // Of zeros, or told by an extension; too many to be believed.
       refuse("damaged: " + self + " has no bufferView and " + std::to_string(count) + " elements");
     }

@@ -12,7 +12,7 @@ namespace tegotae {
 namespace {
 
 /// assimp cuts a polygon of n corners into triangles in about n^2 * 1e-8 s: at most ten seconds for a file.
-constexpr double kMostPolygonWork = 1e9;
+constexpr double kMaxPolygonWork = 1e9;
 
 /// assimp passes some files' indices through unchecked, and its own later steps trust them.
 void require_valid_indices(const aiScene& scene, const std::string& path) {
@@ -40,7 +40,7 @@ void require_small_polygons(const aiScene& scene, const std::string& path) {
       most = std::max(most, corners);
     }
   }
-  if (work > kMostPolygonWork) {
+  if (work > kMaxPolygonWork) {
     throw Error(path + ": polygons of up to " + std::to_string(most) +
                 " corners would take too long to cut into triangles: export the part as triangles");
   }

@@ -39,14 +39,14 @@ class OffText {
 };
 
 void check_off_face(const std::string& path, std::string_view line, std::int64_t face, std::int64_t vertices) {
-  constexpr std::int64_t kMostCorners = 9;  // assimp drops larger faces without a word
+  constexpr std::int64_t kMaxCorners = 9;  // assimp drops larger faces without a word
   const std::string name = "face " + std::to_string(face);
   std::int64_t corners = 0;
   // assimp reads on past a face without corners and ends in a segmentation fault.
   if (!take_number(line, corners) || corners < 1) refuse(path, "truncated or damaged at " + name);
-  if (corners > kMostCorners) {
+  if (corners > kMaxCorners) {
     refuse(path, name + " has " + std::to_string(corners) + " corners; faces of OFF files are read up to " +
-                     std::to_string(kMostCorners) + ": export the part as triangles");
+                     std::to_string(kMaxCorners) + ": export the part as triangles");
   }
   for (std::int64_t k = 0; k < corners; ++k) {
     std::int64_t index = 0;

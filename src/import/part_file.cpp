@@ -27,8 +27,8 @@ PartFile read_part_file(const std::string& path) {
 void append(const TriangleMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {
   const std::size_t base = to.vertices.size();
   // Indices are 32 bits wide, and so are half-edges (3 per triangle).
-  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 4;
-  if (base + from.vertices.size() > kMost || to.triangles.size() + from.triangles.size() > kMost)
+  constexpr std::size_t kMax = std::numeric_limits<std::uint32_t>::max() / 4;
+  if (base + from.vertices.size() > kMax || to.triangles.size() + from.triangles.size() > kMax)
     throw Error(to.name + ": too large: more than a billion vertices or triangles");
   to.vertices.reserve(base + from.vertices.size());
   for (const Vec3& p : from.vertices) to.vertices.push_back(unit * (X.leftCols<3>() * p + X.col(3)));

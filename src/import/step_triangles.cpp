@@ -14,7 +14,7 @@ namespace tegotae {
 namespace {
 
 // Shapes may name a face of which there is one in the file several times; more triangles a byte are made to do harm.
-constexpr std::size_t kMostTrianglesPerByte = 16;
+constexpr std::size_t kMaxTrianglesPerByte = 16;
 
 constexpr std::string_view kRepresentation = "TESSELLATED_SHAPE_REPRESENTATION";
 constexpr std::string_view kRepositioned = "REPOSITIONED_TESSELLATED_ITEM";
@@ -225,7 +225,7 @@ class StepTriangleReader {
   }
 
   void add(const std::array<std::uint32_t, 3>& triangle, TriangleMesh& to) {
-    if (++triangles_ > kMostTrianglesPerByte * bytes_.size())
+    if (++triangles_ > kMaxTrianglesPerByte * bytes_.size())
       refuse(path_, "damaged: its tessellated shapes name the same faces too often");
     to.triangles.push_back(triangle);
   }

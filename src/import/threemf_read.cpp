@@ -18,7 +18,7 @@ namespace {
 
 // Components may name components; more levels, or parts and groups, than these are made to do harm.
 constexpr int kDeepest = 100;
-constexpr std::size_t kMostParts = 1'000'000;
+constexpr std::size_t kMaxParts = 1'000'000;
 // What a required extension may be: production splits a file into several, materials tell colors.
 constexpr std::array<const char*, 4> kKnownExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
@@ -156,7 +156,7 @@ class ThreeMfReader {
       file_.notes.push_back('"' + name + "\" is a support of the print: left out");
       return;
     }
-    if (++placed_ > kMostParts) damaged("it has more than a million parts and groups");
+    if (++placed_ > kMaxParts) damaged("it has more than a million parts and groups");
     if (depth > kDeepest) damaged("its components are nested more than " + std::to_string(kDeepest) + " deep");
     if (const pugi::xml_node components = child(object, "components")) {
       groups.push_back(name);

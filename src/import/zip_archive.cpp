@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 // Deflate packs a thousand bytes into one at best.
-constexpr double kMostCompression = 1100;
+constexpr double kMaxCompression = 1100;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::string ZipArchive::read(const std::string& name) const {
   unz_file_info64 info{};
   if (unzGetCurrentFileInfo64(archive_.get(), &info, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
     throw damaged("has no header");
-  if (static_cast<double>(info.uncompressed_size) > kMostCompression * static_cast<double>(info.compressed_size) + 1000)
+  if (static_cast<double>(info.uncompressed_size) > kMaxCompression * static_cast<double>(info.compressed_size) + 1000)
     throw damaged("is larger than its bytes can hold");
   if (unzOpenCurrentFile(archive_.get()) != UNZ_OK)
     throw damaged("cannot be opened (encrypted, or another compression)");

@@ -19,9 +19,9 @@ namespace tegotae {
 namespace {
 
 // Enough for all of them in practice; the deepest point is looked for near these and at every vertex.
-constexpr std::size_t kMostPairs = 1000000;
+constexpr std::size_t kMaxPairs = 1000000;
 // For planes between patches of a pair, about 15 ms, before FCL is asked.
-constexpr int kMostSearches = 1 << 16;
+constexpr int kMaxSearches = 1 << 16;
 // An edge that leans less than this out of a triangle's plane (sine) does not cross it: parts that lie face to face.
 constexpr double kCrossing = 1e-9;
 
@@ -59,7 +59,7 @@ class PairLook {
     const Pose X_BA = b.part->pose.inverse() * a.part->pose;
     const bool apart = known_apart(a, b, X_BA);
     std::vector<FclPairs::Faces> pairs;
-    if (!apart) pairs = fcl_.intersections(*a.part->mesh, *b.part->mesh, X_BA, kMostPairs);
+    if (!apart) pairs = fcl_.intersections(*a.part->mesh, *b.part->mesh, X_BA, kMaxPairs);
     const bool inside = pairs.empty() && (any_inside(a, b) || any_inside(b, a));
     if (pairs.empty() && !inside) return !apart && look_apart(a, b, X_BA, clash);
     clash.gap = 0;
@@ -94,7 +94,7 @@ class PairLook {
     front_.attach(*tree(a), a.data->box.center(), *tree(b));
     front_.set_clearance(reach());
     WorkLimit limit;
-    limit.searches = kMostSearches;
+    limit.searches = kMaxSearches;
     limit.blocking = 1;
     return front_.certify(X_BA, Displacement{}, limit).status == CertifyStatus::certified;
   }

@@ -19,7 +19,7 @@ namespace {
 constexpr double kReachShare = 0.02;
 // The held part is moved at most so many touch tolerances, and gap floors, off what it touches at the start: a corner
 // with three faces takes 1.8.
-constexpr double kMostShift = 3;
+constexpr double kMaxShift = 3;
 // Of the tick's budget, what a look at a pair that was not free at the start may take.
 constexpr double kLookShare = 0.25;
 
@@ -72,8 +72,8 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   reach = *settings.l_min + 2 * kReachShare * radius;
   check = make_check(*parts.held, fixed, settings, mass.center, radius);
   contacts = std::make_unique<ContactSet>(std::make_shared<Surface>(parts.held->mesh), std::move(fixed.surfaces),
-                                          mass.center, kMostLimits);
-  X = initial_separation(*this, mass, parts.held->pose, kMostShift * (settings.touch_tolerance + 2 * kGapFloor));
+                                          mass.center, kMaxLimits);
+  X = initial_separation(*this, mass, parts.held->pose, kMaxShift * (settings.touch_tolerance + 2 * kGapFloor));
   double shift = 0;
   for (const Vec3& v : parts.held->mesh->vertices) shift = std::max(shift, (X * v - parts.held->pose * v).norm());
   start.set_shift(shift);

@@ -14,7 +14,7 @@
 namespace tegotae {
 
 /// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
-inline constexpr int kMostLimits = 4096;
+inline constexpr int kMaxLimits = 4096;
 
 /// What every loop that never penetrates holds of its scene.
 struct CollisionWorld {

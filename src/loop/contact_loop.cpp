@@ -15,8 +15,8 @@ namespace tegotae {
 namespace {
 
 std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
-  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMostLimits);
-  auto own = settings.custom_resolver(kMostLimits);
+  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxLimits);
+  auto own = settings.custom_resolver(kMaxLimits);
   if (!own) throw Error("contact.custom_resolver made no resolver");
   return own;
 }
@@ -31,9 +31,9 @@ Metric metric_of(const Scene& scene, const ContactSettings& settings, const Mass
 }
 
 // Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
-constexpr int kMostBlocking = 256;
+constexpr int kMaxBlocking = 256;
 // Pieces in one tick; a pen faster than that leaves X behind for a while.
-constexpr int kMostMotions = 16;
+constexpr int kMaxMotions = 16;
 // How much faster than the pen X may follow.
 constexpr double kCatchUp = 2.0;
 // A piece of at least this share of its longest was cut short by that, not by contacts.
@@ -41,13 +41,13 @@ constexpr double kFullShare = 0.99;
 // What of a piece was proved in the time there was is tried so many times as long next.
 constexpr double kProvedGrowth = 2;
 // Programs solved for one piece before it is shortened instead.
-constexpr int kMostResolves = 6;
+constexpr int kMaxResolves = 6;
 // Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of its
 // length is tried without them, so often in one tick.
 constexpr double kShorter = 0.25;
-constexpr int kMostShorter = 3;
+constexpr int kMaxShorter = 3;
 // Halvings of a piece that still intersects.
-constexpr int kMostHalvings = 4;
+constexpr int kMaxHalvings = 4;
 // Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
 constexpr double kWorthwhile = 0.25;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
@@ -59,26 +59,26 @@ constexpr double kKeepGrowth = 1.1;
 // A part that moved less than this in a tick (m) stands; normals with less than this dot product are of opposite sides,
 // looked for among about so many limits.
 constexpr double kStanding = 2e-6, kOpposite = -0.3;
-constexpr std::size_t kMostWedging = 64;
+constexpr std::size_t kMaxWedging = 64;
 // Forces of a piece that are remembered until the end of the tick.
-constexpr std::size_t kMostForces = 64;
+constexpr std::size_t kMaxForces = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
-constexpr double kLeastKeep = 2e-6;
+constexpr double kMinKeep = 2e-6;
 // A motion that carries no point farther than this (m) is rest.
 constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 // It never falls below this length (m), or a part whose way was blocked would not try again.
-constexpr double kLeastTrust = 1e-8;
+constexpr double kMinTrust = 1e-8;
 // In the mass metric a rotation error larger than this (rad) is taken in parts: the metric of a rotation vector has its
 // slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
 // always.
-constexpr double kMostTurn = 0.5;
+constexpr double kMaxTurn = 0.5;
 // While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
 // then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. While
 // X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a long way.
 constexpr double kStiction = 1e-6;
-constexpr int kMostStillTicks = 250;
+constexpr int kMaxStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
 constexpr double kFeltLag = 0.05;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
@@ -94,22 +94,22 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       center_(mass.center),
       at_(scene, settings, mass),
       metric_(metric_of(scene, settings, mass)),
-      most_turn_(is_in_mass_metric(settings) ? kMostTurn : std::numeric_limits<double>::infinity()),
+      most_turn_(is_in_mass_metric(settings) ? kMaxTurn : std::numeric_limits<double>::infinity()),
       resolver_(resolver_of(settings)),
-      rows_(kMostLimits),
-      bounds_(kMostLimits),
-      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMostLimits),
-      planes_(kMostLimits, scene.coupling, scene.scale) {
+      rows_(kMaxLimits),
+      bounds_(kMaxLimits),
+      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxLimits),
+      planes_(kMaxLimits, scene.coupling, scene.scale) {
   trust_ = piece_cap_ = at_.check->longest_motion();
   most_keep_ = keep_ = kKeepShare * *settings_.l_min;
-  least_keep_ = scene.contact.l_min ? most_keep_ : std::min(kLeastKeep, most_keep_);
+  least_keep_ = scene.contact.l_min ? most_keep_ : std::min(kMinKeep, most_keep_);
   recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
-  blocking_.reserve(kMostBlocking);
+  blocking_.reserve(kMaxBlocking);
   near_.reserve(at_.spheres.size());
-  known_.reserve(kMostForces);
-  guess_.reserve(kMostForces);
+  known_.reserve(kMaxForces);
+  guess_.reserve(kMaxForces);
 }
 
 bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
@@ -142,7 +142,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double wanted = size(displacement(X_, Y, center_));
   const double pen = size(displacement(last_Y_, Y, center_));
   last_Y_ = Y;
-  still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMostStillTicks) : 0;
+  still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMaxStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(piece_cap_, kCatchUp * pen);
   if (at_.look_at_start(X_)) tracked_ = false;
@@ -162,15 +162,15 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   } else {
     at_.check->begin(near_, deadline_ns_);
     if (track()) adapt_keep(Y);
-    trust_ = std::max(trust_, kLeastTrust);
+    trust_ = std::max(trust_, kMinTrust);
     if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
     int shorter = 0;
-    for (int i = 0; i < kMostMotions && made_ < travel && !late(); ++i) {
+    for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made_});
       const double length = move_piece(Y, cap, report);
       if (length > 0) report.pieces.push_back(X_);
       // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
-      if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMostShorter)) break;
+      if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
       made_ += length;
     }
     if (report.pieces.empty()) report.pieces.push_back(X_);
@@ -260,7 +260,7 @@ void ContactLoop::adapt_keep(const Pose& Y) {
 bool ContactLoop::wedged() const {
   const auto& limits = at_.contacts->limits();
   // Of many limits an even sample: neighbors in the list are of one side.
-  const std::size_t stride = limits.size() / kMostWedging + 1;
+  const std::size_t stride = limits.size() / kMaxWedging + 1;
   const auto presses = [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= keep_ / kKeepShare; };
   for (std::size_t i = 0; i < limits.size(); i += stride)
     for (std::size_t j = 0; j < i && presses(limits[i]); j += stride)
@@ -283,10 +283,10 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
   bool free = false;
-  for (int i = 0; i < kMostResolves; ++i) {
+  for (int i = 0; i < kMaxResolves; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
-      if (i + 1 < kMostResolves && look_around()) continue;
+      if (i + 1 < kMaxResolves && look_around()) continue;
       held_by_contacts_ = only_contacts();
       if (!resolver_->projects()) trust_ *= 0.5;
       if (cutting()) shorter_than(cap);
@@ -299,7 +299,7 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
       // Out of time or work: what is proved of the motion is made, and the next piece is not much longer, or as long as
       // all that was proved in this tick.
       scale(trial, at_.check->free_share());
-      trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kLeastTrust});
+      trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kMinTrust});
       X_ = trial.X;
       tracked_ = false;
       allowed_ = std::max(0.0, allowed_ - size(trial.d));
@@ -421,7 +421,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     if (r.status != ResolveStatus::solved) continue;
     // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMostRecovery * keep_) continue;
+    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * keep_) continue;
     far_planes_ = false;
     for (std::size_t i = 0; i < limits.size(); ++i)
       if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) carries(i);
@@ -448,7 +448,7 @@ bool ContactLoop::shorten(Trial& trial, TickReport& report) {
     scale(trial, share);
     return true;
   }
-  for (int i = 0; i < kMostHalvings && !late(); ++i) {
+  for (int i = 0; i < kMaxHalvings && !late(); ++i) {
     scale(trial, 0.5);
     if (is_free(trial, report)) return true;
   }

@@ -64,7 +64,7 @@ void ContactLoop::recover_gaps(TickReport& report, Vec6& motion) {
   const Resolution r = resolver_->resolve(rows_, bounds_.data(), motion);
   ++report.resolves;
   report.iterations += r.iterations;
-  if (r.status == ResolveStatus::solved && size(metric_.unwhiten(r.motion - motion)) < kMostRecovery * keep_)
+  if (r.status == ResolveStatus::solved && size(metric_.unwhiten(r.motion - motion)) < kMaxRecovery * keep_)
     motion = r.motion;
 }
 

@@ -10,7 +10,7 @@ namespace tegotae {
 namespace {
 
 double checked(double mu, const std::string& what) {
-  if (mu >= 0 && mu <= kMostMu) return mu;
+  if (mu >= 0 && mu <= kMaxMu) return mu;
   throw Error(what + ": the coefficient of friction must be from 0 to 10, not " + std::to_string(mu));
 }
 

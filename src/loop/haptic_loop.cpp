@@ -18,10 +18,10 @@ namespace {
 // Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
 constexpr double kChangeShare = 0.25;
 // Ways divided by less time (s) are no velocities; no loop ticks so often.
-constexpr double kLeastTime = 1e-6;
+constexpr double kMinTime = 1e-6;
 
 bool proper_time(double dt) {
-  return dt == 0 || (dt >= kLeastTime && std::isfinite(dt));
+  return dt == 0 || (dt >= kMinTime && std::isfinite(dt));
 }
 
 std::int64_t deadline(std::int64_t now_ns, double budget) {
@@ -45,7 +45,7 @@ struct HapticLoop::State {
       : now(std::make_unique<RunningScene>(scene)),
         changes(std::make_shared<SceneChanges>(*now)),
         Y(now->loop->pose()) {
-    report.pieces.reserve(kMostPieces);
+    report.pieces.reserve(kMaxPieces);
     begin();
   }
 

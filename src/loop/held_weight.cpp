@@ -10,7 +10,7 @@ namespace tegotae {
 namespace {
 
 // Beyond, numbers are no longer those of a part or a place (kg, m/s²).
-constexpr double kMostMass = 1e6, kMostGravity = 1e3;
+constexpr double kMaxMass = 1e6, kMaxGravity = 1e3;
 
 // Of what the motors stand for long; the rest is for contacts.
 constexpr double kWeightShare = 0.5;
@@ -23,10 +23,10 @@ HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
   if (!s.on) return out;
   if (!scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
     throw Error("weight: the resolver " + to_string(scene.contact.resolver) + " knows no weight; qp does");
-  if (!(s.gravity.norm() <= kMostGravity)) throw Error("weight: gravity must be three numbers of up to 1000 m/s²");
+  if (!(s.gravity.norm() <= kMaxGravity)) throw Error("weight: gravity must be three numbers of up to 1000 m/s²");
   const Part& held = held_part(scene);
   out.mass = held.mass.value_or(mass.mass);
-  if (!(out.mass > 0 && out.mass <= kMostMass))
+  if (!(out.mass > 0 && out.mass <= kMaxMass))
     throw Error("part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " +
                 std::to_string(out.mass));
   const double newtons = out.mass * s.gravity.norm();

@@ -15,12 +15,12 @@ constexpr double kEnvelope = 2e-6;
 constexpr double kLongestTick = 0.02;
 // Impulses of a sub-step; a part wedged between contacts would go on for ever. Gaps are recovered in the first of them
 // only: those of opposite sides may not recover at once.
-constexpr int kMostImpulses = 100, kRecovering = 30;
+constexpr int kMaxImpulses = 100, kRecovering = 30;
 // Pieces of a tick; each goes to the next collision.
 // New limits looked for on one piece of the way before it is shortened.
-constexpr int kMostSearches = 6;
-constexpr int kMostHalvings = 4;
-constexpr std::size_t kMostBlocking = 256;
+constexpr int kMaxSearches = 6;
+constexpr int kMaxHalvings = 4;
+constexpr std::size_t kMaxBlocking = 256;
 // Share of the envelope that a contact may lose in a piece before it counts as a collision: impulses at other contacts
 // leave speeds that die away but never vanish.
 constexpr double kSlack = 0.05;
@@ -34,7 +34,7 @@ constexpr double kRest = 1e-10;
 // spins that Euler's equation, taken explicitly, drives past every number.
 constexpr double kFastest = 100;
 // Bends a motion at most so far from the sum of its limits' straight lines (rad a piece).
-constexpr double kMostTurn = 0.1;
+constexpr double kMaxTurn = 0.1;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
       piece_cap_(at_.check->longest_motion()) {
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
-  blocking_.reserve(kMostBlocking);
+  blocking_.reserve(kMaxBlocking);
   near_.reserve(at_.spheres.size());
 }
 
@@ -72,7 +72,7 @@ void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double wanted = size(displacement(X_, Y, mass_.center));
   if (h > 0) {
     const Twist pen{travel.dp / time, travel.dr / time};
-    for (int i = 1; i <= n && !late() && report.pieces.size() < kMostPieces; ++i) {
+    for (int i = 1; i <= n && !late() && report.pieces.size() < kMaxPieces; ++i) {
       accelerate(displaced(last_Y_, mass_.center, (static_cast<double>(i) / n) * travel), pen, h);
       substep(h, report);
     }
@@ -120,16 +120,16 @@ void ImpulseLoop::substep(double h, TickReport& report) {
   tracked_ = false;  // planes for motions of the last sub-step are of no more use
   double left = h;
   int impulses = 0, searches = 0;
-  while (left > 0 && !late() && report.pieces.size() < kMostPieces) {
+  while (left > 0 && !late() && report.pieces.size() < kMaxPieces) {
     if (!tracked_) tracked_ = at_.contacts->track(X_, at_.reach, deadline_ns_);
     if (!tracked_) break;  // out of time
     Collision next;
     next.time = left;
     recovery_ = impulses < kRecovering ? kRecovery / h : 0;
-    if (impulses < kMostImpulses) next = next_collision(left);
+    if (impulses < kMaxImpulses) next = next_collision(left);
     double time = next.limit < 0 ? left : next.time;
     if (time > 0) {
-      const bool search = searches < kMostSearches && impulses < kMostImpulses;
+      const bool search = searches < kMaxSearches && impulses < kMaxImpulses;
       const Advance outcome = advance(search, time, report);
       if (outcome == Advance::found) {
         ++searches;
@@ -148,7 +148,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     }
     collide(next);
     ++report.iterations;
-    if (++impulses == kMostImpulses) report.status = ResolveStatus::stalled;
+    if (++impulses == kMaxImpulses) report.status = ResolveStatus::stalled;
     if (report.status == ResolveStatus::not_needed) report.status = ResolveStatus::solved;
   }
 }
@@ -198,8 +198,8 @@ void ImpulseLoop::collide(const Collision& collision) {
 ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport& report) {
   const double length = time * (V_.v.norm() + at_.radius * V_.w.norm());
   if (length < kRest) return Advance::made;
-  time *= std::min({1.0, piece_cap_ / length, kMostTurn / std::max(kMostTurn, time * V_.w.norm())});
-  for (int i = 0; i <= kMostHalvings && !late(); ++i, time *= 0.5) {
+  time *= std::min({1.0, piece_cap_ / length, kMaxTurn / std::max(kMaxTurn, time * V_.w.norm())});
+  for (int i = 0; i <= kMaxHalvings && !late(); ++i, time *= 0.5) {
     const Displacement d{time * V_.v, time * V_.w};
     blocking_.clear();
     const MotionAnswer answer = at_.check->check(X_, d, kGapFloor, blocking_);

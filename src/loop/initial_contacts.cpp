@@ -20,7 +20,7 @@ constexpr double kRoom = 2e-7;
 constexpr double kKeepShare = 0.5;
 // The deepest point that was found may not be the deepest: the copy is made smaller by this much more until it is free,
 // up to so many tolerances.
-constexpr double kMore = 1.25, kMostTolerances = 2;
+constexpr double kMore = 1.25, kMaxTolerances = 2;
 
 std::string length(double m) {
   char text[32];
@@ -102,7 +102,7 @@ std::vector<InitialContacts::Copy> InitialContacts::relieve(const Scene& scene, 
     const auto held_tree = cached_patch_tree(held.mesh);
     Copy copy{number_[pair.part], nullptr, nullptr};
     bool found = false;
-    for (double by = kGapFloor + kRoom - kept(c); !found && by < kGapFloor + kRoom + kMostTolerances * tolerance_;
+    for (double by = kGapFloor + kRoom - kept(c); !found && by < kGapFloor + kRoom + kMaxTolerances * tolerance_;
          by *= kMore) {
       copy.mesh = std::make_shared<TriangleMesh>(inward_offset(surface, by));
       copy.tree = cached_patch_tree(copy.mesh);

@@ -14,8 +14,8 @@ constexpr double kMargin = 1.2;
 // Where a vertex of the copy went farther than its faces, its contacts must open by more: steps of this share of the
 // relief.
 constexpr double kStep = 0.25;
-constexpr int kMostRounds = 60, kMostCalls = 16;
-constexpr std::size_t kMostBlocking = 256;
+constexpr int kMaxRounds = 60, kMaxCalls = 16;
+constexpr std::size_t kMaxBlocking = 256;
 
 class InitialSeparation {
  public:
@@ -25,11 +25,11 @@ class InitialSeparation {
         most_(most),
         X_(X),
         metric_(mass),
-        resolver_(make_resolver(ResolverKind::qp, kMostLimits)),
-        rows_(kMostLimits),
-        bounds_(kMostLimits) {
+        resolver_(make_resolver(ResolverKind::qp, kMaxLimits)),
+        rows_(kMaxLimits),
+        bounds_(kMaxLimits) {
     metric_.set_orientation(X.q);
-    blocking_.reserve(kMostBlocking);
+    blocking_.reserve(kMaxBlocking);
   }
 
   Pose run() {
@@ -70,7 +70,7 @@ class InitialSeparation {
     at_.query(X_, center_, at_.reach, near_);
     at_.contacts->clear();
     at_.contacts->track(X_, at_.reach, kNoDeadline);
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       Displacement d;
       if (!solve(list, d) || d.dp.norm() + at_.radius * d.dr.norm() > most_) return false;
       int found = 0;
@@ -106,7 +106,7 @@ class InitialSeparation {
   MotionAnswer check(const std::vector<std::uint32_t>& parts, const Pose& X, const Displacement& d) {
     MotionAnswer answer = MotionAnswer::unknown;
     at_.check->begin(parts, kNoDeadline);
-    for (int i = 0; i < kMostCalls && answer == MotionAnswer::unknown; ++i) {
+    for (int i = 0; i < kMaxCalls && answer == MotionAnswer::unknown; ++i) {
       blocking_.clear();
       answer = at_.check->check(X, d, kGapFloor, blocking_);
     }

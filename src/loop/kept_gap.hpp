@@ -15,7 +15,7 @@ inline constexpr double kRecoverBelow = 0.8;
 /// walls, where surfaces have room.
 inline constexpr double kRecoverWedged = 0.98;
 /// To recover gaps a part goes no farther away from the pen than this many kept gaps.
-inline constexpr double kMostRecovery = 30;
+inline constexpr double kMaxRecovery = 30;
 /// Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
 /// room no motion may keep all gaps to the last bit. Where there is none, gaps may be lost by this share of the wanted
 /// motion.

@@ -16,12 +16,12 @@ namespace tegotae {
 namespace {
 
 // Steps in a tick, and rounds in which springs are found to push or not in one step.
-constexpr int kMostSteps = 4, kMostRounds = 12;
+constexpr int kMaxSteps = 4, kMaxRounds = 12;
 // A step carries no point farther than this share of the part's radius: springs are straightened at its start.
 constexpr double kStepShare = 0.02;
 // Steps shorter than this (m) are rest.
 constexpr double kRest = 1e-8;
-constexpr std::size_t kMostSprings = 16384;
+constexpr std::size_t kMaxSprings = 16384;
 
 }  // namespace
 
@@ -48,9 +48,9 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
     check_ = std::make_unique<PatchMotionCheck>(parts.held->mesh, center_, radius_, meshes, poses_);
   X_ = parts.held->pose;
   near_.reserve(parts.fixed.size());
-  points_.reserve(kMostSprings);
-  springs_.reserve(kMostSprings);
-  limits_.reserve(kMostSprings);
+  points_.reserve(kMaxSprings);
+  springs_.reserve(kMaxSprings);
+  limits_.reserve(kMaxSprings);
 }
 
 void PenaltyLoop::move(const Displacement& d) {
@@ -101,7 +101,7 @@ Vec6 PenaltyLoop::balance(const Vec6& error, const Vec6& made, double dt) const 
   pull << Vec3::Constant(coupling_.stiffness), Vec3::Constant(coupling_.torsional_stiffness);
   const double k = settings_.penalty.stiffness, c = dt > 0 ? settings_.penalty.damping / dt : 0;
   Vec6 d = Vec6::Zero();
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     Eigen::Matrix<double, 6, 6> H = pull.asDiagonal();
     Vec6 g = pull.cwiseProduct(error);
     for (const Spring& s : springs_) {
@@ -134,7 +134,7 @@ void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     X_ = Y;
   }
   // One linear step a tick; more only for a pen that is farther than a step may go.
-  for (int i = 0; i < kMostSteps && !near_.empty(); ++i) {
+  for (int i = 0; i < kMaxSteps && !near_.empty(); ++i) {
     if (!collected_) collect(most, report);
     const Displacement e = displacement(X_, Y, center_), m = displacement(X_before, X_, center_);
     Vec6 error, made;

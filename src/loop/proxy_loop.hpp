@@ -10,7 +10,7 @@
 namespace tegotae {
 
 /// Pieces that a report has room for; no loop makes more in a tick.
-inline constexpr std::size_t kMostPieces = 1024;
+inline constexpr std::size_t kMaxPieces = 1024;
 
 /// The report of a tick that has not done anything: its owner calls this before each tick, so that nothing is left of
 /// an earlier tick, resolver or scene. Keeps the room of `pieces`.

@@ -20,7 +20,7 @@ namespace {
 
 // What l_min is when it is not set: this share of the held part's radius, within these bounds (m). The loop goes down
 // to the lower one by itself where a fit has no more room.
-constexpr double kLMinShare = 8e-4, kLeastLMin = 4e-6, kMostLMin = 2e-5;
+constexpr double kLMinShare = 8e-4, kMinLMin = 4e-6, kMaxLMin = 2e-5;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
 
@@ -37,7 +37,7 @@ ContactSettings completed(ContactSettings s, double radius) {
                   std::string("contact.") + name + " must not be negative, not " + std::to_string(value),
                   {{}, 0, std::string("contact.") + name, {}});
   };
-  if (!s.l_min) s.l_min = std::clamp(kLMinShare * radius, kLeastLMin, kMostLMin);
+  if (!s.l_min) s.l_min = std::clamp(kLMinShare * radius, kMinLMin, kMaxLMin);
   if (!s.l_0) s.l_0 = kDefaultL0 * *s.l_min;
   check("l_min", *s.l_min);
   check("l_0", *s.l_0);

@@ -11,7 +11,7 @@ namespace {
 /// Rounds after which it will not end; those that end take 2 to 12.
 constexpr int kMaxRounds = 25;
 /// A contact that changed between sliding and sticking so often goes in a circle.
-constexpr int kMostFlips = 4;
+constexpr int kMaxFlips = 4;
 /// Less than this part of the wanted motion is no motion, and no violation.
 constexpr double kSmall = 1e-8;
 /// Pulls and friction beyond a cone count from this part of the wanted motion on.
@@ -28,7 +28,7 @@ constexpr double kMatters = 1e-2;
 /// Of contacts beyond their cones those within this share of the worst slide in one round.
 constexpr double kTogether = 0.5;
 /// Of more contacts than this that touch, an even sample shares the load.
-constexpr std::size_t kMostTouching = 64;
+constexpr std::size_t kMaxTouching = 64;
 
 /// Of numbers whose squares neither overflow nor vanish; std::hypot costs ten times as much.
 double length(double a, double b) noexcept {
@@ -49,7 +49,7 @@ void FrictionActiveSet::set_direction(Member& m, double d0, double d1) noexcept 
 }
 
 bool FrictionActiveSet::add(int row) noexcept {
-  if (count_ == kMostMembers) return false;
+  if (count_ == kMaxMembers) return false;
   Member& m = members_[static_cast<std::size_t>(count_++)];
   m.row = row;
   m.n = problem_->normals.row(row);
@@ -94,7 +94,7 @@ void FrictionActiveSet::begin(const Vec6& from) noexcept {
   touching_.clear();
   for (int i = 0; i < rows; ++i)
     if (problem_->normals.row(i).dot(z_) - problem_->bounds[i] < slip_) touching_.push_back(i);
-  const std::size_t taken = std::min(touching_.size(), kMostTouching);
+  const std::size_t taken = std::min(touching_.size(), kMaxTouching);
   double squares = 0;
   for (std::size_t k = 0; k < taken; ++k)
     squares += problem_->normals.row(touching_[k * touching_.size() / taken]).squaredNorm();
@@ -183,7 +183,7 @@ FrictionActiveSet::Change FrictionActiveSet::stick_or_turn() noexcept {
     if (m.mu == 0 || !m.slides) continue;
     const double far = length(m.slip[0], m.slip[1]);
     if (m.slip[0] * m.direction[0] + m.slip[1] * m.direction[1] < -slip_) {
-      if (++m.flips > kMostFlips) return Change::failed;
+      if (++m.flips > kMaxFlips) return Change::failed;
       m.slides = false;
       for (int i = 0; i < 2; ++i) m.tangential[i] = -m.mu * m.normal * m.direction[i];
       changed = true;
@@ -211,7 +211,7 @@ FrictionActiveSet::Change FrictionActiveSet::slide() noexcept {
   for (int k = 0; k < count_; ++k) {
     Member& m = members_[static_cast<std::size_t>(k)];
     if (m.slides || !(beyond(m) > kTogether * worst)) continue;
-    if (++m.flips > kMostFlips) return Change::failed;
+    if (++m.flips > kMaxFlips) return Change::failed;
     const double force = length(m.tangential[0], m.tangential[1]);
     m.slides = true;
     set_direction(m, -m.tangential[0] / force, -m.tangential[1] / force);

@@ -30,10 +30,10 @@ class FrictionActiveSet {
   /// Appends the forces; `out` has room for most_forces().
   void forces(std::vector<FrictionForce>& out) const noexcept;
   int rounds() const noexcept { return rounds_; }
-  static constexpr int most_forces() { return kMostMembers; }
+  static constexpr int most_forces() { return kMaxMembers; }
 
  private:
-  static constexpr int kMostMembers = 96;
+  static constexpr int kMaxMembers = 96;
 
   struct Member {
     Vec6 n, t[2];
@@ -63,7 +63,7 @@ class FrictionActiveSet {
   bool add_most_violated() noexcept;
 
   const FrictionProblem* problem_ = nullptr;
-  std::array<Member, kMostMembers> members_;
+  std::array<Member, kMaxMembers> members_;
   int count_ = 0;
   std::vector<std::uint8_t> inside_;  ///< of each row
   std::vector<int> touching_;         ///< rows

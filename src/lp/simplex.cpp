@@ -140,8 +140,8 @@ void LpSolver::tableau_row(Leaving& leaving) const noexcept {
     leaving.v = rows_.unit_row(leaving.row);
     leaving.weight = 1;
     // Where the row nearly depends on the tight ones, a second pass removes the rounding of the first.
-    constexpr double kMost = 0.01;
-    for (int pass = 0; pass < 2 && (pass == 0 || leaving.v.squaredNorm() < kMost); ++pass) {
+    constexpr double kMax = 0.01;
+    for (int pass = 0; pass < 2 && (pass == 0 || leaving.v.squaredNorm() < kMax); ++pass) {
       double part[6] = {};
       for (int p = 0; p < size_; ++p) {
         part[p] = force_span_.basis(p).dot(leaving.v);

@@ -8,8 +8,8 @@ void SpanBasis::split(const Vec6& row, Vec6& outside, double* inside) const noex
   outside = row;
   std::fill_n(inside, 6, 0.0);
   // Once will do while most of the row remains; else a second pass removes what rounding left of the span.
-  constexpr double kMost = 0.25;
-  const double enough = kMost * row.squaredNorm();
+  constexpr double kMax = 0.25;
+  const double enough = kMax * row.squaredNorm();
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < size_; ++i) {
       const double h = basis_[i].dot(outside);

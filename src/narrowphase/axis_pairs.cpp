@@ -101,7 +101,7 @@ const std::vector<AxisPair>* AxisPairing::with(const std::shared_ptr<const Patch
     return std::min(p.a->area, p.b->area) > std::min(q.a->area, q.b->area);
   });
   for (const Candidate& c : candidates) {
-    if (fixed.pairs.size() == kMostAxisPairs) break;
+    if (fixed.pairs.size() == kMaxAxisPairs) break;
     AxisPair pair{profile_about(known_->held, *c.a, c.b->rise), profile_about(b, *c.b, c.b->rise)};
     if (pair.a->boxes() > 0 && pair.b->boxes() > 0) fixed.pairs.push_back(std::move(pair));
   }

@@ -16,7 +16,7 @@ class AxisPairing {
   ~AxisPairing();
 
   /// Axes of one rise, or of rises that are one but for the error of finding them; both profiles are then taken with
-  /// B's. At most kMostAxisPairs, those of most surface first. Allocates. They live as long as this.
+  /// B's. At most kMaxAxisPairs, those of most surface first. Allocates. They live as long as this.
   const std::vector<AxisPair>* with(const std::shared_ptr<const PatchTree>& b);
 
  private:

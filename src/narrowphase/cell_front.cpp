@@ -36,7 +36,7 @@ int grade(double share) {
 }
 
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
-constexpr int kFewestRaises = 4, kSearchesPerRaise = 3, kMostLooks = 256;
+constexpr int kMinRaises = 4, kSearchesPerRaise = 3, kMaxLooks = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the
 /// children's cells last for.
 constexpr double kRaiseMotions = 8, kRaiseShare = 0.5, kMotionFades = 0.9;
@@ -48,7 +48,7 @@ constexpr double kAheadRetry = 0.25;
 /// One of so many cells that are used up is tried as a larger piece: that costs as much as to renew several.
 constexpr int kGrowStride = 4;
 /// So many larger pieces are tried in the place of one whose cell is used up.
-constexpr int kMostGrowths = 2;
+constexpr int kMaxGrowths = 2;
 
 }  // namespace
 
@@ -453,9 +453,9 @@ bool CellFront::split(std::uint32_t id) {
 }
 
 void CellFront::raise() {
-  const int most = kFewestRaises + report_.searches / kSearchesPerRaise;
+  const int most = kMinRaises + report_.searches / kSearchesPerRaise;
   int tries = 0;
-  for (int looks = std::min<int>(kMostLooks, cells()); looks > 0 && tries < most; --looks) {
+  for (int looks = std::min<int>(kMaxLooks, cells()); looks > 0 && tries < most; --looks) {
     if (++cursor_ >= count_) cursor_ = 0;
     const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
     if (parent == kNobody || nodes_[parent].child != id || !may_raise(parent)) continue;
@@ -484,14 +484,14 @@ bool CellFront::try_raise(std::uint32_t id) {
 /// Whether a cell was found for the piece together with its neighbors, as many as have come far enough from B since
 /// they were taken apart: what a part that leaves needs. `margin` (m) is what the piece's planes have left.
 bool CellFront::grow(std::uint32_t id, double margin) {
-  std::array<std::uint32_t, kMostGrowths> last{};
+  std::array<std::uint32_t, kMaxGrowths> last{};
   int count = 0;
   for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent)
-    if (nodes_[up].retry <= margin) last[static_cast<std::size_t>(count++ % kMostGrowths)] = up;
+    if (nodes_[up].retry <= margin) last[static_cast<std::size_t>(count++ % kMaxGrowths)] = up;
   // The largest first.
-  for (int i = count; i-- > std::max(0, count - kMostGrowths);) {
+  for (int i = count; i-- > std::max(0, count - kMaxGrowths);) {
     if (out_of_work(true)) return false;
-    if (merge(last[static_cast<std::size_t>(i % kMostGrowths)], margin)) return true;
+    if (merge(last[static_cast<std::size_t>(i % kMaxGrowths)], margin)) return true;
   }
   return false;
 }

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Nodes and faces of B that one search measures at most; a piece that needs more is better taken apart.
-constexpr int kMostVisits = 160;
+constexpr int kMaxVisits = 160;
 /// A plane known already stands for a piece of B as well when it is not nearer than this share of the nearest.
 constexpr double kGoodShare = 0.97;
 /// A box of A that overlaps one of B of less than this share of its size is taken apart at once.
 constexpr double kSmallShare = 0.5;
 /// Blocking triangles of B that one search lists.
-constexpr std::size_t kMostBlocking = 2;
+constexpr std::size_t kMaxBlocking = 2;
 /// Products of unit vectors shorter than this have no reliable direction.
 constexpr double kParallel = 1e-6;
 /// Distances along the axes of boxes, which are of unit length and at right angles up to single precision, are right up
@@ -30,10 +30,10 @@ constexpr double kFloatSlack = 1 - 1e-6;
 }  // namespace
 
 CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lane_{} {
-  stack_.reserve(kMostVisits + kMeasured + kCellItems);
-  near_.reserve(kMostVisits + kMeasured + kCellItems);
-  far_.reserve(kMostVisits + kMeasured + kCellItems);
-  blocking_.reserve(kMostBlocking);
+  stack_.reserve(kMaxVisits + kMeasured + kCellItems);
+  near_.reserve(kMaxVisits + kMeasured + kCellItems);
+  far_.reserve(kMaxVisits + kMeasured + kCellItems);
+  blocking_.reserve(kMaxBlocking);
 }
 
 Hull CellSearch::hull_of(std::uint32_t item) const {
@@ -286,7 +286,7 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
     return Outcome::found;
   }
   blocking_.push_back(face);
-  return blocking_.size() < kMostBlocking ? Outcome::found : Outcome::blocked;
+  return blocking_.size() < kMaxBlocking ? Outcome::found : Outcome::blocked;
 }
 
 CellSearch::Outcome CellSearch::settle(const Entry& e) {
@@ -372,7 +372,7 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   while (!stack_.empty()) {
     const Entry e = stack_.back();
     stack_.pop_back();
-    const bool enough = visits_ - before > kMostVisits && !query.is_face;
+    const bool enough = visits_ - before > kMaxVisits && !query.is_face;
     const Outcome outcome = enough ? Outcome::divide : settle(e);
     if (outcome == Outcome::divide && !blocking_.empty()) return Outcome::blocked;
     if (outcome == Outcome::divide && (near_.empty() || near_.back().item != e.item)) list(e.item, e.distance);

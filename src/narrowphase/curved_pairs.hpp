@@ -16,7 +16,7 @@ struct AxisPair {
   std::shared_ptr<const ProfileTree> a, b;
 };
 /// Most axis pairs of a pair of parts.
-inline constexpr std::size_t kMostAxisPairs = 4;
+inline constexpr std::size_t kMaxAxisPairs = 4;
 
 /// The curved pairs of a PatchFront: pairs of nodes that are kept apart in the profile coordinates of a common axis. No
 /// call but the constructor allocates.

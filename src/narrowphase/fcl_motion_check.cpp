@@ -8,7 +8,7 @@ namespace {
 // A motion carries no point farther than this share of the part's radius, so that the poses checked lie close together.
 constexpr double kLongestShare = 0.02;
 // Doublings of the back-off length.
-constexpr int kMostBackOffs = 4;
+constexpr int kMaxBackOffs = 4;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ Pose FclMotionCheck::near_contact(const Pose& X, const Displacement& d,
     for (const std::uint32_t v : held_.triangles[t.a])
       fastest = std::max(fastest, (d.dp + d.dr.cross(X * held_.vertices[v] - c)).norm());
   double back = back_off_;
-  for (int i = 0; i < kMostBackOffs && back < fastest; ++i, back *= 2) {
+  for (int i = 0; i < kMaxBackOffs && back < fastest; ++i, back *= 2) {
     const Pose P = displaced(X, center_, (1 - back / fastest) * d);
     const bool hit = std::any_of(near_->begin(), near_->end(), [&](std::uint32_t part) {
       return narrow_.intersects(part, poses_[part].inverse() * P);

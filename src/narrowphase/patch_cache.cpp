@@ -24,7 +24,7 @@ namespace {
 
 // To be raised whenever PatchTree builds another tree over the same mesh.
 constexpr std::uint32_t kBuild = 1;
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;  // in the folder; the oldest files go first
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;  // in the folder; the oldest files go first
 
 std::string& folder() {
   static std::string path;
@@ -143,7 +143,7 @@ void write(std::ofstream& file, const T* from, std::size_t count, Sum& sum) {
   sum.add(from, count * sizeof(T));
 }
 
-/// Removes the oldest files as long as there are more than kMostBytes.
+/// Removes the oldest files as long as there are more than kMaxBytes.
 void make_room() {
   std::error_code status;
   std::vector<std::pair<fs::file_time_type, fs::path>> files;
@@ -154,7 +154,7 @@ void make_room() {
     files.emplace_back(i->last_write_time(status), i->path());
   }
   std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i < files.size() && bytes > kMostBytes; ++i) {
+  for (std::size_t i = 0; i < files.size() && bytes > kMaxBytes; ++i) {
     bytes -= std::min(bytes, fs::file_size(files[i].second, status));
     fs::remove(files[i].second, status);
   }
@@ -189,7 +189,7 @@ void store(const fs::path& path, const Key& key, const PatchTree& tree) {
 }
 
 std::shared_ptr<const PatchTree> stored_or_built(const std::shared_ptr<const TriangleMesh>& mesh) {
-  if (folder().empty() || mesh->triangles.size() < kLeastCached) return std::make_shared<const PatchTree>(mesh);
+  if (folder().empty() || mesh->triangles.size() < kMinCached) return std::make_shared<const PatchTree>(mesh);
   const Key key = key_of(*mesh);
   const fs::path path = file_of(key);
   if (auto tree = load(path, key, mesh)) {

@@ -7,7 +7,7 @@
 namespace tegotae {
 
 /// Smaller meshes are built faster than this is worth.
-inline constexpr std::size_t kLeastCached = 20000;  // triangles; 50 ms
+inline constexpr std::size_t kMinCached = 20000;  // triangles; 50 ms
 
 /// The hierarchy over `mesh`: the one in use by others, read from the folder of set_hierarchy_cache, or built and kept
 /// there.

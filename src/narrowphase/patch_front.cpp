@@ -24,18 +24,18 @@ constexpr std::size_t kKeepSplits = 512;
 
 /// A tick raises half as many pairs again as it split (or the front grows without end) and this many more; what it
 /// cannot raise is owed, up to a bound, and made up by as many more a tick.
-constexpr int kRaiseAlways = 2, kMostDebt = 4096, kMostRaises = 6;
+constexpr int kRaiseAlways = 2, kMaxDebt = 4096, kMaxRaises = 6;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
 /// Tries to raise in one call: fewer than the least share come off, and the next call tries half as many; more than the
 /// good share, twice as many. Never less than the fewest, and one for so many pairs.
-constexpr int kFewestTries = 8, kPairsPerTry = 256, kMostTries = 256, kPoorShare = 8, kGoodShare = 3;
+constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8, kGoodShare = 3;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
 constexpr int kLateTries = 32;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
 /// motion of late counts, since a blocked part stands still between two pushes. Not more than this (m), under the gap
 /// that motions leave: a part that is pressed to that gap could raise nothing at all.
-constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9, kMostSpare = 3e-7;
+constexpr double kRaiseSpare = 0.02, kMotionFades = 0.9, kMaxSpare = 3e-7;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
       pool_(4 * std::size_t{capacity.pairs} + kFan),
       boxes_{LaneBlocks(capacity.pairs, kBoxFields), std::vector<std::uint32_t>(capacity.pairs), 0},
       triangles_{LaneBlocks(capacity.pairs, kTriFields), std::vector<std::uint32_t>(capacity.pairs), 0},
-      curved_(capacity.curved, capacity.curved > 0 ? kMostAxisPairs : 0),
+      curved_(capacity.curved, capacity.curved > 0 ? kMaxAxisPairs : 0),
       failures_(capacity.pairs) {
   stack_.reserve(capacity.pairs);
   splits_.reserve(capacity.pairs);
@@ -67,7 +67,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
   debt_ = 0;
-  effort_ = kMostTries;
+  effort_ = kMaxTries;
   motion_ = 0;
   pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}};
   enter(0);
@@ -92,7 +92,7 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     }
   }
   report_.splits = static_cast<int>(splits_.size());
-  debt_ = std::min(debt_ + report_.splits + report_.splits / 2 + kRaiseAlways, kMostDebt);
+  debt_ = std::min(debt_ + report_.splits + report_.splits / 2 + kRaiseAlways, kMaxDebt);
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
     if (splits_.size() > kKeepSplits) roll_back();
@@ -215,8 +215,8 @@ void PatchFront::roll_back() {
 }
 
 void PatchFront::raise() {
-  const int wanted = std::min(debt_, kMostRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
-  const int fewest = std::max(kFewestTries, pairs() / kPairsPerTry);
+  const int wanted = std::min(debt_, kMaxRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
+  const int fewest = std::max(kMinTries, pairs() / kPairsPerTry);
   effort_ = std::max(effort_, fewest);
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
   int tries = 0;
@@ -230,7 +230,7 @@ void PatchFront::raise() {
     if (try_raise(parent)) ++report_.merges;
   }
   if (kPoorShare * report_.merges < tries) effort_ /= 2;
-  if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMostTries);
+  if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMaxTries);
   debt_ -= report_.merges;
 }
 
@@ -240,7 +240,7 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
   const double reach = node_reach(a);
   // With some gap to spare, or the next motion splits it again.
-  const double spare = std::min(kRaiseSpare * motion_, kMostSpare);
+  const double spare = std::min(kRaiseSpare * motion_, kMaxSpare);
   Vec3 n = plane(p.child);
   if (separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) {
     collapse(id);

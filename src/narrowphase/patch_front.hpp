@@ -17,7 +17,7 @@ namespace tegotae {
 struct FrontCapacity {
   std::uint32_t pairs = 1u << 15;  ///< pairs of patches or triangles in the front
   std::uint32_t blocking = 32;     ///< blocking triangle pairs that one call reports
-  std::uint32_t curved = 0;        ///< pairs about each of kMostAxisPairs common axes
+  std::uint32_t curved = 0;        ///< pairs about each of kMaxAxisPairs common axes
 };
 
 /// Two triangles that stop a motion.

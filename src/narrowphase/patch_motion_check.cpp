@@ -9,38 +9,38 @@ namespace tegotae {
 namespace {
 
 // Parts that can have fronts at once.
-constexpr std::size_t kMostFronts = 32;
+constexpr std::size_t kMaxFronts = 32;
 // Pairs of all fronts together (about 200 bytes each), and the least and the most of one.
 constexpr std::size_t kAllPairs = 1u << 18;
-constexpr std::size_t kLeastPairs = 1u << 13;
-constexpr std::size_t kMostPairs = 1u << 15;
+constexpr std::size_t kMinPairs = 1u << 13;
+constexpr std::size_t kMaxPairs = 1u << 15;
 // Of a front's pairs those about each of its axes that may be curved (about 160 bytes each).
 constexpr double kCurvedShare = 0.125;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
 constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
-constexpr int kMostRounds = 4;
+constexpr int kMaxRounds = 4;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
-constexpr std::uint32_t kMostCuts = 6;
+constexpr std::uint32_t kMaxCuts = 6;
 // So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
 // cells: they lie on each other over much of the part.
 constexpr int kSomePairs = 4000, kFacesPerPair = 5;
 constexpr double kOneSided = 0.35;
 // What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
-constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kLeastAhead = 30e-6;
+constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // Parts among the cells whose gap is looked at in one call.
-constexpr int kMostGuesses = 8;
+constexpr int kMaxGuesses = 8;
 // Cells (about 850 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
-constexpr std::size_t kFewestCells = 1u << 13;
+constexpr std::size_t kMinCells = 1u << 13;
 constexpr double kCellsPerFace = 1.5;
 constexpr std::size_t kCellsPerPart = 16;
 // Triangle pairs that stop a motion, of one part: each of them costs a walk or a search for an axis, and what they
 // leave out stops the next trial.
-constexpr std::uint32_t kMostBlocking = 24;
+constexpr std::uint32_t kMaxBlocking = 24;
 // After so many of all parts a part tells these few: more would leave no time for making contacts of them.
-constexpr std::size_t kEnoughBlocking = 3 * kMostBlocking;
+constexpr std::size_t kEnoughBlocking = 3 * kMaxBlocking;
 constexpr std::uint32_t kFewBlocking = 2;
 // Searches for planes in one look at a part that need not be kept out of: what is left goes on in the next.
 constexpr int kStandSearches = 1024;
@@ -66,10 +66,10 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
     any_axes = any_axes || !axes_.back()->empty();
     parts.push_back({tree, poses_[i]});
   }
-  const std::size_t fronts = std::min(kMostFronts, std::max<std::size_t>(1, fixed.size()));
+  const std::size_t fronts = std::min(kMaxFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
-  capacity.blocking = kMostBlocking;
-  capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kLeastPairs, kMostPairs));
+  capacity.blocking = kMaxBlocking;
+  capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kMinPairs, kMaxPairs));
   if (any_axes) capacity.curved = static_cast<std::uint32_t>(kCurvedShare * capacity.pairs);
   fronts_.reserve(fronts);
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);
@@ -78,10 +78,10 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   cuts_.assign(fronts, 0);
   ahead_.resize(fronts);
   front_of_.assign(fixed.size(), kNobody);
-  const std::size_t cells = kFewestCells + kCellsPerPart * fixed.size() +
+  const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
   cells_ =
-      std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMostBlocking);
+      std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
   in_cells_.assign(fixed.size(), 0);
   seen_.assign(fixed.size(), 0);
   near_fronts_.reserve(fixed.size());
@@ -144,16 +144,16 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   bool moved = false;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
-    limit_.blocking = blocking.size() < kEnoughBlocking ? kMostBlocking : kFewBlocking;
+    limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
     CertifyReport report = ask_front(part, X, d, clearance, limit_);
     // Where nothing is in the way but work, as at a first touch, and no deadline bounds it, the front goes on.
-    for (int i = 1; i < kMostRounds && limit_.deadline_ns == kNoDeadline && !report.overflow &&
-                    report.status == CertifyStatus::cut;
+    for (int i = 1;
+         i < kMaxRounds && limit_.deadline_ns == kNoDeadline && !report.overflow && report.status == CertifyStatus::cut;
          ++i)
       report = ask_front(part, X, d, clearance, limit_);
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
-    if ((cuts > kMostCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
+    if ((cuts > kMaxCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;
@@ -174,7 +174,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (!near_cells_.empty()) {
     cells_->set_clearance(clearance);
     limit_.searches = kCellSearches;
-    limit_.blocking = kMostBlocking;
+    limit_.blocking = kMaxBlocking;
     const CertifyReport report = cells_->certify(X, d, limit_);
     overflow_ |= report.overflow;
     share_ = std::min(share_, report.share);
@@ -231,8 +231,7 @@ void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, A
   ahead.ceiling = std::min(ahead.ceiling + moved, at_most);
   while (!past(limit_.deadline_ns)) {
     const double target = kAheadShare * ahead.ceiling;
-    if (target < kLeastAhead || ahead.proved >= kAheadEnough * ahead.ceiling || ahead.proved >= longest_motion())
-      return;
+    if (target < kMinAhead || ahead.proved >= kAheadEnough * ahead.ceiling || ahead.proved >= longest_motion()) return;
     const CertifyStatus status = ask(target);
     if (status == CertifyStatus::cut) return;
     if (status == CertifyStatus::certified) ahead.proved = target;
@@ -261,7 +260,7 @@ void PatchMotionCheck::prepare(const Pose& X, std::int64_t deadline_ns) noexcept
   }
   if (near_cells_.empty() || past(limit_.deadline_ns)) return;
   double at_most = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMostGuesses && i < static_cast<int>(near_cells_.size()); ++i)
+  for (int i = 0; i < kMaxGuesses && i < static_cast<int>(near_cells_.size()); ++i)
     at_most = std::min(at_most, least_gap_at_most(X, near_cells_[guessed_++ % near_cells_.size()]));
   limit_.searches = kCellSearches;
   look_ahead(X, cells_ahead_, at_most, [&](double clearance) {

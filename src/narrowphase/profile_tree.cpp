@@ -7,7 +7,7 @@ namespace tegotae {
 namespace {
 
 /// Smaller patches are as flat as their triangles.
-constexpr std::uint32_t kFewestFaces = 4;
+constexpr std::uint32_t kMinFaces = 4;
 
 ProfileSum of_face(const PatchTree& tree, std::uint32_t face, const ScrewFrame& frame) {
   return profile_of(
@@ -53,7 +53,7 @@ ProfileTree::ProfileTree(const PatchTree& tree, const ScrewFrame& frame) : frame
       sum = {joined(left.bounds, right.bounds, frame.rise), left.faces + right.faces};
     }
     sums.push_back(sum);
-    if (sum.faces < kFewestFaces || !sum.bounds.usable()) continue;
+    if (sum.faces < kMinFaces || !sum.bounds.usable()) continue;
     const ProfileBox box = rounded(sum.bounds, frame.rise);
     if (!box.usable()) continue;
     place_[step.node] = static_cast<std::uint32_t>(boxes_.size());

@@ -32,7 +32,7 @@ constexpr double kAcceptedOffset = 2e-3, kAcceptedTilt = 0.12;
 // further.
 constexpr double kLever = 0.04;
 // Looks in the air after which it goes down anyhow.
-constexpr int kMostLooks = 6;
+constexpr int kMaxLooks = 6;
 // From this height on (m) the tip is at the surface to the eye.
 constexpr double kAtSurface = 0.3e-3;
 // Shortest piece of the path, s: 0.2 to 0.3 is a small submovement's time (Milner, J. Neurophysiol. 1992).
@@ -40,7 +40,7 @@ constexpr double kShortestPiece = 0.25;
 // Progress (m) below which it is stuck, and what is left at the end that needs no wiggling.
 constexpr double kProgress = 0.3e-3, kNearEnd = 1e-3;
 // A wiggle grows by this factor at each look without progress, to so many times the first; it fades by the last.
-constexpr double kWiggleGrowth = 1.25, kMostWiggle = 4, kWiggleFade = 0.6;
+constexpr double kWiggleGrowth = 1.25, kMaxWiggle = 4, kWiggleFade = 0.6;
 // Circles of the tip (m) for a tilt of 1 rad; turns of the circles against those of the tilt.
 constexpr double kCircleShare = 8e-3, kCircleTurns = 0.73;
 
@@ -166,7 +166,7 @@ struct Operator::Impl {
     const bool at_surface = seen.depth > -kAtSurface;
     const bool good =
         seen.aim.segment<2>(kOffset).norm() < kAcceptedOffset && seen.aim.segment<2>(kTilt).norm() < kAcceptedTilt;
-    if (!down && (good || ++looks >= kMostLooks)) down = true;
+    if (!down && (good || ++looks >= kMaxLooks)) down = true;
     if (at_surface || !down) target.head<4>() -= kEyeGain * seen.aim.head<4>();
     if (at_surface) {
       target.head<4>() += kYield * (felt.aim - now.x).head<4>();
@@ -175,7 +175,7 @@ struct Operator::Impl {
     }
     double& wiggle = target[kWiggle];
     wiggle =
-        stuck ? std::clamp(kWiggleGrowth * wiggle, profile.wiggle, kMostWiggle * profile.wiggle) : kWiggleFade * wiggle;
+        stuck ? std::clamp(kWiggleGrowth * wiggle, profile.wiggle, kMaxWiggle * profile.wiggle) : kWiggleFade * wiggle;
     aim_plan = Aim(now, target, t, kShortestPiece);
   }
 

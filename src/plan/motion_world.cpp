@@ -16,17 +16,17 @@ namespace tegotae {
 namespace {
 
 // Triangle pairs in the way that are looked at; the first of them names a part.
-constexpr std::size_t kMostBlocking = 64;
+constexpr std::size_t kMaxBlocking = 64;
 // A contact below this many clearances is a contact, and half of it is kept: a little more than the clearance, so that
 // what the loop does passes the certificate.
 constexpr double kContactShare = 2.4;
 // Ticks of one compliant motion, and the least that the part goes in one, as a share of its radius: less is rest.
-constexpr int kMostTicks = 120;
+constexpr int kMaxTicks = 120;
 constexpr double kRestShare = 1e-4;
 // So many ticks of rest in a row are the end: in the first ones the loop finds contacts and may make no motion.
 constexpr int kRestTicks = 4;
 // A motion that is not proved is not told as a whole one, however little is missing.
-constexpr double kLeastProof = 1e-6;
+constexpr double kMinProof = 1e-6;
 constexpr double kTick = 1e-3;  // s; nothing depends on it
 
 /// The scene with the settings of a planner: work alone bounds a tick, nothing rubs or weighs, and a turn weighs as
@@ -63,8 +63,8 @@ MotionWorld::MotionWorld(Scene scene, double clearance, bool)
   const SceneParts parts(scene_);
   for (const PartId id : parts.fixed_id) fixed_.push_back(id.index);
   near_.reserve(fixed_.size());
-  blocking_.reserve(kMostBlocking);
-  report_.pieces.reserve(kMostPieces);
+  blocking_.reserve(kMaxBlocking);
+  report_.pieces.reserve(kMaxPieces);
 }
 
 double MotionWorld::free_share(const Pose& from, const Pose& to, double clearance, int again) {
@@ -81,7 +81,7 @@ double MotionWorld::free_share(const Pose& from, const Pose& to, double clearanc
     share = made == 1 ? end : share + made * (end - share);
     i += made == 1 ? 1 : 0;
     if (made == 1) continue;
-    if (--again < 0) return std::min(share, 1 - kLeastProof);
+    if (--again < 0) return std::min(share, 1 - kMinProof);
   }
   return 1;
 }
@@ -100,7 +100,7 @@ double MotionWorld::step_share(const Pose& X, const Displacement& step, double c
       if (at_.start.waiting(w).stand_in == part) part = at_.start.waiting(w).part;
     if (part < fixed_.size()) blocker_ = fixed_[part];
   }
-  const double share = std::min(at_.check->free_share(), 1 - kLeastProof);
+  const double share = std::min(at_.check->free_share(), 1 - kMinProof);
   // Cells that took over a part, which they keep until it was out of sight, give it back: what follows is elsewhere.
   near_.clear();
   at_.check->begin(near_, kNoDeadline);
@@ -115,7 +115,7 @@ void MotionWorld::comply(const Pose& from, const Pose& target, double longest, s
   Pose X = from;
   double gone = 0;
   int rest = 0;
-  for (int tick = 0; tick < kMostTicks && gone < longest; ++tick) {
+  for (int tick = 0; tick < kMaxTicks && gone < longest; ++tick) {
     reset(report_);
     loop_.loop->step(target, kTick, kNoDeadline, report_);
     const double moved = size(X, report_.proxy.X);

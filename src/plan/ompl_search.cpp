@@ -21,10 +21,10 @@ namespace og = ompl::geometric;
 
 // Of the held part's radius: the longest edge, the shortest one that is worth a node, and how near to a pose that is
 // known a new one is the same.
-constexpr double kRange = 0.5, kLeastEdge = 0.01, kSame = 0.01;
+constexpr double kRange = 0.5, kMinEdge = 0.01, kSame = 0.01;
 // Edges that one iteration adds at most, each beginning where the last one ended. A motion of a pose's own that gets
 // through is made once more, as long as it does: a screw goes on turning.
-constexpr int kMostEdges = 64;
+constexpr int kMaxEdges = 64;
 // Of a motion, what has to have been made for that.
 constexpr double kThrough = 0.5;
 // How far trees are joined by one motion, in edges.
@@ -34,12 +34,12 @@ constexpr double kJoinReach = 8;
 constexpr double kAnywhere = 0.3, kOtherTree = 0.15, kRepeat = 0.15;
 // Kinds of growing that led on lately are tried more often: the share of the past in what is known of one, and the
 // least that is thought of it.
-constexpr double kPast = 0.9, kLeastHope = 0.05, kFirstHope = 0.5;
+constexpr double kPast = 0.9, kMinHope = 0.05, kFirstHope = 0.5;
 // A pose to begin at is the newest one, or of so many the one that was begun at least often.
 constexpr double kNewest = 0.3;
 constexpr int kContest = 4;
 // Own motions, in edges; and the longest turn (rad): beyond half a turn the way there is the other one.
-constexpr double kShortestMotion = 0.1, kLongestMotion = 6, kMostTurn = 3;
+constexpr double kShortestMotion = 0.1, kLongestMotion = 6, kMaxTurn = 3;
 // Of the iterations, those of the goals' tree: where many poses are out, it has little to find.
 constexpr double kGoalShare = 0.5, kExitShare = 0.15;
 
@@ -120,7 +120,7 @@ class CompliantConnect final : public ob::Planner {
       Way& way = choose_way(tree);
       const std::size_t before = tree.nodes.size();
       if (iterate(tree, aim(tree, way), ended)) return finish();
-      way.hope = std::max(kLeastHope, kPast * way.hope + (1 - kPast) * (tree.nodes.size() > before ? 1 : 0));
+      way.hope = std::max(kMinHope, kPast * way.hope + (1 - kPast) * (tree.nodes.size() > before ? 1 : 0));
     }
     result_.path = path_to(farthest_);
     return ob::PlannerStatus::TIMEOUT;
@@ -193,14 +193,14 @@ class CompliantConnect final : public ob::Planner {
     const double length = range_ * rng_.uniformReal(kShortestMotion, kLongestMotion);
     if (way.motion == Motion::repeat && node.parent != nullptr) {
       const Displacement d = displacement(node.parent->X, node.X, world_.center());
-      double times = length / std::max(distance(node.parent->X, node.X), kLeastEdge * world_.radius());
-      if (d.dr.norm() > 0) times = std::min(times, kMostTurn / d.dr.norm());
+      double times = length / std::max(distance(node.parent->X, node.X), kMinEdge * world_.radius());
+      if (d.dr.norm() > 0) times = std::min(times, kMaxTurn / d.dr.norm());
       return times * d;
     }
     Vec3 axis = Vec3(rng_.gaussian01(), rng_.gaussian01(), rng_.gaussian01()).normalized();
     if (way.axis > 0) axis = Vec3::Unit((way.axis - 1) % 3);
     if (way.axis > 3) axis = node.X.q * axis;
-    const double angle = way.sign * std::min(length / world_.gyration(), kMostTurn);
+    const double angle = way.sign * std::min(length / world_.gyration(), kMaxTurn);
     if (way.motion == Motion::turn) return {Vec3::Zero(), angle * axis};
     if (way.motion == Motion::screw) return {rng_.uniformReal(-1, 1) * length * axis, angle * axis};
     return {way.sign * length * axis, Vec3::Zero()};
@@ -212,7 +212,7 @@ class CompliantConnect final : public ob::Planner {
     Node *begin = what.node, *node = what.node;
     Pose target = what.target;
     bool done = false;
-    for (int i = 0; i < kMostEdges && !done && !ended; ++i) {
+    for (int i = 0; i < kMaxEdges && !done && !ended; ++i) {
       Node* next = world_.size(node->X, target) > 0 ? advance(tree, *node, target) : nullptr;
       if (next != nullptr) {
         node = next;
@@ -252,7 +252,7 @@ class CompliantConnect final : public ob::Planner {
       comply(from.X, target, edge);
     }
     const Pose X = edge.back();
-    if (world_.size(from.X, X) < kLeastEdge * world_.radius()) return nullptr;
+    if (world_.size(from.X, X) < kMinEdge * world_.radius()) return nullptr;
     // Where the tree has been, it goes on from there: along a slot or a thread it comes by the same poses again and
     // again.
     Node& known = nearest(tree, X);
@@ -391,7 +391,7 @@ SearchResult search(MotionWorld& world, const SearchTask& task) {
 std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, const WorldBox& room, double clearance,
                           std::uint64_t seed, const std::function<bool()>& ended) {
   // Rounds until one takes off less than a hundredth.
-  constexpr int kMostRounds = 20;
+  constexpr int kMaxRounds = 20;
   constexpr double kWorthwhile = 0.99;
   seed_ompl(seed);
   const auto space = std::make_shared<PoseSpace>(world.center(), world.gyration(), room);
@@ -403,7 +403,7 @@ std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, con
     out.append(state.get());
   }
   og::PathSimplifier simplifier(si);
-  for (int round = 0; round < kMostRounds && !ended(); ++round) {
+  for (int round = 0; round < kMaxRounds && !ended(); ++round) {
     const double length = out.length();
     const std::size_t count = out.getStateCount();
     simplifier.reduceVertices(out);

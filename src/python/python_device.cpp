@@ -14,12 +14,12 @@ namespace tegotae::python {
 namespace {
 
 /// Slower than this the safety chain takes the pen for silent now and then; faster than this no servo is.
-constexpr double kLeastRate = 50, kMostRate = 4000;  // Hz
-constexpr double kVelocityCutoff = 50;               // Hz, as of the simulated pen
-constexpr std::int64_t kCountNs = 250'000'000;       // over which the rate is the mean
+constexpr double kMinRate = 50, kMaxRate = 4000;  // Hz
+constexpr double kVelocityCutoff = 50;            // Hz, as of the simulated pen
+constexpr std::int64_t kCountNs = 250'000'000;    // over which the rate is the mean
 
 double checked(double rate) {
-  if (!(rate >= kLeastRate && rate <= kMostRate))
+  if (!(rate >= kMinRate && rate <= kMaxRate))
     throw Error(ErrorKind::setting, "PythonPen: the rate must be from 50 to 4000 Hz, not " + std::to_string(rate));
   return rate;
 }

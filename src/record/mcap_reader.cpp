@@ -20,7 +20,7 @@ namespace {
 // A frame is whole with these; its forces, if it has any, come before the last of them.
 constexpr unsigned kNeededTopics = ((1u << kFrameTopics) - 1) & ~(1u << kForcesTopic);
 // A chunk that says to be larger is damaged; common writers' are some megabytes.
-constexpr std::uint64_t kMostChunk = 1u << 30;
+constexpr std::uint64_t kMaxChunk = 1u << 30;
 
 std::uint32_t crc(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -91,7 +91,7 @@ class McapReader {
     const std::string_view compression = in.take_string();
     std::string_view records = in.take_bytes(in.take<std::uint64_t>());
     std::string decompressed;
-    bool whole = !in.failed() && size <= kMostChunk;
+    bool whole = !in.failed() && size <= kMaxChunk;
     if (compression == "zstd" && whole) {
       decompressed.resize(size);
       const std::size_t got = ZSTD_decompress(decompressed.data(), size, records.data(), records.size());

@@ -10,7 +10,7 @@ namespace {
 
 double read_mu(const TomlTable& t, double fallback) {
   const double mu = t.at_least_zero("mu", fallback);
-  if (mu > kMostMu) t.fail("mu", "must be at most 10");
+  if (mu > kMaxMu) t.fail("mu", "must be at most 10");
   return mu;
 }
 

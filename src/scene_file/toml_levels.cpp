@@ -10,8 +10,8 @@ namespace tegotae {
 namespace {
 
 // Scenes have three.
-constexpr int kMostLevels = 32;
-constexpr std::size_t kMostBytes = std::size_t{1} << 26;
+constexpr int kMaxLevels = 32;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 26;
 
 /// Walks over the text from word to word; strings and comments hold nothing that nests.
 class Walk {
@@ -69,8 +69,8 @@ class Walk {
   }
 
   void count(int levels, const char* what) const {
-    if (levels <= kMostLevels) return;
-    throw Error(path_ + ":" + std::to_string(line_) + ": more than " + std::to_string(kMostLevels) + " " + what +
+    if (levels <= kMaxLevels) return;
+    throw Error(path_ + ":" + std::to_string(line_) + ": more than " + std::to_string(kMaxLevels) + " " + what +
                 "; no scene has so many");
   }
 
@@ -83,7 +83,7 @@ class Walk {
 }  // namespace
 
 void check_toml_levels(const std::string& text, const std::string& path) {
-  if (text.size() > kMostBytes) throw Error(path + ": is longer than 64 MB, and no scene is");
+  if (text.size() > kMaxBytes) throw Error(path + ": is longer than 64 MB, and no scene is");
   Walk(text, path).all();
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // Two samples whose time stamps are nearer are taken to be this far apart (s): a driver's stamps jitter, and a way
 // divided by next to nothing is no velocity.
-constexpr double kLeastInterval = 1e-4;
+constexpr double kMinInterval = 1e-4;
 
 }  // namespace
 
@@ -92,7 +92,7 @@ void PenWatch::update(const DeviceState& pen, const Displacement& moved, std::in
   if (fresh) {
     if (started_) {
       const double interval =
-          std::max(1e-9 * (static_cast<double>(pen.time_ns) - static_cast<double>(sampled_ns_)), kLeastInterval);
+          std::max(1e-9 * (static_cast<double>(pen.time_ns) - static_cast<double>(sampled_ns_)), kMinInterval);
       fast_ |= moved.dp.norm() > settings_.velocity_limit * interval ||
                moved.dr.norm() > settings_.angular_velocity_limit * interval;
     }

@@ -34,9 +34,9 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
   if (seen_ > 0 && X.p == last_.p && X.q.coeffs() == last_.q.coeffs()) return;
   last_ = X;
   if (seen_++ % stride_ != 0) return;
-  if (poses_.size() == kMost) {
-    for (std::size_t i = 0; 2 * i < kMost; ++i) poses_[i] = poses_[2 * i];
-    poses_.resize(kMost / 2);
+  if (poses_.size() == kMax) {
+    for (std::size_t i = 0; 2 * i < kMax; ++i) poses_[i] = poses_[2 * i];
+    poses_.resize(kMax / 2);
     stride_ *= 2;
     if ((seen_ - 1) % stride_ != 0) return;
   }

@@ -37,9 +37,9 @@ class PoseJudge {
 class PoseCheck {
  public:
   /// Poses kept; of more, every second, fourth, ... one.
-  static constexpr std::size_t kMost = 20000;
+  static constexpr std::size_t kMax = 20000;
 
-  PoseCheck() { poses_.reserve(kMost); }
+  PoseCheck() { poses_.reserve(kMax); }
 
   /// Never allocates. A pose equal to the last one counts once. `freed`: how many pairs of InitialContactReport had
   /// come free.

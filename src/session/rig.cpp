@@ -17,14 +17,14 @@
 namespace tegotae {
 namespace {
 
-constexpr double kLeastPeriod = 1e-5, kMostPeriod = 1;  // s
+constexpr double kMinPeriod = 1e-5, kMaxPeriod = 1;  // s
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(1e9 * seconds);
 }
 
 const RigSettings& checked(const RigSettings& settings) {
-  if (!(settings.period >= kLeastPeriod && settings.period <= kMostPeriod))
+  if (!(settings.period >= kMinPeriod && settings.period <= kMaxPeriod))
     throw Error("rig: the period must be from 1e-5 to 1 s, not " + std::to_string(settings.period));
   return settings;
 }

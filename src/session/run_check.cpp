@@ -16,7 +16,7 @@ namespace {
 // Poses on their way: a minute of a contact loop that makes one a tick, while FCL answers one question.
 constexpr std::size_t kOnTheWay = 65536;
 // Poses that wait to be asked about; of more, every second, fourth, ... one.
-constexpr std::size_t kMostWaiting = 20000;
+constexpr std::size_t kMaxWaiting = 20000;
 constexpr double kIdle = 5e-3;  // s between two looks for poses where there are none
 constexpr int kNice = 10;
 
@@ -67,7 +67,7 @@ std::int64_t RunCheck::poses() const {
 }
 
 void RunCheck::end(double seconds, const std::atomic<bool>* stop, std::atomic<double>* share) {
-  const double time = std::max(kLeastTime, kShare * seconds);
+  const double time = std::max(kMinTime, kShare * seconds);
   const std::int64_t deadline_ns = monotonic_ns() + static_cast<std::int64_t>(1e9 * time);
   ended_ = true;
   wake_.notify_one();
@@ -114,7 +114,7 @@ void RunCheck::collect() {
     while (s->ring_.pop(item)) {
       if (seen_++ % stride_ != 0) continue;
       waiting_.push_back({s, item});
-      if (!all_ && waiting_.size() == kMostWaiting) thin_out();
+      if (!all_ && waiting_.size() == kMaxWaiting) thin_out();
     }
 }
 

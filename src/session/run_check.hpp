@@ -43,7 +43,7 @@ class RunCheck {
   /// Share of the run's time that the check takes beside a run in real time and, at most, after any run.
   static constexpr double kShare = 0.25;
   /// Time (s) that it has after any run.
-  static constexpr double kLeastTime = 2;
+  static constexpr double kMinTime = 2;
 
   /// `all`: no pose is left out, whatever time it takes.
   RunCheck(bool all, bool real_time);

@@ -10,8 +10,8 @@ namespace tegotae::test {
 namespace {
 
 // Clearance as a share of the size, at most.
-constexpr double kMostClearance = 0.02;
-constexpr double kStart = 0.05, kPress = 0.005, kLeastPress = 0.2e-3, kSlide = 0.02, kTurn = 0.03, kTilt = 0.005;
+constexpr double kMaxClearance = 0.02;
+constexpr double kStart = 0.05, kPress = 0.005, kMinPress = 0.2e-3, kSlide = 0.02, kTurn = 0.03, kTilt = 0.005;
 
 using Maker = FamilyCase (*)(const FamilyParameters&);
 
@@ -37,7 +37,7 @@ FamilyCase make_family(const FamilyParameters& parameters) {
   FamilyParameters p = parameters;
   if (!(p.size > 0 && p.clearance >= 0 && p.triangles > 0 && p.near > 0 && p.seed > 0))
     throw Error("a case needs a size, a seed from 1 on, triangles and parts");
-  p.clearance = std::min(p.clearance, kMostClearance * p.size);
+  p.clearance = std::min(p.clearance, kMaxClearance * p.size);
   for (const auto& [name, maker] : makers())
     if (name == p.family) return maker(p);
   throw Error("unknown family \"" + p.family + "\"");
@@ -54,7 +54,7 @@ FamilyCase case_for(const FamilyParameters& p) {
   c.parameters = p;
   c.approach = -Vec3::UnitZ();
   c.start = kStart * p.size;
-  c.press = std::max(kPress * p.size, kLeastPress) * (1 + 2 * draw(p, 6));
+  c.press = std::max(kPress * p.size, kMinPress) * (1 + 2 * draw(p, 6));
   const double side = 2 * M_PI * draw(p, 1);
   c.slide = kSlide * p.size * Vec3(std::cos(side), std::sin(side), 0);
   c.turn = kTurn;

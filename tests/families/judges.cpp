@@ -8,12 +8,12 @@ namespace tegotae::test {
 namespace {
 
 // The documents promise that half of l_min is kept, and that l_min is 4 to 20 um.
-constexpr double kMostKept = 10e-6, kMostContactGap = 20e-6;
+constexpr double kMaxKept = 10e-6, kMaxContactGap = 20e-6;
 // FCL's line ends this near (m); the loop's poses are rounded by less than this share of the size.
 constexpr double kNear = 1e-6, kRounding = 1e-9;
 // A lag wants a contact above 0.3 mm for a part of 0.3 m, and never below what contacts may stand off.
-constexpr double kLagShare = 1e-3, kLeastLag = 30e-6;
-constexpr int kMostUnexplained = 20, kMostOff = 50;  // ticks
+constexpr double kLagShare = 1e-3, kMinLag = 30e-6;
+constexpr int kMaxUnexplained = 20, kMaxOff = 50;  // ticks
 constexpr double kForceShare = 1.0 / 3;
 
 std::string text(const char* format, double a) {
@@ -31,10 +31,10 @@ Truth find_truth(const FamilyCase& c, const TouchLine& line) {
   t.touch =
       (c.guided ? line.travel_bisected(from, c.approach, most, kNear) : line.travel(from, c.approach, most, kNear)) -
       c.start;
-  t.slack = c.gain * (2 * kMostKept + kNear);
-  t.margin = c.gain * (kMostContactGap + kNear);
+  t.slack = c.gain * (2 * kMaxKept + kNear);
+  t.margin = c.gain * (kMaxContactGap + kNear);
   t.follows = kRounding * std::max(1.0, c.parameters.size);
-  t.lag = std::max(kLagShare * c.parameters.size, kLeastLag);
+  t.lag = std::max(kLagShare * c.parameters.size, kMinLag);
   return t;
 }
 
@@ -94,7 +94,7 @@ void Judges::judge_force(std::vector<Finding>& out) const {
   if (!(rest_force_ >= wanted)) out.push_back({"force at rest", text("%.3f N", rest_force_), expected});
   if (!(settle_force_ >= wanted))
     out.push_back({"force after sliding and turning", text("%.3f N", settle_force_), expected});
-  const int most = options_.real_time ? kMostUnexplained : 0;
+  const int most = options_.real_time ? kMaxUnexplained : 0;
   if (most_without_force_ > most)
     out.push_back({"sliding on a plane seat with less than " + text("%.3f N", wanted),
                    text("%.0f ticks in a row", most_without_force_), text("at most %.0f", most)});
@@ -106,15 +106,15 @@ std::vector<Finding> Judges::findings(double way) const {
     out.push_back({"off the pen in free space by", text("%.6f mm", 1e3 * worst_free_), "0"});
   judge_rest(out);
   judge_force(out);
-  if (most_unexplained_ > kMostUnexplained)
+  if (most_unexplained_ > kMaxUnexplained)
     out.push_back({"held back without a contact, " + text("up to %.3f mm, for", 1e3 * unexplained_off_),
-                   text("%.0f ticks in a row", most_unexplained_), text("at most %.0f", kMostUnexplained)});
+                   text("%.0f ticks in a row", most_unexplained_), text("at most %.0f", kMaxUnexplained)});
   if (!came_off())
     out.push_back(
         {"lifted, the part does not follow; FCL finds " + text("%.3f mm free on the way, it is off by", 1e3 * way),
          text("%.3f mm", 1e3 * away_), "0"});
-  else if (came_off_ > kMostOff)
-    out.push_back({"lifted, the part follows after", text("%.0f ticks", came_off_), text("at most %.0f", kMostOff)});
+  else if (came_off_ > kMaxOff)
+    out.push_back({"lifted, the part follows after", text("%.0f ticks", came_off_), text("at most %.0f", kMaxOff)});
   return out;
 }
 

@@ -109,9 +109,9 @@ FamilyCase taper_in_cone(const FamilyParameters& p) {
 /// A shaft that stands in its blind hole, 5 % of its size over the floor: planes meet there. The hole's polygon is
 /// outside its circle, the shaft's inside.
 FamilyCase shaft_in_bore(const FamilyParameters& p) {
-  constexpr double kLeastClearance = 25e-6;
+  constexpr double kMinClearance = 25e-6;
   FamilyParameters used = p;
-  used.clearance = std::max(p.clearance, kLeastClearance);
+  used.clearance = std::max(p.clearance, kMinClearance);
   FamilyCase c = case_for(used);
   const int rings = std::max(2, static_cast<int>(std::sqrt(p.triangles / 8.0)));
   shapes::Peg peg;

@@ -16,7 +16,7 @@ namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
 // Each step is the distance left, so a line that grazes a wall takes many.
-constexpr int kMostSteps = 10000;
+constexpr int kMaxSteps = 10000;
 // FCL takes triangles for degenerate, and 0 for their distance, when the square of their normal is under 1e-15: of
 // 0.15 mm edges, in meters. So it is asked in this many units a meter.
 constexpr double kUnits = 1e5;
@@ -101,7 +101,7 @@ double TouchLine::distance(const Pose& X, double reach) const {
 
 double TouchLine::travel(const Pose& from, const Vec3& direction, double most, double near) const {
   double s = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const double left = distance({from.q, from.p + s * direction});
     if (left <= near) return s;
     s += left;

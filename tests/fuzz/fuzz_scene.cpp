@@ -10,7 +10,7 @@ namespace tegotae {
 namespace {
 
 // More parts than this make a run slow, not wrong.
-constexpr std::size_t kMostParts = 8;
+constexpr std::size_t kMaxParts = 8;
 
 const std::string kParts =
     "[[part]]\nname = \"block\"\nmesh = \"tet.obj\"\n"
@@ -71,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const SceneFile file = load_scene(path);
     read = true;
-    if (file.scene.parts.size() <= kMostParts) hold(file);
+    if (file.scene.parts.size() <= kMaxParts) hold(file);
   } catch (const Error& e) {
     const std::string what = e.what();
     require(read || what.rfind(path + ":", 0) == 0, "the error begins with the file");

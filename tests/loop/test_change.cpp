@@ -340,11 +340,11 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   };
   // Until enough changes went into force; how many ticks that takes depends on the machine.
   constexpr std::uint64_t kChanges = 60;
-  constexpr std::size_t kMostTicks = 400'000, kMostPoses = 1'000'000;
+  constexpr std::size_t kMaxTicks = 400'000, kMaxPoses = 1'000'000;
   std::vector<Tick> poses;
-  poses.reserve(kMostPoses);
+  poses.reserve(kMaxPoses);
   std::uint64_t allocations = 0, changes = 0, ticks = 0, late = 0;
-  for (; changes < kChanges && ticks < kMostTicks && poses.size() < kMostPoses - 100; ++ticks) {
+  for (; changes < kChanges && ticks < kMaxTicks && poses.size() < kMaxPoses - 100; ++ticks) {
     const Pose Y = pen(ticks);
     const std::uint64_t before = loop.change_in_force();
     const double begin = thread_seconds();

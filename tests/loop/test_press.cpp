@@ -14,7 +14,7 @@ using namespace tegotae::test;
 namespace {
 
 // What contacts keep is at most this (m); the encoders' steps and the pen's friction make the force uncertain.
-constexpr double kMostGap = 2e-5;
+constexpr double kMaxGap = 2e-5;
 constexpr double kArrives = 0.3, kSettles = 0.2, kStays = 0.7;  // s
 
 /// k of coupling and grip, one behind the other, N/m.
@@ -119,7 +119,7 @@ TEST_CASE("a block pressed into three walls rests, with the force of the springs
     check_rest(rests[i]);
     const Vec3 at = q.conjugate() * rests[i].X.p - 0.5 * size, force = q.conjugate() * rests[i].wrench.force;
     CHECK(at.minCoeff() > 0);
-    CHECK(at.maxCoeff() < kMostGap);
+    CHECK(at.maxCoeff() < kMaxGap);
     // Where nothing turns, nothing is felt to turn.
     CHECK(rests[i].wrench.torque.norm() < 1e-4 * size.norm());
     if (i == 2) continue;
@@ -176,8 +176,8 @@ TEST_CASE("a round bar pressed into a groove rests in its middle", "[law][press]
     CAPTURE(deep[i], rests[i].X.p.transpose(), rests[i].wrench.force.transpose());
     check_rest(rests[i]);
     CHECK(rests[i].X.p.z() > low);
-    CHECK(rests[i].X.p.z() < high + kMostGap / std::sin(half));
-    CHECK(std::abs(rests[i].X.p.x()) < (high - low + kMostGap / std::sin(half)) / std::tan(half));
+    CHECK(rests[i].X.p.z() < high + kMaxGap / std::sin(half));
+    CHECK(std::abs(rests[i].X.p.x()) < (high - low + kMaxGap / std::sin(half)) / std::tan(half));
     if (i == 2) continue;
     CHECK(rests[i].wrench.force.z() == Approx(in_series() * (rests[i].X.p.z() - high + deep[i])).margin(uncertain()));
   }

@@ -17,9 +17,9 @@ constexpr double kTick = 1e-3;         // s
 constexpr double kSheet = 1e-4;        // thickness, m
 constexpr double kSheetSide = 0.4;     // m; no pen of these tests goes near its rim
 constexpr double kSubPoseStep = 1e-4;  // m
-constexpr int kMostSubPoses = 12;
+constexpr int kMaxSubPoses = 12;
 // Of 1230 ticks: a body that only spins in place meets programs that are violated by rounding alone.
-constexpr int kMostStalled = 25;
+constexpr int kMaxStalled = 25;
 
 Pose at_height(double z) {
   return {Quat::Identity(), {0, 0, z}};
@@ -103,7 +103,7 @@ class Watched {
     const TickReport& r = loop.step(Y, kTick);
     for (const Pose& X : r.pieces) {
       const double way = travel(last_, X, loop.center(), radius_);
-      const int parts = std::clamp(static_cast<int>(std::ceil(way / kSubPoseStep)), 1, kMostSubPoses);
+      const int parts = std::clamp(static_cast<int>(std::ceil(way / kSubPoseStep)), 1, kMaxSubPoses);
       const auto look = [&](const Pose& P) {
         check_(P);
         REQUIRE(oracle_.intersecting(P).empty());
@@ -168,7 +168,7 @@ TEST_CASE("a 0.1 mm sheet stops a plate, a pin and a peg at 2 m/s and 20 rad/s",
     stalled += watched.stalled;
   }
   REQUIRE(touching > 60);
-  REQUIRE(stalled <= kMostStalled);
+  REQUIRE(stalled <= kMaxStalled);
 }
 
 TEST_CASE("a pen that jumps through a sheet leaves the part on its side", "[tunnelling]") {

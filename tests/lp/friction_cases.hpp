@@ -12,11 +12,11 @@ namespace tegotae::test {
 /// coupling's default springs, so that a wanted motion stands for a load in N and N·m.
 class FrictionCase {
  public:
-  static constexpr int kMost = 128;
+  static constexpr int kMax = 128;
   static constexpr double kStiffness = 800, kTorsional = 0.3;
   static double radius() { return std::sqrt(kTorsional / kStiffness); }
 
-  FrictionCase() : normals_(kMost) {}
+  FrictionCase() : normals_(kMax) {}
 
   void clear() {
     normals_.clear();

@@ -181,7 +181,7 @@ struct Count {
 Count ask_pairs(const Fit& fit, std::mt19937& rng, long wanted) {
   Count count;
   PatchFront flat(FrontCapacity{1u << 16, 32, 0});
-  CurvedPairs curved(16, kMostAxisPairs);
+  CurvedPairs curved(16, kMaxAxisPairs);
   const Vec3 center = fit.a->origin() + Vec3(0.002, -0.001, 0.003);
   while (count.asked < wanted) {
     const Trial t = random_trial(rng, fit, center);

@@ -40,7 +40,7 @@ TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
   const TempFolder folder;
   const UseFolder use(folder / "cache");
   const auto mesh = std::make_shared<const TriangleMesh>(shapes::sphere(0.05, 200, 60));
-  REQUIRE(mesh->triangles.size() >= kLeastCached);
+  REQUIRE(mesh->triangles.size() >= kMinCached);
   const PatchTree built(mesh);
   CHECK(same(*cached_patch_tree(mesh), built));
   REQUIRE(files(folder / "cache").size() == 1);

@@ -15,13 +15,13 @@ namespace {
 // N and N·m, docs/scene-file.md; a recording's numbers are exact.
 constexpr double kForceLimit = 8.5, kTorqueLimit = 0.188, kRounding = 1e-9;
 // FCL takes up to a millisecond a pose: of a longer recording an even sample is asked.
-constexpr std::size_t kMostPoses = 4000;
+constexpr std::size_t kMaxPoses = 4000;
 
 void judge(const std::string& path) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   const test::FclOracle fcl(load_scene(recording.info.scene).scene);
-  const std::size_t every = rows.size() / kMostPoses + 1;
+  const std::size_t every = rows.size() / kMaxPoses + 1;
   std::size_t touching = 0, over = 0, asked = 0, intersecting = 0;
   double force = 0, torque = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -18,7 +18,7 @@ void mark(Frame& f, std::uint64_t number) {
   f.contacts = static_cast<std::uint32_t>(number);
   f.force_count = number % (f.forces.size() + 1);
   for (FrameForce& c : f.forces) c.normal[2] = f.t;
-  f.pair_count = number % (kMostPairs + 1);
+  f.pair_count = number % (kMaxPairs + 1);
   for (std::size_t i = 0; i < f.pair_count; ++i) {
     for (double& v : f.pairs[i].point) v = f.t;
     f.pairs[i].gap = f.t;
@@ -28,7 +28,7 @@ void mark(Frame& f, std::uint64_t number) {
 
 bool whole(const Frame& f) {
   const double n = static_cast<double>(f.tick);
-  bool good = f.t == n && f.contacts == static_cast<std::uint32_t>(f.tick) && f.pair_count == f.tick % (kMostPairs + 1);
+  bool good = f.t == n && f.contacts == static_cast<std::uint32_t>(f.tick) && f.pair_count == f.tick % (kMaxPairs + 1);
   good = good && f.force_count == f.tick % (f.forces.size() + 1) && f.forces.back().normal[2] == n;
   for (const double v : f.x) good = good && v == n;
   for (const double v : f.wrench) good = good && v == n;
