@@ -82,7 +82,7 @@ constexpr int kMaxStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
 constexpr double kFeltLag = 0.05;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
-constexpr double kPrepareShare = 0.3;
+constexpr double kPrepareShare = 0.7;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
 constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
@@ -140,7 +140,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const Pose X_before = X_;
   deadline_ns_ = deadline_ns;
   const double wanted = size(displacement(X_, Y, center_));
-  const double pen = size(displacement(last_Y_, Y, center_));
+  const Displacement pen_moved = displacement(last_Y_, Y, center_);
+  const double pen = size(pen_moved);
   last_Y_ = Y;
   still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMaxStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
@@ -195,8 +196,11 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   tell_forces(Y, report);
   tell_slip(moved, report.forces);
   // What the tick leaves over gets ready for the first touch.
-  if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap)
-    at_.check->prepare(X_, deadline_ns_ - static_cast<std::int64_t>(1e9 * (1 - kPrepareShare) * settings_.tick_budget));
+  if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
+    const Displacement to_pen = displacement(X_, Y, center_);
+    at_.check->prepare(X_, {to_pen.dp + pen_moved.dp, to_pen.dr + pen_moved.dr},
+                       deadline_ns_ - static_cast<std::int64_t>(1e9 * (1 - kPrepareShare) * settings_.tick_budget));
+  }
 }
 
 void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {

@@ -1,5 +1,6 @@
 #include "narrowphase/cell_anchor.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "narrowphase/wide.hpp"
@@ -9,6 +10,8 @@ namespace {
 
 /// Gaps and what they lose are in single precision: of a gap, rounded down, and of three products and their sum.
 constexpr double kGapSlack = 1 - 1e-6, kLossSlack = 1e-6;
+/// Differences of positions in double precision are right up to this (m).
+constexpr double kLengthSlack = 1e-11;
 
 constexpr int kLane = 8;
 typedef float Lane __attribute__((vector_size(kLane * sizeof(float)), may_alias));
@@ -58,6 +61,31 @@ CellAnchor::CellAnchor(const CellGaps& gaps, const Vec3& middle, double radius_o
   const Vec3 at = sweep.start.R * middle + sweep.start.t;
   x = {at.x(), at.y(), at.z()};
   for (std::size_t k = 0; k < gaps.size(); ++k) gap[k] = static_cast<float>(kGapSlack * gaps[k]);
+}
+
+CellCorridor::CellCorridor(const Vec3& middle, double radius_of, const Vec3& shift, const Sweep& sweep, double turned)
+    : turn(turned), radius(kUnitSlack * radius_of) {
+  const Vec3 at = sweep.start.R * middle + sweep.start.t;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    x[i] = at[k];
+    ahead[i] = shift[k];
+    point[i] = middle[k];
+  }
+}
+
+CorridorLoss corridor_loss(const CellCorridor& corridor, const Sweep& sweep, double turned) noexcept {
+  const Vec3 point = vec(corridor.point), x = vec(corridor.x), ahead = vec(corridor.ahead);
+  const double length2 = ahead.squaredNorm();
+  const auto off = [&](const Placement& at) {
+    const Vec3 moved = at.R * point + at.t - x;
+    const double way = length2 > 0 ? std::clamp(moved.dot(ahead) / length2, 0.0, 1.0) : 0;
+    return kUnitSlack * (moved - way * ahead).norm() + kLengthSlack;
+  };
+  const double turn = turned - corridor.turn, bulge = 0.125 * kUnitSlack * sweep.theta2;
+  return {off(sweep.start) + corridor.radius * turn,
+          off(sweep.end) + corridor.radius * (turn + kUnitSlack * sweep.theta),
+          bulge * (point.norm() + corridor.radius + sweep.center_distance)};
 }
 
 AnchoredGap anchored_gap(const FreeCell& cell, const CellAnchor& anchor, const Sweep& sweep, double turned) noexcept {

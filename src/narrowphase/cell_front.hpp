@@ -33,11 +33,21 @@ class CellFront {
   /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.
   void set_clearance(double clearance) noexcept { clearance_ = clearance; }
 
+  /// Cells that the next calls have to look for are to hold for the motion `d` from where A is then as well, if they
+  /// can: what goes on in this way needs no other. What is found in the way of it shortens it; see met().
+  void foresee(const Displacement& d) noexcept;
+
   /// Is the motion s -> displaced(X, center, s·d), s in [0, 1], of A free of intersecting triangles, and likewise the
   /// one between the same two poses whose file-frame origin moves linearly? `X` is A's file frame in the world, `d` in
   /// the world. Never says certified wrongly, and CertifyReport::share is certified whatever the status; a motion of
   /// length zero asks whether the start is free.
   CertifyReport certify(const Pose& X, const Displacement& d, const WorkLimit& limit = {}) noexcept;
+
+  /// The same for a motion that is not to be made now: what is proved of it need not be proved later.
+  CertifyReport prove_ahead(const Pose& X, const Displacement& d, const WorkLimit& limit) noexcept;
+  /// Of the motion that was foreseen, or proved ahead, in the last call: how much of it is left until something is in
+  /// its way, at most; 1 when nothing was found.
+  double met() const { return met_; }
 
   /// What stopped the last motion, when its status was `blocked`.
   const std::vector<FacePair>& blocking() const { return blocking_; }
@@ -50,6 +60,8 @@ class CellFront {
     }
   }
 
+  /// So many cells that none should be spent on what may never come.
+  bool crowded() const;
   int cells() const { return static_cast<int>(count_); }
   std::size_t bytes() const;
 
@@ -70,8 +82,8 @@ class CellFront {
   };
   struct Slot {
     std::uint32_t node;
-    double clear_until;  ///< travel up to which what no plane stands for does not matter
     FreeCell cell;
+    CellCorridor corridor;  ///< of the cell's `clear`
   };
   struct Due {
     std::uint32_t node;
@@ -94,9 +106,11 @@ class CellFront {
   Look look_at(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id);
+  CellSearch::Outcome search(const Node& node, const Sweep& sweep);
   void keep(std::uint32_t id);
   bool split(std::uint32_t id);
-  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellAnchor& anchor, double expiry);
+  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
+             const CellAnchor& anchor, double expiry, double clear_until);
   void leave(std::uint32_t slot);
   std::uint32_t allocate();
   void release(std::uint32_t child);
@@ -110,7 +124,15 @@ class CellFront {
   bool out_of_work(bool look_at_clock);
   MovingHull hull(const Node& node, const Sweep& sweep) const;
   double radius(const Node& node) const;
-  double wanted(const MovingHull& a) const;
+  double wanted(const MovingHull& a, const Sweep& sweep) const;
+  CellCorridor corridor(const Node& node, const MovingHull& a, const Sweep& sweep) const;
+  double moved(std::uint32_t slot, const Sweep& sweep) const;
+  bool holds(const Node& node);
+  bool foresees() const;
+  void shorten_foresight(const Node& node);
+  double free_until(std::uint32_t part, std::uint32_t face_a, std::uint32_t face_b, const Displacement& d) const;
+  const Sweep& foreseen(std::uint32_t part);
+  Vec3 middle(const Node& node) const;
 
   std::shared_ptr<const PatchTree> a_;
   Vec3 center_, offset_a_;
@@ -122,10 +144,11 @@ class CellFront {
   std::vector<Node> nodes_;
   std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
   std::vector<Slot> slots_;
-  std::vector<CellItems> items_;     ///< of each slot
-  std::vector<double> listed_;       ///< of each slot: travel at the search that listed items_
-  std::vector<CellAnchor> anchors_;  ///< of each slot
-  std::vector<double> expiry_;       ///< of each slot: travel up to which its cell needs no look
+  std::vector<CellItems> items_;      ///< of each slot
+  std::vector<CellCorridor> listed_;  ///< of each slot: that of items_
+  std::vector<CellAnchor> anchors_;   ///< of each slot
+  std::vector<double> expiry_;        ///< of each slot: travel up to which its cell needs no look
+  std::vector<double> clear_until_;   ///< of each slot: the same of what no plane stands for alone
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
@@ -134,16 +157,24 @@ class CellFront {
   Pose X_;
   bool started_ = false;
   Displacement d_;
-  double travel_ = 0;          ///< bound on how far any point of A has come since the front began, m
-  double turned_ = 0;          ///< the same of its turns, rad
-  double need_ = 0;            ///< bound on how far the motion carries any point, and the clearance, m
-  double motion_ = 0;          ///< longest motion of late, m
-  std::vector<Sweep> sweeps_;  ///< of each part, valid when stamped with the call
+  double travel_ = 0;           ///< bound on how far any point of A has come since the front began, m
+  double turned_ = 0;           ///< the same of its turns, rad
+  double need_ = 0;             ///< bound on how far the motion carries any point, and the clearance, m
+  double motion_ = 0;           ///< longest motion of late, m
+  Displacement foresight_;      ///< the motion that cells are looked for, if it is longer than that of the call
+  double foreseen_length_ = 0;  ///< how far it carries any point, m
+  double carried_ = 0;          ///< how far the motion of the call carries any point at most, m
+  double met_ = 1, kept_ = 1;   ///< see met(); what shortening has left of the foresight
+  std::vector<Sweep> sweeps_;   ///< of each part, valid when stamped with the call
   std::vector<std::uint64_t> stamped_;
+  std::vector<Sweep> foreseen_;  ///< of each part: foresight_, valid when stamped
+  std::vector<std::uint64_t> foreseen_stamped_;
+  std::uint64_t foresights_ = 0;  ///< counts what they are stamped with
   std::uint64_t call_ = 0;
 
   CellSearch search_;
   FreeCell found_;
+  CellCorridor found_corridor_;
   std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
   std::vector<Due> unsorted_, due_;
   std::size_t due_count_ = 0;

@@ -24,6 +24,8 @@ constexpr double kParallel = 1e-6;
 /// Distances along the axes of boxes, which are of unit length and at right angles up to single precision, are right up
 /// to this share.
 constexpr double kAxisSlack = 1 - 1e-5;
+/// For the same reason the way of a piece in its frame is right up to this share.
+constexpr double kWaySlack = 1e-6;
 /// Distances are listed in single precision, rounded down.
 constexpr double kFloatSlack = 1 - 1e-6;
 
@@ -33,6 +35,7 @@ CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lan
   stack_.reserve(kMaxVisits + kMeasured + kCellItems);
   near_.reserve(kMaxVisits + kMeasured + kCellItems);
   far_.reserve(kMaxVisits + kMeasured + kCellItems);
+  waiting_.reserve(kCellItems);
   blocking_.reserve(kMaxBlocking);
 }
 
@@ -55,12 +58,14 @@ bool CellSearch::stays_above(const Vec3& n, double low_start, double low_end, do
 
 bool CellSearch::under_known_plane(const Hull& b, double good) {
   if (planes_ == 0) return false;
-  const double start = std::max(good, most_bulge_ + sweep_->start_floor), end = most_bulge_ + sweep_->floor;
+  const double start = std::max(good, most_bulge_ + sweep_->start_floor);
+  const double end = std::max(good, most_bulge_ + sweep_->floor);
   const int k = first_above(known_, planes_, b, start, end, tops_);
   if (k == kCellPlanes) return false;
   const auto i = static_cast<std::size_t>(k);
   known_.top[i] = std::max(known_.top[i], tops_[i]);
   margin_ = std::min(margin_, known_.low_start[i] - tops_[i]);
+  least_ = std::min(least_, std::min(known_.low_start[i], known_.low_end[i]) - tops_[i]);
   return true;
 }
 
@@ -95,9 +100,9 @@ bool CellSearch::best_of_all_axes(const Hull& b, Vec3& best) const {
 
 bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least) {
   const Vec3 n = single(direction);
-  const double low_start = a_->start.lowest(n), top = b.highest(n), gap = low_start - top;
+  const double low_start = a_->start.lowest(n), low_end = a_->end.lowest(n), top = b.highest(n);
+  const double gap = std::min(low_start, low_end) - top;
   if (!(gap >= at_least)) return false;
-  const double low_end = a_->end.lowest(n);
   if (!stays_above(n, low_start, low_end, top)) return false;
   if (planes_ == kCellPlanes) {
     full_ = true;
@@ -108,13 +113,15 @@ bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least
   known_.low_start[k] = low_start;
   known_.low_end[k] = low_end;
   known_.top[k] = top;
-  margin_ = std::min(margin_, gap);
+  margin_ = std::min(margin_, low_start - top);
+  least_ = std::min(least_, gap);
   return true;
 }
 
 void CellSearch::tell_items(bool found) {
   // What was found of the near ones, those that the search had not come to, and the nearest of the others.
   for (const Entry& rest : stack_) list(rest.item, rest.distance);
+  for (const Listed& rest : waiting_) list(rest.item, rest.distance);
   items_.clear = beyond_;
   items_.count = items_.near = 0;
   if (near_.size() > kCellItems) {
@@ -175,7 +182,7 @@ void CellSearch::measure(const std::uint32_t* items, int count) {
 
 double CellSearch::distance(std::uint32_t item, std::size_t i) const {
   const Nearness& nearness = (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
-  return kAxisSlack * std::sqrt(nearness.distance2[lane_[i]]);
+  return kAxisSlack * std::sqrt(nearness.distance2[lane_[i]]) - way_slack_;
 }
 
 CellSearch::Side CellSearch::side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const {
@@ -212,35 +219,43 @@ void CellSearch::push(const std::uint32_t* items, int count) {
   }
 }
 
+void CellSearch::set_frame(const MovingHull& a) {
+  const Vec3 ahead = a.end.middle() - a.start.middle();
+  frame_ = HullFrame(a.start, ahead);
+  way_slack_ = kWaySlack * ahead.norm();
+}
+
 bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
                        double& clear) noexcept {
   clear = items.clear - moved;
   if (items.count == 0 || !(clear >= enough)) return false;
   query_ = {};
   query_.tree = &tree;
-  frame_ = HullFrame(a.start);
-  std::array<std::uint32_t, kMeasured> some;
-  std::array<std::uint32_t, kMeasured> place;
-  std::size_t count = 0;
-  for (std::uint32_t i = items.near; i <= items.count; ++i) {
-    if (i < items.count) {
-      const double far = items.distance[i] - moved;
-      if (far >= enough) {
-        clear = std::min(clear, far);
-        continue;
-      }
-      some[count] = items.item[i];
-      place[count++] = i;
-    }
-    if (count < kMeasured && i < items.count) continue;
-    measure(some.data(), static_cast<int>(count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const double far = distance(some[k], k);
-      items.distance[place[k]] = static_cast<float>(kFloatSlack * (far + moved));
-      if (far < enough) return false;
-      clear = std::min(clear, far);
+  set_frame(a);
+  std::array<double, kCellItems> far;
+  std::array<std::uint32_t, kMeasured> some{}, place{};
+  int count = 0;
+  const auto measure_some = [&] {
+    measure(some.data(), count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      far[place[k]] = distance(some[k], k);
+      if (far[place[k]] < enough) return false;
     }
     count = 0;
+    return true;
+  };
+  for (std::uint32_t i = 0; i < items.count; ++i) {
+    far[i] = items.distance[i] - moved;
+    if (i < items.near || far[i] >= enough) continue;
+    some[static_cast<std::size_t>(count)] = items.item[i];
+    place[static_cast<std::size_t>(count++)] = i;
+    if (count == kMeasured && !measure_some()) return false;
+  }
+  if (!measure_some()) return false;
+  items.clear = clear;
+  for (std::uint32_t i = 0; i < items.count; ++i) {
+    items.distance[i] = static_cast<float>(far[i] > 0 ? kFloatSlack * far[i] : far[i] / kFloatSlack);
+    if (i >= items.near) clear = std::min(clear, far[i]);
   }
   return true;
 }
@@ -291,7 +306,7 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
 
 CellSearch::Outcome CellSearch::settle(const Entry& e) {
   const Hull b = hull_of(e.item);
-  const double good = std::min(query_.wanted, kGoodShare * margin_);
+  const double good = std::min(query_.wanted, kGoodShare * least_);
   // What leaves its surface goes against no plane that lies on it.
   const bool upright = e.upright.gap >= good;
   if (under_known_plane(b, good) || (upright && keeps_off(b, e.upright.n, good)) ||
@@ -310,38 +325,47 @@ CellSearch::Outcome CellSearch::settle(const Entry& e) {
 
 void CellSearch::begin(const Query& query) {
   query_ = query;
-  frame_ = HullFrame(a_->start);
+  set_frame(*a_);
   most_bulge_ = 0.125 * kUnitSlack * sweep_->theta2 * (a_->reach + sweep_->center_distance);
   planes_ = 0;
   known_.clear();
   near_.clear();
   far_.clear();
-  margin_ = clear_ = beyond_ = kInfinity;
+  margin_ = least_ = clear_ = beyond_ = kInfinity;
   passing_ = full_ = false;
   blocking_.clear();
   stack_.clear();
+  waiting_.clear();
   if (query.known == nullptr) {
     const std::uint32_t top = query.is_face ? query.node | CellItems::kFace : query.node;
     push(&top, 1);
     return;
   }
   clear_ = beyond_ = query.known->clear - query.moved;
-  std::array<std::uint32_t, kMeasured> some;
-  int count = 0;
-  // The list has the nearest first, and the stack last.
-  for (std::size_t i = query.known->count; i-- > 0;) {
-    const std::uint32_t item = query.known->item[i];
-    const double distance = query.known->distance[i] - query.moved;
-    if (distance >= query.wanted) {
-      leave_out(item, distance);
+  for (std::size_t i = 0; i < query.known->count; ++i) {
+    const Listed l{query.known->item[i], query.known->distance[i] - query.moved};
+    if (l.distance >= query.wanted) {
+      leave_out(l.item, l.distance);
       continue;
     }
-    some[static_cast<std::size_t>(count++)] = item;
-    if (count < kMeasured) continue;
-    push(some.data(), count);
-    count = 0;
+    // The nearest last.
+    waiting_.push_back(l);
+    for (std::size_t k = waiting_.size() - 1; k > 0 && waiting_[k - 1].distance < l.distance; --k)
+      std::swap(waiting_[k - 1], waiting_[k]);
   }
-  push(some.data(), count);
+}
+
+/// While nothing is on the stack, takes the nearest of the pieces that an earlier search listed. False when there is
+/// none left.
+bool CellSearch::has_next() {
+  std::array<std::uint32_t, kMeasured> some;
+  while (stack_.empty() && !waiting_.empty()) {
+    int count = 0;
+    for (; count < kMeasured && !waiting_.empty(); waiting_.pop_back())
+      some[static_cast<std::size_t>(count++)] = waiting_.back().item;
+    push(some.data(), count);
+  }
+  return !stack_.empty();
 }
 
 CellGaps CellSearch::gaps() const {
@@ -369,7 +393,7 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   sweep_ = &sweep;
   const std::int64_t before = visits_;
   begin(query);
-  while (!stack_.empty()) {
+  while (has_next()) {
     const Entry e = stack_.back();
     stack_.pop_back();
     const bool enough = visits_ - before > kMaxVisits && !query.is_face;

@@ -24,7 +24,7 @@ class CellSearch {
     bool is_face = false;
     double wanted = 0;                 ///< what is farther from the piece (m) needs no plane
     const CellItems* known = nullptr;  ///< of an earlier search for the piece or for one that it is of; null: none
-    double moved = 0;                  ///< how far the piece has come since that search at most, m
+    double moved = 0;  ///< how far the piece gets at most from where that search looked, by the end of the motion, m
   };
 
   CellSearch();
@@ -34,9 +34,9 @@ class CellSearch {
   Outcome find(const MovingHull& a, const std::array<Vec3, 3>* face_of_a, const Query& query, const Sweep& sweep,
                FreeCell& cell) noexcept;
 
-  /// Whether what is under no plane of a cell is still `enough` (m) from its piece, by a new look at what may have come
-  /// nearer: pieces of B of `items`, which the search for the cell listed and whose distances are set. `moved` (m) is
-  /// how far the piece has come since at most. `clear` is how far the rest is then.
+  /// Whether what is under no plane of a cell is `enough` (m) from all that its piece covers between the start and the
+  /// end of the motion, by a new look at what may be nearer: pieces of B of `items`, which the search for the cell
+  /// listed. `moved` as in a query. If so the distances of `items` are set, and `clear` is how far the rest is.
   bool renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
              double& clear) noexcept;
 
@@ -71,6 +71,8 @@ class CellSearch {
   };
 
   void begin(const Query& query);
+  bool has_next();
+  void set_frame(const MovingHull& a);
   Outcome settle(const Entry& e);
   Outcome settle_face(const Entry& e, const Hull& b);
   void open(std::uint32_t node);
@@ -103,14 +105,17 @@ class CellSearch {
   KnownPlanes known_;
   std::array<double, kCellPlanes> tops_;
   int planes_ = 0;
-  double most_bulge_ = 0;  ///< along any normal, m
-  double margin_ = 0, clear_ = 0;
-  double beyond_ = 0;  ///< what is in no list is at least so far, m
+  double most_bulge_ = 0;          ///< along any normal, m
+  double margin_ = 0, least_ = 0;  ///< of the planes: at the start, and at the nearer end, m
+  double clear_ = 0;
+  double way_slack_ = 0;  ///< of distances, m
+  double beyond_ = 0;     ///< what is in no list is at least so far, m
   CellItems items_;
   std::vector<Listed> near_, far_;  ///< pieces of B that were settled, or are farther away than is wanted
   bool passing_ = false;
   bool full_ = false;  ///< a plane more was needed than a cell has
   std::vector<Entry> stack_;
+  std::vector<Listed> waiting_;  ///< pieces that an earlier search listed and this one has not come to
   std::vector<std::uint32_t> blocking_;
   std::int64_t visits_ = 0;
 };

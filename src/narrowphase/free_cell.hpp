@@ -23,6 +23,12 @@ struct FreeCell {
   double clear = 0;
 
   FreeCell() { drop_planes(); }
+  /// A cell that says nothing.
+  static FreeCell unknown() {
+    FreeCell cell;
+    cell.clear = -std::numeric_limits<double>::infinity();
+    return cell;
+  }
   void drop_planes() {
     nx.fill(0);
     ny.fill(0);

@@ -26,10 +26,11 @@ class MotionCheck {
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;
-  /// Gets ready for what comes next, in time that a tick has left, until `deadline_ns`: whatever is proved ahead, at
-  /// rest at `X`, for the parts of the last begin(), need not be proved by the next checks.
-  virtual void prepare(const Pose& X, std::int64_t deadline_ns) noexcept {
-    static_cast<void>(X), static_cast<void>(deadline_ns);
+  /// Gets ready for what comes next, in time that a tick has left, until `deadline_ns`: whatever is proved ahead for
+  /// the parts of the last begin() need not be proved by the next checks. A is at `X`, and `next` is about how it will
+  /// move in the next tick.
+  virtual void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept {
+    static_cast<void>(X), static_cast<void>(next), static_cast<void>(deadline_ns);
   }
   /// Part of the last check()'s motion, from its start, that may be made whatever the answer; in [0, 1].
   virtual double free_share() const = 0;

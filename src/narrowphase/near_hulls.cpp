@@ -78,13 +78,14 @@ TEGOTAE_INLINE void offer_axis(const HullFrame& a, int i, Lane low, Lane high, B
 
 /// Extent of the piece of A along directions in its frame.
 TEGOTAE_INLINE void extent(const HullFrame& a, const Lanes3& n, Lane& low, Lane& high) {
+  const Lane way = magnitude(dot(n, a.way));
   if (a.triangle) {
     const Lane p = dot(n, a.corner[0]), q = dot(n, a.corner[1]), r = dot(n, a.corner[2]);
-    low = lesser(lesser(p, q), r);
-    high = greater(greater(p, q), r);
+    low = lesser(lesser(p, q), r) - way;
+    high = greater(greater(p, q), r) + way;
     return;
   }
-  high = a.high[0] * magnitude(n.x) + a.high[1] * magnitude(n.y) + a.high[2] * magnitude(n.z);
+  high = a.half[0] * magnitude(n.x) + a.half[1] * magnitude(n.y) + a.half[2] * magnitude(n.z) + way;
   low = -high;
 }
 
@@ -163,15 +164,18 @@ TEGOTAE_INLINE void measure_four_triangles(const HullFrame& a, const NearHulls& 
 
 }  // namespace
 
-HullFrame::HullFrame(const Hull& a) : origin(a.middle()), triangle(a.is_triangle()) {
+HullFrame::HullFrame(const Hull& a, const Vec3& ahead) : origin(a.middle() + 0.5 * ahead), triangle(a.is_triangle()) {
   if (!triangle) {
     for (int i = 0; i < 3; ++i) {
       axis[i] = a.axis(i);
-      high[i] = a.half(i);
-      low[i] = -a.half(i);
+      half[i] = a.half(i);
+      way[i] = 0.5 * axis[i].dot(ahead);
+      high[i] = half[i] + std::abs(way[i]);
+      low[i] = -high[i];
     }
     return;
   }
+  const Vec3 middle = a.middle();
   Vec3 longest = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     const Vec3 e = a.corner((k + 1) % 3) - a.corner(k);
@@ -186,12 +190,15 @@ HullFrame::HullFrame(const Hull& a) : origin(a.middle()), triangle(a.is_triangle
   axis[2] = axis[0].cross(axis[1]);
   low.fill(kInfinity);
   high.fill(-kInfinity);
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      corner[k][i] = axis[i].dot(a.corner(k) - origin);
+  for (int i = 0; i < 3; ++i) {
+    way[i] = 0.5 * axis[i].dot(ahead);
+    for (int k = 0; k < 3; ++k) {
+      corner[k][i] = axis[i].dot(a.corner(k) - middle);
       low[i] = std::min(low[i], corner[k][i]);
       high[i] = std::max(high[i], corner[k][i]);
     }
+    low[i] -= std::abs(way[i]);
+    high[i] += std::abs(way[i]);
   }
 }
 

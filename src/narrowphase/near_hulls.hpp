@@ -10,16 +10,18 @@ namespace tegotae {
 /// So many pieces of B are measured at once.
 inline constexpr int kMeasured = 8;
 
-/// A piece of A in a frame of its own, by which pieces of B are measured: the box's axes, or the triangle's plane and
-/// longest side.
+/// All that a piece of A covers when it is shifted by up to `ahead`, in a frame of its own, by which pieces of B are
+/// measured: the box's axes, or the triangle's plane and longest side.
 struct HullFrame {
-  explicit HullFrame(const Hull& a);
+  HullFrame(const Hull& a, const Vec3& ahead);
   HullFrame() = default;
 
-  Vec3 origin = Vec3::Zero();                     ///< the hull's middle, B's axes
+  Vec3 origin = Vec3::Zero();                     ///< the hull's middle on half of its way, B's axes
   std::array<Vec3, 3> axis;                       ///< B's axes, of unit length up to single precision
   std::array<double, 3> low{}, high{};            ///< extent along the axes, from the origin, m
-  std::array<std::array<double, 3>, 3> corner{};  ///< of a triangle, along the axes from the origin, m
+  std::array<double, 3> way{};                    ///< half of `ahead` along the axes, m
+  std::array<double, 3> half{};                   ///< extents of a box, m
+  std::array<std::array<double, 3>, 3> corner{};  ///< of a triangle on half of its way, along the axes, m
   bool triangle = false;
 };
 

@@ -25,12 +25,15 @@ constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMaxCuts = 6;
 // So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
 // cells: they lie on each other over much of the part.
-constexpr int kSomePairs = 4000, kFacesPerPair = 5;
+constexpr int kSomePairs = 500, kFacesPerPair = 5;
+// What is asked ahead of a front stops at so many pairs.
+constexpr int kEnoughPairs = 4000;
 constexpr double kOneSided = 0.35;
 // What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
 constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
-// Parts among the cells whose gap is looked at in one call.
-constexpr int kMaxGuesses = 8;
+// A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
+// for contact have too many others in reach.
+constexpr double kHeadwayEdges = 1.0;
 // Cells (about 850 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kMinCells = 1u << 13;
@@ -49,12 +52,24 @@ constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
 
+double mean_edge(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
+  return mesh.triangles.empty() ? 0 : sum / (3 * static_cast<double>(mesh.triangles.size()));
+}
+
 }  // namespace
 
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                                    std::vector<Pose> poses)
-    : center_(center), radius_(radius), held_(cached_patch_tree(held)), pairing_(held_), poses_(std::move(poses)) {
+    : center_(center),
+      radius_(radius),
+      held_(cached_patch_tree(held)),
+      pairing_(held_),
+      poses_(std::move(poses)),
+      headway_(center, radius, kHeadwayEdges * mean_edge(*held)) {
   std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
   std::vector<CellFront::FixedPart> parts;
   bool any_axes = false;
@@ -172,10 +187,9 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     cells_->set_near(near_cells_);
   }
   if (!near_cells_.empty()) {
-    cells_->set_clearance(clearance);
     limit_.searches = kCellSearches;
     limit_.blocking = kMaxBlocking;
-    const CertifyReport report = cells_->certify(X, d, limit_);
+    const CertifyReport report = ask_cells(X, d, clearance);
     overflow_ |= report.overflow;
     share_ = std::min(share_, report.share);
     for (const FacePair& pair : cells_->blocking())
@@ -184,6 +198,15 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+CertifyReport PatchMotionCheck::ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept {
+  cells_->set_clearance(clearance);
+  const bool moves = headway_.go(X, d);
+  cells_->foresee(moves ? headway_.motion() : Displacement{});
+  const CertifyReport report = cells_->certify(X, d, limit_);
+  if (moves) headway_.learn(0, cells_->met());
+  return report;
 }
 
 bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) const noexcept {
@@ -239,34 +262,41 @@ void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, A
   }
 }
 
-void PatchMotionCheck::prepare(const Pose& X, std::int64_t deadline_ns) noexcept {
+void PatchMotionCheck::prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept {
   limit_.deadline_ns = deadline_ns;
-  limit_.searches = kFrontSearches;
   limit_.blocking = 1;
+  prepare_fronts(X);
+  prepare_cells(X, next);
+}
+
+void PatchMotionCheck::prepare_fronts(const Pose& X) noexcept {
+  limit_.searches = kFrontSearches;
   for (std::size_t i = 0; i < near_fronts_.size() && !past(limit_.deadline_ns);) {
     const std::uint32_t part = near_fronts_[i++];
     bool to_cells = false;
     look_ahead(X, ahead_[front_of_[part]], least_gap_at_most(X, part), [&](double clearance) {
       const CertifyReport report = ask_front(part, X, {}, clearance, limit_);
       to_cells = lies_on(report, part);
-      return to_cells || report.pairs > kSomePairs ? CertifyStatus::cut : report.status;
+      return to_cells || report.pairs > kEnoughPairs ? CertifyStatus::cut : report.status;
     });
     if (!to_cells) continue;
     move_to_cells(part);
     near_cells_.push_back(part);
     near_fronts_.erase(near_fronts_.begin() + static_cast<std::ptrdiff_t>(--i));
     cells_->set_near(near_cells_);
-    cells_ahead_ = Ahead{};
+    headway_.restart();
   }
-  if (near_cells_.empty() || past(limit_.deadline_ns)) return;
-  double at_most = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMaxGuesses && i < static_cast<int>(near_cells_.size()); ++i)
-    at_most = std::min(at_most, least_gap_at_most(X, near_cells_[guessed_++ % near_cells_.size()]));
+}
+
+void PatchMotionCheck::prepare_cells(const Pose& X, const Displacement& next) noexcept {
+  if (near_cells_.empty() || !headway_.go(X, next)) return;
   limit_.searches = kCellSearches;
-  look_ahead(X, cells_ahead_, at_most, [&](double clearance) {
-    cells_->set_clearance(clearance);
-    return cells_->certify(X, {}, limit_).status;
-  });
+  while (!past(limit_.deadline_ns) && headway_.wants_more() && !cells_->crowded()) {
+    const Displacement d = headway_.motion();
+    const CertifyReport report = cells_->prove_ahead(X, d, limit_);
+    headway_.learn(report.share, cells_->met());
+    if (report.status == CertifyStatus::cut) return;
+  }
 }
 
 MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance,
@@ -281,6 +311,7 @@ MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double 
     report = ask_front(part, X, Displacement{}, clearance, limit);
   } else {
     cells_->set_clearance(clearance);
+    cells_->foresee({});
     report = cells_->certify(X, Displacement{}, limit);
   }
   if (report.status == CertifyStatus::cut) return MotionAnswer::unknown;

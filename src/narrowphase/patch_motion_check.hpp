@@ -5,6 +5,7 @@
 
 #include "narrowphase/axis_pairs.hpp"
 #include "narrowphase/cell_front.hpp"
+#include "narrowphase/headway.hpp"
 #include "narrowphase/motion_check.hpp"
 #include "narrowphase/patch_front.hpp"
 
@@ -24,7 +25,7 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
-  void prepare(const Pose& X, std::int64_t deadline_ns) noexcept override;
+  void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -34,7 +35,7 @@ class PatchMotionCheck final : public MotionCheck {
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
-  /// How far ahead a front, or the cells, have been asked at rest.
+  /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
     double proved = 0;                                         ///< all of B is at least so far away, m
@@ -46,6 +47,9 @@ class PatchMotionCheck final : public MotionCheck {
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
                           const WorkLimit& limit) noexcept;
   bool lies_on(const CertifyReport& report, std::uint32_t part) const noexcept;
+  void prepare_fronts(const Pose& X) noexcept;
+  void prepare_cells(const Pose& X, const Displacement& next) noexcept;
+  CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// Asks for ever more clearance at rest by `ask`, until something is nearer or time is over.
   template <typename Ask>
   void look_ahead(const Pose& X, Ahead& ahead, double at_most, Ask ask) noexcept;
@@ -66,9 +70,8 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
   std::vector<std::uint32_t> cuts_;      ///< of each front: calls in a row that ran out of time or work
   std::vector<Ahead> ahead_;             ///< of each front
-  Ahead cells_ahead_;
-  std::size_t guessed_ = 0;
-  std::vector<std::uint64_t> seen_;  ///< of each part: the begin() that last named it
+  Headway headway_;                      ///< of the cells
+  std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
   std::vector<std::uint8_t>

@@ -1,0 +1,188 @@
+// The cut through the hierarchy: pieces are taken apart, and put together again.
+#include "narrowphase/cell_front.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "narrowphase/cell_slack.hpp"
+
+namespace tegotae {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
+constexpr int kMinRaises = 4, kSearchesPerRaise = 3, kMaxLooks = 256;
+/// A cell for both children together must last for so many of the longest motions of late, or this share of what the
+/// children's cells last for.
+constexpr double kRaiseMotions = 8, kRaiseShare = 0.5;
+/// Pieces that could not be put together are tried again when they are so many times as far from B, and at least this
+/// share of their size.
+constexpr double kRetryGrowth = 1.4, kRetryShare = 0.01;
+/// So many larger pieces are tried in the place of one whose cell is used up.
+constexpr int kMaxGrowths = 2;
+
+}  // namespace
+
+std::uint32_t CellFront::allocate() {
+  if (free_nodes_ != kNobody) {
+    const std::uint32_t id = free_nodes_;
+    free_nodes_ = nodes_[id].child;
+    return id;
+  }
+  if (nodes_used_ + 2 > nodes_.size()) return kNobody;
+  nodes_used_ += 2;
+  return nodes_used_ - 2;
+}
+
+void CellFront::release(std::uint32_t child) {
+  nodes_[child].child = free_nodes_;
+  free_nodes_ = child;
+}
+
+void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
+                      const CellAnchor& anchor, double expiry, double clear_until) {
+  nodes_[id].slot = count_;
+  slots_[count_] = inherited;
+  slots_[count_].node = id;
+  items_[count_] = items;
+  listed_[count_] = listed;
+  anchors_[count_] = anchor;
+  clear_until_[count_] = clear_until;
+  expiry_[count_++] = expiry;
+}
+
+void CellFront::leave(std::uint32_t slot) {
+  const std::uint32_t last = --count_;
+  if (slot == last) return;
+  slots_[slot] = slots_[last];
+  items_[slot] = items_[last];
+  listed_[slot] = listed_[last];
+  anchors_[slot] = anchors_[last];
+  expiry_[slot] = expiry_[last];
+  clear_until_[slot] = clear_until_[last];
+  nodes_[slots_[slot].node].slot = slot;
+}
+
+bool CellFront::split(std::uint32_t id) {
+  const Node p = nodes_[id];
+  const bool of_a = !p.face_a;
+  const PatchNode& whole = of_a ? a_->nodes()[p.a] : fixed_[p.part].tree->nodes()[p.b];
+  const PatchTree& tree = of_a ? *a_ : *fixed_[p.part].tree;
+  const std::uint32_t children = whole.leaf() ? whole.count : 2;
+  if (count_ + children > capacity_) return false;
+  const std::uint32_t child = allocate();
+  if (child == kNobody) return false;
+  // What was known of the whole holds for its parts.
+  const Slot known = slots_[p.slot];
+  // The pieces of B that are listed are of both its parts.
+  CellItems items;
+  CellCorridor listed = listed_[p.slot];
+  if (of_a) {
+    items = search_.items();
+    listed = found_corridor_;
+  }
+  const CellAnchor anchor = anchors_[p.slot];
+  const double expiry = expiry_[p.slot], clear_until = clear_until_[p.slot];
+  leave(p.slot);
+  nodes_[id].child = child;
+  nodes_[id].children = static_cast<std::uint8_t>(children);
+  nodes_[id].due = 0;
+  for (std::uint32_t k = 0; k < children; ++k) {
+    Node c = p;
+    c.parent = id;
+    c.children = 0;
+    c.retry = 0;
+    c.split = 0;
+    c.due = 0;
+    const std::uint32_t place = whole.leaf() ? tree.order()[whole.first + k] : whole.first + k;
+    (of_a ? c.a : c.b) = place;
+    (of_a ? c.face_a : c.face_b) = whole.leaf();
+    nodes_[child + k] = c;
+    enter(child + k, known, items, listed, anchor, expiry, clear_until);
+  }
+  return true;
+}
+
+void CellFront::raise() {
+  const int most = kMinRaises + report_.searches / kSearchesPerRaise;
+  int tries = 0;
+  for (int looks = std::min<int>(kMaxLooks, cells()); looks > 0 && tries < most; --looks) {
+    if (++cursor_ >= count_) cursor_ = 0;
+    const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
+    if (parent == kNobody || nodes_[parent].child != id || !may_raise(parent)) continue;
+    if (out_of_work(true)) return;
+    ++tries;
+    try_raise(parent);
+  }
+}
+
+bool CellFront::may_raise(std::uint32_t id) const {
+  const Node& p = nodes_[id];
+  for (std::uint32_t k = 0; k < p.children; ++k) {
+    const Node& c = nodes_[p.child + k];
+    if (c.children > 0 || expiry_[c.slot] - travel_ < p.retry) return false;
+  }
+  return true;
+}
+
+bool CellFront::try_raise(std::uint32_t id) {
+  const Node& p = nodes_[id];
+  double lasts = kInfinity;
+  for (std::uint32_t k = 0; k < p.children; ++k) lasts = std::min(lasts, expiry_[nodes_[p.child + k].slot] - travel_);
+  return merge(id, lasts);
+}
+
+/// Whether a cell was found for the piece together with its neighbors, as many as have come far enough from B since
+/// they were taken apart: what a part that leaves needs. `margin` (m) is what the piece's planes have left.
+bool CellFront::grow(std::uint32_t id, double margin) {
+  std::array<std::uint32_t, kMaxGrowths> last{};
+  int count = 0;
+  for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent)
+    if (nodes_[up].retry <= margin) last[static_cast<std::size_t>(count++ % kMaxGrowths)] = up;
+  // The largest first.
+  for (int i = count; i-- > std::max(0, count - kMaxGrowths);) {
+    if (out_of_work(true)) return false;
+    if (merge(last[static_cast<std::size_t>(i % kMaxGrowths)], margin)) return true;
+  }
+  return false;
+}
+
+/// Notes that the node's pieces, of which one has this margin (m), need cells of their own.
+void CellFront::needs_parts(std::uint32_t id, double margin) {
+  nodes_[id].retry = std::max(kRetryGrowth * margin, kRetryShare * radius(nodes_[id]));
+}
+
+/// Puts together all pieces under the node if one cell for all of them lasts as long as is worth it where theirs last
+/// for `lasts` (m), or none is asked for.
+bool CellFront::merge(std::uint32_t id, double lasts) {
+  const bool near = asked_[nodes_[id].part] == now_;
+  const double enough = std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts));
+  if (near && (search(id) != CellSearch::Outcome::found || search_.margin() < enough)) {
+    needs_parts(id, lasts);
+    return false;
+  }
+  stack_.clear();
+  freed_.clear();
+  stack_.push_back(id);
+  while (!stack_.empty()) {
+    Node& p = nodes_[stack_.back()];
+    stack_.pop_back();
+    p.due = 0;
+    if (p.children == 0) {
+      leave(p.slot);
+      continue;
+    }
+    for (std::uint32_t k = 0; k < p.children; ++k) stack_.push_back(p.child + k);
+    freed_.push_back(p.child);
+    p.children = 0;
+  }
+  for (const std::uint32_t child : freed_) release(child);
+  nodes_[id].child = kNobody;
+  enter(id, Slot{id, FreeCell::unknown(), {}}, {}, {}, {}, -kInfinity, -kInfinity);
+  if (near) keep(id);
+  ++report_.merges;
+  return true;
+}
+
+}  // namespace tegotae
