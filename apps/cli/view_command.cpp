@@ -77,14 +77,14 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options) {
                    "Unit of a file that does not tell it: m (default), cm, mm, um, in")
       ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
       ->type_name("UNIT");
-  add_view_address(*view, options.run.view_address);
+  add_page_options(*view, options.run.page);
   options.run.view = true;
   return view;
 }
 
 int view_file(const ViewOptions& options, const MeshLoader& load) {
   const std::string ending = lower_extension(options.file);
-  if (ending == ".csv" || ending == ".mcap") return show_recording(options.file, "", "", options.run.view_address);
+  if (ending == ".csv" || ending == ".mcap") return show_recording(options.file, "", "", options.run.page);
   if (ending == ".toml") return view_scene(options.file, options, load);
   const TemporaryFolder folder;
   ImportOptions import = options.import;
@@ -97,12 +97,12 @@ int view_file(const ViewOptions& options, const MeshLoader& load) {
 }
 
 int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
-                   const std::string& address) {
+                   const PageOptions& page) {
   const std::string bundle = view::replay_bundle(recording, scene, html);
   if (html.empty())
     view::serve_replay(
-        bundle, [&] { return review::recording_report(recording, scene); }, view_address(address), catch_interrupts(),
-        [](const std::string& url) { announce_page(url); });
+        bundle, [&] { return review::recording_report(recording, scene); }, page_address(page), catch_interrupts(),
+        [&](const view::Server& server) { announce_page(server, page); });
   else
     view::write_replay(bundle, html);
   return kDone;

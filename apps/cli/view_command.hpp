@@ -26,6 +26,6 @@ int view_file(const ViewOptions& options, const MeshLoader& load);
 /// Serves a page with a recording until Ctrl-C, or writes it to the file `html`. An empty `scene` is the one that the
 /// recording names. Returns the exit code; throws Error.
 int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
-                   const std::string& address);
+                   const PageOptions& page);
 
 }  // namespace tegotae::apps

@@ -6,25 +6,34 @@
 #include <iostream>
 
 #include "shared/format.hpp"
+#include "shared/open_browser.hpp"
 #include "shared/progress_line.hpp"
 #include "shared/start_text.hpp"
 #include "shared/summary.hpp"
 #include "tegotae/core/version.hpp"
+#include "view/server.hpp"
 #include "view/view_run.hpp"
 
 namespace tegotae::apps {
 
-CLI::Option* add_view_address(CLI::App& app, std::string& address) {
-  return app.add_option("--view-address", address, "Where to serve the page (127.0.0.1, any free port)")
-      ->type_name("ADDRESS[:PORT]");
+PageOptionNames add_page_options(CLI::App& app, PageOptions& options) {
+  CLI::Option* address =
+      app.add_option("--view-address", options.address, "Where to serve the page (127.0.0.1, any free port)")
+          ->type_name("ADDRESS[:PORT]");
+  return {address, app.add_flag("--no-browser", options.no_browser, "Only print the page's address")};
 }
 
-view::Address view_address(const std::string& text) {
-  return text.empty() ? view::Address() : view::parse_address(text);
+view::Address page_address(const PageOptions& options) {
+  return options.address.empty() ? view::Address() : view::parse_address(options.address);
 }
 
-void announce_page(const std::string& url, bool quiet) {
-  (quiet ? std::cerr : std::cout) << "Open " << url << " (Ctrl-C ends it)" << std::endl;
+bool announce_page(const view::Server& server, const PageOptions& options, bool quiet) {
+  (quiet ? std::cerr : std::cout) << "Open " << server.url() << " (Ctrl-C ends it)" << std::endl;
+  if (const std::string warning = server.warning(); !warning.empty()) std::cerr << "warning: " << warning << std::endl;
+  const bool somebody = !quiet && isatty(STDOUT_FILENO) != 0;
+  if (somebody && !options.no_browser && open_in_browser(server.url_once()))
+    std::cout << "Your browser opens it (--no-browser: it does not)" << std::endl;
+  return somebody;
 }
 
 void add_run_options(CLI::App& app, RunOptions& options) {
@@ -44,7 +53,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                "Ask FCL about every pose, however long it takes (as many as a quarter of the run's time allows)");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
   auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
-  add_view_address(app, options.view_address)->needs(view);
+  const PageOptionNames page = add_page_options(app, options.page);
+  page.address->needs(view);
+  page.no_browser->needs(view);
 }
 
 int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
@@ -73,8 +84,10 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   {
     const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
     ProgressLine line(progress, depth_offset, show);
-    summary = options.view ? view::run_viewed(file, settings, view_address(options.view_address), interrupted,
-                                              [&](const std::string& url) { announce_page(url, options.json); })
+    summary = options.view ? view::run_viewed(file, settings, page_address(options.page), interrupted,
+                                              [&](const view::Server& server) {
+                                                return announce_page(server, options.page, options.json);
+                                              })
                            : run_session(file, settings);
   }
   summary.depth_m += depth_offset;

@@ -7,7 +7,17 @@
 #include "tegotae/session/session.hpp"
 #include "view/address.hpp"
 
+namespace tegotae::view {
+class Server;
+}
+
 namespace tegotae::apps {
+
+/// How a page is shown.
+struct PageOptions {
+  std::string address;  ///< empty: the loopback, any free port
+  bool no_browser = false;
+};
 
 /// What the user asked for, common to all programs that run a scene.
 struct RunOptions {
@@ -19,17 +29,23 @@ struct RunOptions {
   bool json = false;
   bool check_all = false;
   bool view = false;
-  std::string view_address;  ///< empty: the loopback, any free port
+  PageOptions page;
 };
 
-/// The option --view-address.
-CLI::Option* add_view_address(CLI::App& app, std::string& address);
+/// The options --view-address and --no-browser.
+struct PageOptionNames {
+  CLI::Option* address;
+  CLI::Option* no_browser;
+};
+PageOptionNames add_page_options(CLI::App& app, PageOptions& options);
 
-/// Reads it; the default where it was not given. Throws Error.
-view::Address view_address(const std::string& text);
+/// Where to serve the page; the default where no address was given. Throws Error.
+view::Address page_address(const PageOptions& options);
 
-/// Tells where the page is: on stdout, or on stderr where `quiet` keeps that for data.
-void announce_page(const std::string& url, bool quiet = false);
+/// Reports where the page is: on stdout, or on stderr where `quiet` keeps that for data. Where stdout is a terminal and
+/// `quiet` is not set somebody is there: then it opens the desktop's browser, unless that is not wanted, and returns
+/// true, so that a run waits for its page.
+bool announce_page(const view::Server& server, const PageOptions& options, bool quiet = false);
 
 void add_run_options(CLI::App& app, RunOptions& options);
 

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -148,11 +147,10 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
 }
 
 void serve_replay(const std::string& bundle, const std::function<std::string()>& make_review, const Address& address,
-                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& announce) {
+                  const std::atomic<bool>& stop, const std::function<void(const Server&)>& announce) {
   ReplaySource source(bundle, make_review);
   Server server(address, source);
-  announce(server.url());
-  if (const std::string warning = server.warning(); !warning.empty()) std::cerr << "warning: " << warning << std::endl;
+  announce(server);
   while (!stop) std::this_thread::sleep_for(kPoll);
 }
 

@@ -11,6 +11,8 @@
 
 namespace tegotae::view {
 
+class Server;
+
 /// The scene of the recording at `path`, with the part in the hand that was held then: the scene file `scene`, or when
 /// that is empty the one that the recording names, from here or from the recording's folder (that of a changed scene:
 /// only from there). Throws Error when that does not say or there is no such file.
@@ -27,10 +29,10 @@ std::vector<std::string> scene_changes(const RecordingInfo& info);
 /// `html`, where the page will be written, is one of the files that are read.
 std::string replay_bundle(const std::string& path, const std::string& scene = {}, const std::string& html = {});
 
-/// Serves a bundle until `stop`; `announce` gets the address to open. `make_review` makes the HTML report on the
-/// recording when the page asks for it, in a thread of the server.
+/// Serves a bundle until `stop`; `announce` gets the server, whose address is to be opened. `make_review` makes the
+/// HTML report on the recording when the page asks for it, in a thread of the server.
 void serve_replay(const std::string& bundle, const std::function<std::string()>& make_review, const Address& address,
-                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& announce);
+                  const std::atomic<bool>& stop, const std::function<void(const Server&)>& announce);
 
 /// Writes the page with the bundle in it to `path`. Throws Error.
 void write_replay(const std::string& bundle, const std::string& path);

@@ -10,6 +10,7 @@ namespace tegotae::view {
 namespace {
 
 constexpr std::size_t kTokenBytes = 16;
+constexpr auto kOnceValid = std::chrono::minutes(1);
 
 /// Takes the same time wherever they differ.
 bool same(std::string_view a, std::string_view b) {
@@ -44,12 +45,31 @@ bool RequestGuard::knows_host(std::string_view host) const {
          host.substr(0, host.size() - port.size()).find_first_not_of("0123456789.[]abcdefABCDEF:") == host.npos;
 }
 
-std::string RequestGuard::refusal(const RequestOrigin& request) const {
+std::string RequestGuard::foreign(const RequestOrigin& request) const {
   if (!knows_host(request.host)) return "this server is not called so";
   if (!request.origin.empty() && request.origin != "http://" + std::string(request.host)) return "this is not its page";
   if (!request.site.empty() && request.site != "same-origin" && request.site != "none") return "this is not its page";
+  return "";
+}
+
+std::string RequestGuard::refusal(const RequestOrigin& request) const {
+  const std::string why = foreign(request);
+  if (!why.empty()) return why;
   if (!same(request.token, token_)) return "the token is missing or wrong; open the address that the program printed";
   return "";
+}
+
+std::string RequestGuard::make_once() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  once_end_ = std::chrono::steady_clock::now() + kOnceValid;
+  return once_ = random_hex(kTokenBytes);
+}
+
+bool RequestGuard::take_once(const RequestOrigin& request) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (once_.empty() || !foreign(request).empty() || !same(request.token, once_)) return false;
+  once_.clear();
+  return std::chrono::steady_clock::now() < once_end_;
 }
 
 }  // namespace tegotae::view

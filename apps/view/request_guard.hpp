@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -25,12 +27,21 @@ class RequestGuard {
   const std::string& token() const { return token_; }
   /// Empty when the request may pass, or why not.
   std::string refusal(const RequestOrigin& request) const;
+  /// Another token, for one request within a minute; the one before it is of no use any more. From any thread.
+  std::string make_once();
+  /// Whether the request brings that token, and nothing else speaks against it. From then on it is of no use. From any
+  /// thread.
+  bool take_once(const RequestOrigin& request);
 
  private:
   bool knows_host(std::string_view host) const;
+  std::string foreign(const RequestOrigin& request) const;
 
   Address address_;
   std::string token_;
+  std::mutex mutex_;
+  std::string once_;  ///< empty: there is none
+  std::chrono::steady_clock::time_point once_end_;
 };
 
 /// `bytes` random bytes of the system as hexadecimal digits.

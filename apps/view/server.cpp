@@ -83,7 +83,7 @@ struct Server::Impl {
   Address address;  ///< as asked for
   Address local;    ///< as seen from this machine
   std::atomic<int> watchers{0};
-  std::atomic<bool> started{false}, ending{false};
+  std::atomic<bool> started{false}, ending{false}, watched{false};
   Rate rate;
   std::unique_ptr<Doorkeeper> door;
   mg_context* context = nullptr;
@@ -98,12 +98,16 @@ struct Server::Impl {
     if (page && request.query_string)
       mg_get_var(request.query_string, std::char_traits<char>::length(request.query_string), "token", query,
                  sizeof query);
-    const std::string why =
-        guard->refusal({or_empty(mg_get_header(connection, "Host")), or_empty(mg_get_header(connection, "Origin")),
-                        or_empty(mg_get_header(connection, "Sec-Fetch-Site")),
-                        page ? query : or_empty(mg_get_header(connection, "X-Tegotae-Token"))});
+    const RequestOrigin origin = {or_empty(mg_get_header(connection, "Host")),
+                                  or_empty(mg_get_header(connection, "Origin")),
+                                  or_empty(mg_get_header(connection, "Sec-Fetch-Site")),
+                                  page ? query : or_empty(mg_get_header(connection, "X-Tegotae-Token"))};
+    const std::string why = guard->refusal(origin);
     if (why.empty()) door->welcome(request.remote_port);
-    if (!why.empty()) {
+    if (!why.empty() && page && guard->take_once(origin)) {
+      respond(connection, 303, "See Other", "text/plain; charset=utf-8", "",
+              "Location: /?token=" + guard->token() + "\r\n");
+    } else if (!why.empty()) {
       respond(connection, 403, "Forbidden", "text/plain; charset=utf-8", why + "\n");
     } else if (method == "GET" && page) {
       serve_page(connection);
@@ -182,6 +186,7 @@ struct Server::Impl {
         "HTTP/1.1 200 OK\r\nContent-Type: application/octet-stream\r\nCache-Control: no-store\r\n"
         "X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n";
     if (mg_write(connection, head.data(), head.size()) <= 0) return;
+    watched = true;
     const FrameRing& ring = *source.frames();
     FrameRing::Cursor cursor = ring.newest();
     std::uint64_t missed = 0;
@@ -277,6 +282,14 @@ Server::~Server() {
 
 const std::string& Server::url() const {
   return impl_->url;
+}
+
+std::string Server::url_once() const {
+  return "http://" + impl_->local.text() + "/?token=" + impl_->guard->make_once();
+}
+
+bool Server::watched() const {
+  return impl_->watched;
 }
 
 std::string Server::warning() const {

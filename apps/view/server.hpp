@@ -21,6 +21,11 @@ class Server {
 
   /// The one address to open: http://127.0.0.1:PORT/?token=...
   const std::string& url() const;
+  /// The same for one use, within a minute: it leads to url(). The token then does not stand in the command line of a
+  /// browser, which everybody on the machine can read.
+  std::string url_once() const;
+  /// Whether a page has begun to watch.
+  bool watched() const;
   /// What whoever opened the page to other machines should know, and where it is for them; empty on the loopback.
   std::string warning() const;
 

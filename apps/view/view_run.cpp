@@ -1,6 +1,8 @@
 #include "view/view_run.hpp"
 
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 #include "tegotae/core/error.hpp"
 #include "view/live_view.hpp"
@@ -11,15 +13,25 @@ namespace {
 
 // Without --seconds a viewed run is over when somebody ends it: eleven days.
 constexpr double kForever = 1e6;
+// A browser that has to be started first takes seconds, and a person who copies an address some more.
+constexpr auto kFirstPage = std::chrono::seconds(30);
+constexpr auto kPoll = std::chrono::milliseconds(20);
+
+/// Or its beginning would be over when the page comes.
+void wait_for_page(const Server& server, const std::atomic<bool>& stop) {
+  std::cout << "The run starts when the page is there, or in " << kFirstPage.count() << " s" << std::endl;
+  const auto end = std::chrono::steady_clock::now() + kFirstPage;
+  while (!stop && !server.watched() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kPoll);
+  if (!stop) std::cout << (server.watched() ? "The page is there" : "No page came") << "; the run starts" << std::endl;
+}
 
 }  // namespace
 
 RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
-                      const std::function<void(const std::string&)>& announce) {
+                      const std::function<bool(const Server&)>& announce) {
   LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop);
   Server server(address, live);
-  announce(server.url());
-  if (const std::string warning = server.warning(); !warning.empty()) std::cerr << "warning: " << warning << std::endl;
+  if (announce(server) && settings.real_time) wait_for_page(server, stop);
   if (settings.seconds == 0) settings.seconds = kForever;
   settings.observer = &live;
   settings.on_start = [&live, told = settings.on_start](const RunStart& start) {

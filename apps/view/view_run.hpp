@@ -8,10 +8,13 @@
 
 namespace tegotae::view {
 
+class Server;
+
 /// run_session with a page to look at it. The run goes on after its script, until `stop` (which must be
 /// `settings.stop`) or for `settings.seconds`; the page may begin it anew, and change its parts while it runs.
-/// `announce` gets the address to open. Returns the summary of the last run.
+/// `announce` gets the server, whose address is to be opened, and returns whether the run is to wait for the first page
+/// (half a minute at most). Returns the summary of the last run.
 RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
-                      const std::function<void(const std::string&)>& announce);
+                      const std::function<bool(const Server&)>& announce);
 
 }  // namespace tegotae::view

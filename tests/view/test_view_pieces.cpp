@@ -57,6 +57,20 @@ TEST_CASE("who may ask") {
   CHECK_FALSE(everywhere.refusal({"rebound.example:4000", "", "", everywhere.token()}).empty());
 }
 
+TEST_CASE("a token for one request") {
+  RequestGuard guard(parse_address("127.0.0.1:4000"));
+  CHECK_FALSE(guard.take_once({"127.0.0.1:4000", "", "", ""}));
+  const std::string first = guard.make_once(), once = guard.make_once();
+  CHECK(once.size() == 32);
+  CHECK(once != guard.token());
+  CHECK_FALSE(guard.take_once({"127.0.0.1:4000", "", "", first}));
+  CHECK_FALSE(guard.take_once({"evil.example:4000", "", "", once}));
+  CHECK_FALSE(guard.take_once({"127.0.0.1:4000", "", "cross-site", once}));
+  CHECK_FALSE(guard.refusal({"127.0.0.1:4000", "", "none", once}).empty());
+  CHECK(guard.take_once({"127.0.0.1:4000", "", "none", once}));
+  CHECK_FALSE(guard.take_once({"127.0.0.1:4000", "", "none", once}));
+}
+
 TEST_CASE("a mesh for the eye keeps its shape within its number of triangles") {
   // A sphere of 160 × 80 patches, radius 10 mm, around (1, 2, 3) m: single precision steps there are 0.2 µm.
   TriangleMesh ball;
