@@ -40,6 +40,12 @@ json pose_json(const Pose& pose) {
   return json(values);
 }
 
+void add_script(Bundle& bundle, const StylusScript& script) {
+  if (!(script.end() > script.begin())) return;
+  bundle.about["script_end"] = script.end();
+  bundle.about["goal"] = pose_json(script.pose(script.end()));
+}
+
 void add_scene(Bundle& bundle, const Scene& scene, const Vec3& center) {
   std::size_t total = 0;
   std::map<const TriangleMesh*, int> numbers;
@@ -60,6 +66,8 @@ void add_scene(Bundle& bundle, const Scene& scene, const Vec3& center) {
                         {"indices", bundle.add(shown.indices)}});
     }
     parts.push_back({{"name", part.name}, {"mesh", number}, {"held", part.held}, {"pose", pose_json(part.pose)}});
+    if (!part.path.empty()) parts.back()["path"] = part.path;
+    if (part.color) parts.back()["color"] = *part.color;
   }
   bundle.about["parts"] = std::move(parts);
   bundle.about["meshes"] = std::move(meshes);

@@ -35,4 +35,8 @@ void add_scene(Bundle& bundle, const Scene& scene, const Vec3& center);
 /// [x, y, z, qw, qx, qy, qz]
 nlohmann::json pose_json(const Pose& pose);
 
+/// Adds what the script does: about.script_end (s) and about.goal, the pose of the part that it moves; nothing when it
+/// rests.
+void add_script(Bundle& bundle, const StylusScript& script);
+
 }  // namespace tegotae::view

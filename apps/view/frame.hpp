@@ -14,6 +14,7 @@ struct FramePair {
   double gap;        ///< m
   std::uint32_t part;
   std::uint32_t touching;
+  std::uint32_t features;  ///< FeatureKind of the held part, and three times that of the fixed one
 };
 
 /// Pairs that a frame can hold. Contacts go first, and a free body rests on few of them.

@@ -29,6 +29,7 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
       p.gap = c.gap;
       p.part = numbers_.empty() ? c.part.index : numbers_[c.part.index];
       p.touching = touching ? 1 : 0;
+      p.features = static_cast<std::uint32_t>(c.feature_a.kind) + 3 * static_cast<std::uint32_t>(c.feature_b.kind);
     }
 }
 

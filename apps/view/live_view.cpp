@@ -73,6 +73,7 @@ LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, b
       {"mode", "live"}, {"title", file.path},          {"virtual_time", virtual_time_}, {"restartable", restartable_},
       {"led", led_},    {"reasons", force_off_names()}};
   add_scene(bundle_, file.scene, Vec3::Zero());
+  add_script(bundle_, file.script);
   begin();
 }
 

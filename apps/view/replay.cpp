@@ -126,6 +126,8 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   Bundle bundle;
   held_part(file.scene).pose = rows.front().x;
   add_scene(bundle, file.scene, follower.loop().center());
+  // After a change of the scene the script may be of another part.
+  if (recording.info.follows.empty()) add_script(bundle, file.script);
   bundle.about["mode"] = "replay";
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });

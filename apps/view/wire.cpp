@@ -12,6 +12,8 @@ namespace {
 // Whole numbers above 2^24 are no floats any more, and neither are milliseconds of a long run: two floats each.
 constexpr std::uint64_t kTickSplit = 1u << 20;
 constexpr int kMaxDepth = 3;
+// Kinds of features (vertex, edge, face) of both parts.
+constexpr double kFeaturePairs = 9;
 
 void append(std::vector<float>& out, double value) {
   out.push_back(static_cast<float>(value));
@@ -55,7 +57,7 @@ void append_pairs(const Frame& frame, std::vector<float>& out) {
     for (const double v : p.point) append(out, v);
     for (const double v : p.normal) append(out, v);
     append(out, p.gap);
-    append(out, 2.0 * p.part + p.touching);
+    append(out, 2.0 * (kFeaturePairs * p.part + p.features) + p.touching);
   }
 }
 

@@ -55,6 +55,9 @@ export async function open(browser, url, { dark = false, width = 1366, height = 
   return page;
 }
 
+// The last values of the plot with this name.
+export const plotted = (s, name) => s.plots.find((plot) => plot.name === name).last;
+
 export const state = (page) => page.evaluate(() => window.__tegotae.state);
 // Waits until the page's state fulfils `test`, and returns that state. (Playwright's own waiting evaluates text in the
 // page, which the page's security policy forbids.)

@@ -81,7 +81,7 @@ TEST_CASE("a replay finds the contacts of the recorded poses") {
     CHECK(std::abs(at[5] - 1) < 1e-4);      // from the floor to the block
     CHECK(at[6] < 6e-5);                    // gap: the loop is led up to 50 µm farther
     CHECK(at[6] > 0);
-    CHECK(std::floor(at[7] / 2) == 0);  // the floor is part 0
+    CHECK(std::floor(at[7] / 18) == 0);  // the floor is part 0
   }
 }
 

@@ -59,7 +59,7 @@ export class PathView {
     const group = new THREE.Group();
     this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.04, depthWrite: false, side: THREE.DoubleSide });
     this.ghostLines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.35, depthWrite: false });
-    const [, , lines] = this.stage.held.group.children;
+    const lines = this.stage.held.lines3d;
     for (const i of bundle.integers(bundle.about.ghosts)) {
       const ghost = new THREE.Group();
       ghost.add(new THREE.Mesh(this.stage.held.mesh3d.geometry, this.ghostMaterial), new THREE.LineSegments(lines.geometry, this.ghostLines));
@@ -106,12 +106,7 @@ export class PathView {
   }
 
   seeThrough(on) {
-    for (const part of this.stage.parts) {
-      if (part.held) continue;
-      Object.assign(part.material, { transparent: on, opacity: on ? 0.22 : 1, depthWrite: !on, side: on ? THREE.DoubleSide : THREE.FrontSide, needsUpdate: true });
-      part.inside.visible = !on;
-      part.lines.opacity = on ? 0.3 : 0.55;
-    }
+    for (const part of this.stage.parts) if (!part.held) this.stage.fade(part, on);
   }
 
   applyTheme() {

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-// From where one looks. z is up; straight from above it turns a hair aside, or up would be undefined.
+// From where one looks: right, back, up. Straight from above it turns a hair aside, or up would be undefined.
 export const views = [
   ["Front", [0, -1, 0]],
   ["Back", [0, 1, 0]],
@@ -12,21 +12,71 @@ export const views = [
   ["Bottom", [0, -1e-4, -1]],
   ["Isometric", [1, -1.25, 0.85]],
 ];
+// By the axis that is up: which way right, back and up are.
+const bases = {
+  z: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  y: [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
+  x: [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
+};
+// An eye that is so far away sees the same as one that is infinitely far: 0.05° of perspective over the picture.
+const nearAngle = 30, farAngle = 0.1;
 const keyStep = (5 * Math.PI) / 180;
 const margin = 1.12;
 
 export class Viewpoint {
   constructor(stage) {
     this.stage = stage;
-    this.controls = new OrbitControls(stage.camera, stage.canvas);
+    this.up = "z";
+    this.addControls();
+    // The browser's own middle button (scrolling) and context menu are in the way.
+    stage.canvas.addEventListener("mousedown", (event) => event.button === 1 && event.preventDefault());
+  }
+
+  addControls() {
+    const target = this.controls?.target;
+    this.controls?.dispose();
+    this.controls = new OrbitControls(this.stage.camera, this.stage.canvas);
     Object.assign(this.controls, {
       enableDamping: false,
       zoomToCursor: true,
       mouseButtons: { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.ROTATE, RIGHT: THREE.MOUSE.PAN },
     });
+    if (target) this.controls.target.copy(target);
     this.controls.addEventListener("change", () => this.changed());
-    // The browser's own middle button (scrolling) and context menu are in the way.
-    stage.canvas.addEventListener("mousedown", (event) => event.button === 1 && event.preventDefault());
+  }
+
+  // Which axis is up: "x", "y" or "z".
+  setUp(axis) {
+    this.up = axis;
+    this.stage.camera.up.set(...bases[axis][2]);
+    this.stage.sky.position.copy(this.stage.camera.up);
+    this.addControls(); // they read it once
+    this.limits();
+    this.look(6);
+  }
+
+  get parallel() {
+    return this.stage.camera.fov < 1;
+  }
+  // Without perspective, or with it; what is in the picture's middle keeps its size.
+  setParallel(on) {
+    if (on === this.parallel) return;
+    const { camera } = this.stage;
+    const height = this.viewHeight();
+    camera.fov = on ? farAngle : nearAngle;
+    const offset = camera.position.clone().sub(this.controls.target);
+    camera.position.copy(this.controls.target).addScaledVector(offset.normalize(), height / (2 * this.slope()));
+    camera.updateProjectionMatrix();
+    this.limits();
+    this.controls.update();
+    this.changed();
+  }
+  slope() {
+    return Math.tan((this.stage.camera.fov * Math.PI) / 360);
+  }
+  // How much of the world (m) the picture is high, at `distance` from the eye.
+  viewHeight(distance = this.stage.camera.position.distanceTo(this.controls.target)) {
+    return 2 * distance * this.slope();
   }
 
   changed() {
@@ -35,12 +85,20 @@ export class Viewpoint {
     camera.near = Math.max(distance - 4 * radius, distance / 200);
     camera.far = distance + 6 * radius;
     camera.updateProjectionMatrix();
-    this.stage.draw();
+    this.stage.draw(true);
   }
 
   limits() {
-    this.controls.minDistance = this.stage.radius / 100;
-    this.controls.maxDistance = this.stage.radius * 20;
+    const height = 2 * this.slope();
+    this.controls.minDistance = this.stage.radius / (100 * height);
+    this.controls.maxDistance = (this.stage.radius * 12) / height;
+  }
+
+  // From where view number `i` looks.
+  direction(i) {
+    const v = new THREE.Vector3();
+    bases[this.up].forEach((axis, k) => v.addScaledVector(new THREE.Vector3(...axis), views[i][1][k]));
+    return v;
   }
 
   // All of `box` from the direction of view number `i`, or from where one is.
@@ -49,7 +107,7 @@ export class Viewpoint {
     this.limits();
     const { camera } = this.stage;
     const center = box.getCenter(new THREE.Vector3());
-    const direction = i === null ? camera.position.clone().sub(this.controls.target) : new THREE.Vector3(...views[i][1]);
+    const direction = i === null ? camera.position.clone().sub(this.controls.target) : this.direction(i);
     this.controls.target.copy(center);
     camera.position.copy(center).add(direction.normalize());
     this.controls.update(); // turns the camera
@@ -60,8 +118,8 @@ export class Viewpoint {
 
   // How far from `center` the eye must be, looking as it does, so that all corners of `box` are in the picture.
   distanceFor(box, center) {
-    const { fov, aspect } = this.stage.camera;
-    const up = Math.tan((fov * Math.PI) / 360) / margin;
+    const { aspect } = this.stage.camera;
+    const up = this.slope() / margin;
     const axes = [0, 1, 2].map((k) => this.axis(k));
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
@@ -79,17 +137,18 @@ export class Viewpoint {
 
   orbit(right, up) {
     const offset = this.stage.camera.position.clone().sub(this.controls.target);
-    const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
+    const toY = new THREE.Quaternion().setFromUnitVectors(this.stage.camera.up, new THREE.Vector3(0, 1, 0));
+    const s = new THREE.Spherical().setFromVector3(offset.applyQuaternion(toY));
     s.theta += right * keyStep;
     s.phi = Math.min(Math.PI - 1e-3, Math.max(1e-3, s.phi - up * keyStep));
-    const v = new THREE.Vector3().setFromSpherical(s);
-    this.stage.camera.position.copy(this.controls.target).add(new THREE.Vector3(v.x, -v.z, v.y));
+    const v = new THREE.Vector3().setFromSpherical(s).applyQuaternion(toY.invert());
+    this.stage.camera.position.copy(this.controls.target).add(v);
     this.controls.update();
     this.changed();
   }
   pan(right, up) {
     const { camera } = this.stage;
-    const step = 0.05 * camera.position.distanceTo(this.controls.target);
+    const step = 0.09 * this.viewHeight();
     const by = this.axis(0).multiplyScalar(right * step).add(this.axis(1).multiplyScalar(up * step));
     camera.position.add(by);
     this.controls.target.add(by);

@@ -5,7 +5,7 @@ import { help, isTyping } from "./keys.js";
 
 const $ = (id) => document.getElementById(id);
 
-function toggle(label, pressed, click) {
+export function toggle(label, pressed, click) {
   const button = element("button", label);
   button.setAttribute("aria-pressed", String(pressed));
   button.addEventListener("click", click);
@@ -22,33 +22,12 @@ function checkbox(label, checked, change) {
   return line;
 }
 
-export function showLayers(overlay) {
+export function showLayers(overlay, behind) {
   const names = { contacts: "Contacts and normals", pairs: "Nearest features", forces: "Contact forces", arrows: "Force and torque" };
-  $("layers").replaceChildren(...Object.entries(names).map(([layer, name]) => checkbox(name, overlay.enabled[layer], (on) => overlay.enable(layer, on))));
-}
-
-export class Section {
-  constructor(stage) {
-    this.stage = stage;
-    this.axis = null;
-    this.buttons = ["Off", "x", "y", "z"].map((label, i) => toggle(label, i === 0, () => this.set(i === 0 ? null : i - 1)));
-    document.querySelector("#section .group").append(...this.buttons);
-    $("cut").addEventListener("input", () => this.apply());
-    $("flip").addEventListener("change", () => this.apply());
-  }
-  set(axis) {
-    this.axis = axis;
-    this.apply();
-  }
-  next() {
-    this.set(this.axis === null ? 0 : this.axis === 2 ? null : this.axis + 1);
-  }
-  apply() {
-    const on = this.axis !== null;
-    $("cut").disabled = $("flip").disabled = !on;
-    this.buttons.forEach((button, i) => button.setAttribute("aria-pressed", String(i === (on ? this.axis + 1 : 0))));
-    this.stage.setSection(this.axis, Number($("cut").value), $("flip").checked);
-  }
+  $("layers").replaceChildren(
+    ...Object.entries(names).map(([layer, name]) => checkbox(name, overlay.enabled[layer], (on) => overlay.enable(layer, on))),
+    checkbox("Contacts through parts", behind.on, (on) => behind.set(on)),
+  );
 }
 
 export function addViews(viewpoint) {
@@ -59,6 +38,18 @@ export function addViews(viewpoint) {
     button.addEventListener("click", () => viewpoint.look(i));
     return button;
   }));
+}
+
+// On a narrow page one panel at a time, or none.
+export function addPanels() {
+  const buttons = [...$("tabs").querySelectorAll("button")];
+  for (const button of buttons)
+    button.addEventListener("click", () => {
+      const { panel } = button.dataset;
+      if (panel) document.body.dataset.panel = panel;
+      else delete document.body.dataset.panel;
+      for (const b of buttons) b.setAttribute("aria-pressed", String(b === button));
+    });
 }
 
 export function addHelp() {
@@ -81,23 +72,38 @@ export function addHelp() {
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }
 
-// actions: key -> function. Arrow keys go to the camera unless the hand wants them.
+// actions: key -> function; "ctrl+z" and its like with that key. Arrow keys go to the camera unless the hand wants them.
 export function listenToKeys({ actions, viewpoint, hand }) {
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event) || $("help").open) return;
+    if (event.altKey || isTyping(event) || $("help").open) return;
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    const command = event.ctrlKey || event.metaKey;
     const by = arrows[event.key];
-    if (hand.key(event)) {
+    if (!command && hand.key(event)) {
       // it was the hand's
-    } else if (by) {
+    } else if (!command && by) {
       event.shiftKey ? viewpoint.pan(...by) : viewpoint.orbit(...by);
-    } else if (event.key === "+" || event.key === "=" || event.key === "-") {
+    } else if (!command && (event.key === "+" || event.key === "=" || event.key === "-")) {
       viewpoint.zoom(event.key === "-" ? 1.1 : 1 / 1.1);
     } else {
-      const action = actions[event.key.toLowerCase()];
+      const action = actions[(command ? "ctrl+" : "") + event.key.toLowerCase()];
       if (!action) return;
       action();
     }
     event.preventDefault();
+  });
+}
+
+const clickSlop = 5; // pixels that the pointer may move in a click
+
+// click(x, y): where a pointer went down and up again without moving. Before who drags sees it.
+export function listenToClicks(canvas, click) {
+  const place = canvas.parentElement;
+  let down = null;
+  const still = (event) => Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < clickSlop;
+  place.addEventListener("pointerdown", (event) => (down = event.button === 0 && event.isPrimary && event.target === canvas ? event : null), { capture: true });
+  place.addEventListener("pointerup", (event) => {
+    if (down && event.isPrimary && still(event)) click(event.clientX, event.clientY);
+    down = null;
   });
 }

@@ -7,6 +7,11 @@ export const forceFloats = 11;
 export const lagReasons = ["", "held by contacts", "out of time", "no motion proved free", "not following the pen"];
 const lagShift = 8;
 
+// Of the held part, and of the other one.
+const featureNames = ["corner", "edge", "face"];
+const featurePairs = 9;
+const featuresOf = (number) => [featureNames[number % 3], featureNames[Math.floor(number / 3)]];
+
 const flagNames = { touching: 1, cut: 2, overflow: 4, forceOn: 8, waiting: 16 };
 
 // `forces` begin after the pairs where they are not given.
@@ -38,7 +43,8 @@ export function readFrame(row, pairs, forces = pairs.subarray(row[31] * pairFloa
       point: Array.from(pairs.subarray(at, at + 3)),
       normal: Array.from(pairs.subarray(at + 3, at + 6)),
       gap: pairs[at + 6],
-      part: Math.floor(pairs[at + 7] / 2),
+      part: Math.floor(pairs[at + 7] / (2 * featurePairs)),
+      features: featuresOf(Math.floor(pairs[at + 7] / 2) % featurePairs),
       touching: pairs[at + 7] % 2 === 1,
     });
   }

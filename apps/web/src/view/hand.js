@@ -4,12 +4,13 @@ import * as THREE from "three";
 
 const turnPerPixel = 0.006; // rad
 const keyMove = 0.02, keyTurn = (1.5 * Math.PI) / 180; // share of the held part's radius, rad
-const wheelMove = 0.0006; // of the distance to the eye, for a unit of the wheel
+const wheelMove = 0.0011; // of the picture's height in the world, for a unit of the wheel
 
 export class Hand {
-  // lead(pose): sends the hand somewhere. state(held: bool, what): for the page to show.
+  // lead(pose): sends the hand somewhere. changed(what): for the page to show. turns: a drag turns the part, and moves
+  // it with Shift.
   constructor(stage, viewpoint, { lead, changed }) {
-    Object.assign(this, { stage, viewpoint, lead, changed, enabled: false, grip: null, keys: false });
+    Object.assign(this, { stage, viewpoint, lead, changed, enabled: false, turns: false, grip: null, keys: false });
     const place = stage.canvas.parentElement;
     // Before the camera's controls see the pointer.
     place.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
@@ -39,6 +40,7 @@ export class Hand {
 
   down(event) {
     if (!this.enabled || !this.frame || event.button !== 0 || event.target !== this.stage.canvas) return;
+    if (!event.isPrimary) return this.release(); // a second finger pans
     const hit = this.stage.pick(event.clientX, event.clientY);
     if (!hit?.part.held) return;
     event.stopPropagation();
@@ -53,10 +55,9 @@ export class Hand {
     if (!this.grip) return;
     const [dx, dy] = [event.clientX - this.grip.x, event.clientY - this.grip.y];
     Object.assign(this.grip, { x: event.clientX, y: event.clientY });
-    if (event.shiftKey) this.turn(dx * turnPerPixel, dy * turnPerPixel);
+    if (event.shiftKey !== this.turns) this.turn(dx * turnPerPixel, dy * turnPerPixel);
     else {
-      const { camera, canvas } = this.stage;
-      const metersPerPixel = (2 * this.grip.depth * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight;
+      const metersPerPixel = this.viewpoint.viewHeight(this.grip.depth) / this.stage.canvas.clientHeight;
       this.shift(dx * metersPerPixel, -dy * metersPerPixel, 0);
     }
   }
@@ -65,7 +66,7 @@ export class Hand {
     if (!this.grip) return;
     event.preventDefault();
     event.stopPropagation();
-    this.shift(0, 0, event.deltaY * wheelMove * this.grip.depth);
+    this.shift(0, 0, event.deltaY * wheelMove * this.viewpoint.viewHeight(this.grip.depth));
   }
 
   release() {
@@ -124,7 +125,7 @@ export class Hand {
     const moves = { ArrowRight: [1, 0, 0], ArrowLeft: [-1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, -1], PageDown: [0, 0, 1] };
     const by = moves[event.key];
     if (!this.keys || !by) return false;
-    if (event.shiftKey) this.turn(by[0] * keyTurn, -by[1] * keyTurn, -by[2] * keyTurn);
+    if (event.shiftKey !== this.turns) this.turn(by[0] * keyTurn, -by[1] * keyTurn, -by[2] * keyTurn);
     else this.shift(...by.map((v) => v * keyMove * this.stage.held.radius));
     return true;
   }

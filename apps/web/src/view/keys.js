@@ -1,28 +1,38 @@
 // What keys and the mouse do, for the help and for the keyboard.
 export const help = [
-  ["Mouse", [
-    ["left drag on the background, middle drag", "orbit"],
-    ["right drag, Shift + middle drag", "pan"],
-    ["wheel", "zoom to the pointer"],
+  ["Mouse and touch", [
+    ["left drag on the background, middle drag, one finger", "orbit"],
+    ["right drag, Shift + middle drag, two fingers", "pan"],
+    ["wheel, pinch", "zoom to the pointer"],
+    ["click on a part, on its name", "select it: hold, move, remove, isolate, see through"],
+    ["click on a contact", "its part, features, gap and force"],
   ]],
   ["Holding the part (live, simulated pen)", [
-    ["left drag on the held part", "move it in the plane of the screen; let go to stop pressing"],
-    ["Shift + left drag on it", "turn it"],
+    ["left drag or finger on the held part", "move it in the plane of the screen; let go to stop pressing"],
+    ["Shift + left drag on it, or G before", "turn it"],
     ["wheel while dragging", "move it away or nearer"],
     ["H", "hold it by keys: arrows and Page Up / Down move, with Shift turn; Esc lets go"],
   ]],
-  ["Changing the parts (live)", [
-    ["click on a part, or on its name", "select it: hold, move, remove, add back"],
-  ]],
-  ["Keys", [
+  ["Looking", [
     ["1 … 7", "front, back, left, right, top, bottom, isometric"],
     ["F, C", "show everything, show the held part"],
     ["arrows, Shift + arrows, + −", "orbit, pan, zoom"],
+    ["O, U", "with or without perspective, another axis up"],
+    ["S, [ and ]", "section plane: across x, y, z, off; move it. Its handle: drag, with Shift tilt"],
+    ["E", "parts away from each other, and back"],
+    ["M", "measure: click two faces, edges or corners; Esc ends it"],
+    ["T", "light or dark"],
+  ]],
+  ["Parts", [
+    ["/", "search"],
+    ["V, I, X", "of the selected part: show or hide, show it alone, see through it"],
+    ["A", "show all"],
+    ["Ctrl + Z", "take the last change back"],
+  ]],
+  ["The run", [
     ["Space, .", "pause or go on, one step (virtual time and recordings)"],
     [", and .", "one frame back and on (recordings)"],
     ["R", "begin the run anew"],
-    ["S", "section plane: across x, y, z, off"],
-    ["T", "light or dark"],
     ["?", "this help"],
   ]],
 ];
@@ -31,7 +41,7 @@ export const help = [
 export function isTyping(event) {
   const tag = event.target.tagName;
   if (tag === "SELECT" || tag === "DIALOG") return true;
-  if (tag === "INPUT" && event.target.type === "number") return event.key !== "Escape";
+  if (tag === "INPUT" && ["number", "search"].includes(event.target.type)) return event.key !== "Escape";
   if (tag === "INPUT") return event.target.type === "range" ? /^(Arrow|Page|Home|End)/.test(event.key) : event.key === " ";
   return tag === "BUTTON" && (event.key === " " || event.key === "Enter");
 }

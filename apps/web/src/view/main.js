@@ -1,19 +1,26 @@
 // The page of a live run and of a recording: puts the pieces together.
-import { cssColor, setDark, systemIsDark } from "../common/theme.js";
+import { setDark, systemIsDark } from "../common/theme.js";
+import { length } from "../common/number.js";
+import { Behind } from "./behind.js";
 import { embeddedBundle } from "./bundle.js";
 import { Viewpoint } from "./camera.js";
-import { addHelp, addViews, listenToKeys, Section, showLayers } from "./controls.js";
+import { Compass } from "./compass.js";
+import { ContactCard } from "./contact.js";
+import { addHelp, addPanels, addViews, listenToClicks, listenToKeys, showLayers } from "./controls.js";
 import { Parts } from "./edit.js";
+import { Ended } from "./ended.js";
 import { ForceNotice } from "./force.js";
-import { distance, norm } from "./frame.js";
 import { Hand } from "./hand.js";
 import { Live } from "./live.js";
+import { Measure } from "./measure.js";
 import { Numbers } from "./numbers.js";
 import { Overlay } from "./overlay.js";
+import { Memory, Recorded, Remembered } from "./playback.js";
 import { Plots } from "./plots.js";
-import { Replay } from "./replay.js";
 import { addReview } from "./review.js";
+import { Section } from "./section.js";
 import { Stage } from "./stage.js";
+import { addTestDoor } from "./test_door.js";
 
 const $ = (id) => document.getElementById(id);
 const speeds = { live: [0.05, 0.1, 0.25, 0.5, 1, 2, null], replay: [0.1, 0.25, 0.5, 1, 2, 4] };
@@ -23,12 +30,29 @@ setDark(dark);
 
 const stage = new Stage(document.querySelector("#stage canvas"));
 const viewpoint = new Viewpoint(stage);
+// Clicks come before whoever drags.
+listenToClicks(stage.canvas, click);
 const overlay = new Overlay(stage);
-const section = new Section(stage);
+const behind = new Behind(stage);
+const compass = new Compass(viewpoint, document.querySelector("#compass svg"), document.querySelector("#compass .bar"));
+const section = new Section(stage, viewpoint, () => lastNormal);
+const measure = new Measure(stage, viewpoint, $("measured"), (on) => {
+  $("measure").setAttribute("aria-pressed", String(on));
+  allowHand();
+});
+const contact = new ContactCard(stage, $("contact"));
 const numbers = new Numbers($("numbers"));
 const force = new ForceNotice($("force"));
-const hand = new Hand(stage, viewpoint, { lead: (pose) => live.send({ do: "lead", pose, generation: about.generation }), changed: showHand });
-let parts, plots, live = null, replay = null, about = null, frame = null, frames = 0, status = {};
+const memory = new Memory();
+const hand = new Hand(stage, viewpoint, { lead: (pose) => { led = true; live.send({ do: "lead", pose, generation: about.generation }); }, changed: showHand });
+// player: what is played back instead of what is live.
+let parts, plots, ended = null, live = null, player = null, about = null, frame = null, frames = 0, status = {}, led = false, lastNormal = null;
+
+stage.onDraw = () => {
+  compass.show();
+  measure.follow();
+  if (frame) behind.show(frame);
+};
 
 function showMessage(text) {
   $("message").textContent = text;
@@ -38,26 +62,45 @@ function showMessage(text) {
 function showHand(what) {
   stage.canvas.classList.toggle("grabbing", what === "drag");
   $("hand").textContent = {
-    drag: "Shift turns, the wheel moves away or nearer",
+    drag: hand.turns ? "Turns the part; G: moves it" : "Shift turns, the wheel moves away or nearer",
     keys: "Holding by keys: arrows, Page Up / Down, Shift turns, Esc lets go",
+    take: "Drag the blue part. Shift turns it, the wheel moves it away or nearer.",
   }[what] ?? "";
 }
 
+function click(x, y) {
+  const hit = stage.pick(x, y);
+  if (hit) lastNormal = hit.normal;
+  if (measure.on) return measure.click(hit);
+  if (frame && overlay.group.visible && contact.click(x, y, frame)) return;
+  parts?.select(hit ? stage.parts.indexOf(hit.part) : null);
+}
+
 function showFrame(next) {
-  // Of parts that the page has not yet, or no longer.
-  if (!replay && next.generation !== about.generation) return;
   frame = next;
   ++frames;
   hand.showFrame(frame);
   stage.showPoses(frame.x, frame.y);
   overlay.show(frame);
+  behind.show(frame);
+  contact.show(frame);
   numbers.show(frame, about.reasons);
-  force.show(frame, about.reasons, hand);
-  $("clock").textContent = `${frame.t.toFixed(replay || about.virtual_time ? 3 : 1)} s`;
-  if (replay) {
+  if (!player) force.show(frame, about.reasons, hand);
+  $("clock").textContent = `${frame.t.toFixed(player || about.virtual_time ? 3 : 1)} s`;
+  if (player) {
     plots.showTime(frame.t);
-    if (Number($("scrub").value) !== replay.at) $("scrub").value = replay.at;
+    if (Number($("scrub").value) !== player.at) $("scrub").value = player.at;
   } else plots.push(frame);
+}
+
+function showLiveFrame(next) {
+  // Of parts that the page has not yet, or no longer.
+  if (next.generation !== about.generation) return;
+  if (frame && next.t < (memory.frames.at(-1)?.t ?? 0)) led = false;
+  memory.push(next);
+  if (player) return;
+  showFrame(next);
+  ended.show(next, about.script_end, led);
 }
 
 function showScene(bundle) {
@@ -69,29 +112,38 @@ function showScene(bundle) {
   stage.setScene(bundle);
   overlay.applyTheme();
   showHeld();
-  hand.enabled = about.led === true;
-  section.set(section.axis);
+  allowHand();
+  section.apply();
   parts.show();
-  showLayers(overlay);
+  showLayers(overlay, behind);
   const thinned = about.meshes.some((mesh) => mesh.shown < mesh.triangles);
   const total = (key) => about.parts.reduce((sum, part) => sum + about.meshes[part.mesh][key], 0).toLocaleString("en");
   $("notes").textContent = [`${total("triangles")} triangles${thinned ? `, drawn with ${total("shown")}` : ""}`, ...(about.notes ?? [])].join("\n");
 }
 
 function showHeld() {
+  if (!stage.held) return;
   overlay.setScene(about);
   hand.setScene(about);
-  $("scale").textContent = `Arrows: ${1e3 * overlay.metersPerNewton} mm for 1 N on the pen or of a contact,\n${overlay.metersPerNewtonMeter.toPrecision(1)} mm for 1 N·mm`;
+  $("scale").textContent = `Arrows: ${length(overlay.metersPerNewton)} for 1 N on the pen or of a contact,\n${length(1e-3 * overlay.metersPerNewtonMeter)} for 1 N·mm`;
+}
+
+// The hand is led only in what is live and as it is.
+function allowHand() {
+  hand.enabled = about?.led === true && !player && !measure.on && stage.explosion === 0;
+  $("turns").hidden = about?.led !== true;
+  $("turns").disabled = !hand.enabled;
 }
 
 function showStatus(next) {
   if (next.message !== undefined) showMessage(next.message);
   Object.assign(status, next);
-  if (next.paused !== undefined) $("play").textContent = next.paused ? "Play" : "Pause";
+  if (next.paused !== undefined && !player) showPaused(next.paused);
   if (next.suspended !== undefined) $("suspended").textContent = next.suspended.length ? `suspended: ${next.suspended.join(", ")}` : "";
-  if (next.speed !== undefined) $("speed").value = String(next.speed);
+  if (next.speed !== undefined && !player) $("speed").value = String(next.speed);
   if (next.generation !== undefined && about && next.generation !== about.generation) loadParts();
 }
+const showPaused = (paused) => ($("play").textContent = paused ? "Play" : "Pause");
 
 // The scene has changed.
 async function loadParts() {
@@ -100,125 +152,185 @@ async function loadParts() {
   const next = await live.parts().catch(() => ({})); // the stream says that the program has ended
   loadParts.busy = false;
   if (!next.parts) return;
+  if (player) playLive();
   Object.assign(about, next);
   if (stage.setParts(about.parts)) showHeld();
+  // The script's goal is that of the part that it began with.
+  plots.goal = about.parts[about.scripted]?.held ? about.goal : null;
   section.apply();
   parts.show();
   viewpoint.limits();
 }
 
 const control = {
-  play: () => (replay ? replay.play(!replay.playing) : live.send({ do: status.paused ? "play" : "pause" })),
-  step: () => (replay ? (replay.play(false), replay.show(replay.at + 1)) : live.send({ do: "step", ticks: 1 })),
-  back: () => replay && (replay.play(false), replay.show(replay.at - 1)),
-  speed: (factor) => (replay ? replay.setSpeed(factor) : live.send({ do: "speed", factor })),
-  restart: () => (replay ? replay.show(0) : about.restartable && live.send({ do: "restart" })),
+  play: () => (player ? player.play(!player.playing) : live.send({ do: status.paused ? "play" : "pause" })),
+  step: () => (player ? (player.play(false), player.show(player.at + 1)) : live.send({ do: "step", ticks: 1 })),
+  back: () => player && (player.play(false), player.show(player.at - 1)),
+  speed: (factor) => (player ? player.setSpeed(factor) : live.send({ do: "speed", factor })),
+  restart: () => {
+    if (!live) return player.show(0);
+    if (!about.restartable) return;
+    if (player) playLive();
+    parts.forget();
+    live.send({ do: "restart" });
+  },
 };
+
+function play(playback) {
+  player = playback;
+  allowHand();
+  showRun();
+  $("scrub").max = player.count - 1;
+  plots.seek = (t) => player.seek(t);
+  plots.setRecording(player);
+  showPaused(true);
+  player.show(0);
+}
+
+// What the page has seen of the run, from the beginning.
+function playAgain() {
+  if (memory.frames.length === 0) return;
+  play(new Remembered(memory, { onFrame: showFrame, onStatus: ({ paused }) => showPaused(paused) }));
+  player.play(true);
+}
+
+function playLive() {
+  player?.play(false);
+  player = null;
+  plots.seek = null;
+  plots.clear();
+  for (const seen of memory.frames) plots.append(seen);
+  allowHand();
+  showRun();
+  showPaused(status.paused ?? false);
+}
 
 function setTheme(on) {
   dark = on;
   setDark(dark);
   stage.applyTheme();
   overlay.applyTheme();
+  measure.draw();
+  section.apply();
+  parts.show();
   plots.build();
 }
 
 function showRun() {
-  const timed = replay !== null || about.virtual_time;
+  const timed = player !== null || about.virtual_time;
   for (const id of ["play", "step"]) $(id).hidden = !timed;
   $("speed").parentElement.hidden = !timed;
-  $("restart").hidden = replay !== null;
+  $("restart").hidden = live === null;
   $("restart").disabled = !about.restartable;
-  $("timeline").hidden = replay === null;
-  $("mode").textContent = replay ? "Recording" : about.virtual_time ? "Live, virtual time" : "Live";
-  $("mode").classList.toggle("live", !replay);
-  for (const factor of replay ? speeds.replay : speeds.live) {
+  $("restart").title = about.restartable ? "Begin the run anew (R)" : "A run that is recorded cannot begin anew";
+  $("timeline").hidden = player === null;
+  $("live").hidden = live === null;
+  $("mode").textContent = player ? (live ? "Replay" : "Recording") : about.virtual_time ? "Live, virtual time" : "Live";
+  $("mode").classList.toggle("live", !player);
+  $("speed").replaceChildren(...(player ? speeds.replay : speeds.live).map((factor) => {
     const text = factor === null ? "fastest" : `${factor} ×`;
-    $("speed").add(new Option(text, String(factor), false, factor === 1));
-  }
+    return new Option(text, String(factor), false, factor === 1);
+  }));
+}
+
+function explode(factor) {
+  $("explode").value = factor;
+  stage.explode(factor);
+  overlay.hide(factor > 0);
+  allowHand();
+  section.apply();
+}
+
+function setParallel(on) {
+  viewpoint.setParallel(on);
+  $("parallel").setAttribute("aria-pressed", String(viewpoint.parallel));
+}
+
+function setUp(axis) {
+  $("up").value = axis;
+  viewpoint.setUp(axis);
+}
+
+function setTechnical(on) {
+  document.body.classList.toggle("technical", on);
+  plots.showTechnical(on);
+}
+
+function turnsOnDrag() {
+  hand.turns = !hand.turns;
+  $("turns").setAttribute("aria-pressed", String(hand.turns));
 }
 
 function connect() {
   const help = addHelp();
   addViews(viewpoint);
-  const buttons = { play: control.play, step: control.step, restart: control.restart, fit: () => viewpoint.look(), near: () => viewpoint.lookAtHeld(), theme: () => setTheme(!dark), ask: help };
+  addPanels();
+  const buttons = {
+    play: control.play, step: control.step, restart: control.restart, fit: () => viewpoint.look(), near: () => viewpoint.lookAtHeld(), theme: () => setTheme(!dark), ask: help,
+    parallel: () => setParallel(!viewpoint.parallel), measure: () => measure.toggle(), live: playLive, turns: turnsOnDrag,
+  };
   for (const [id, action] of Object.entries(buttons)) $(id).addEventListener("click", action);
   $("speed").addEventListener("change", () => control.speed(JSON.parse($("speed").value)));
-  $("scrub").addEventListener("input", () => (replay.play(false), replay.show(Number($("scrub").value))));
-  const timed = () => replay || about.virtual_time;
+  $("scrub").addEventListener("input", () => (player.play(false), player.show(Number($("scrub").value))));
+  $("explode").addEventListener("input", () => explode(Number($("explode").value)));
+  $("up").addEventListener("change", () => setUp($("up").value));
+  $("technical").addEventListener("change", () => setTechnical($("technical").checked));
+  const timed = () => player || about.virtual_time;
   const actions = {
     " ": () => timed() && control.play(), ".": () => timed() && control.step(), ",": control.back,
     r: control.restart, f: buttons.fit, c: buttons.near, t: buttons.theme, s: () => section.next(), "?": help,
-    h: () => hand.toggleKeys(), escape: () => hand.letGo(),
+    "[": () => section.shift(-2), "]": () => section.shift(2), o: buttons.parallel, u: () => setUp({ z: "y", y: "x", x: "z" }[viewpoint.up]),
+    m: buttons.measure, e: () => explode(stage.explosion > 0 ? 0 : 0.8), g: turnsOnDrag,
+    v: () => parts.toggleVisible(), i: () => parts.isolate(), x: () => parts.fade(), a: () => parts.showAll(), "ctrl+z": () => parts.edit && parts.undo(),
+    "/": () => $("search").focus(),
+    h: () => hand.toggleKeys(), escape: () => (measure.on ? measure.toggle(false) : hand.letGo()),
   };
   for (let i = 0; i < 7; ++i) actions[String(i + 1)] = () => viewpoint.look(i);
   listenToKeys({ actions, viewpoint, hand });
   stage.canvas.addEventListener("pointermove", (event) => {
     if (!hand.enabled || event.buttons) return;
-    stage.canvas.classList.toggle("grab", stage.pick(event.clientX, event.clientY)?.part.held ?? false);
+    stage.canvas.classList.toggle("grab", stage.pick(event.clientX, event.clientY, [stage.held]) !== null);
   });
 }
 
-// Recordings do not have the servo's lateness, and virtual time has no times.
-function withoutValues({ mode, virtual_time: virtual }) {
-  if (virtual) return ["Tick time", "Servo lateness"];
-  return mode === "replay" ? ["Servo lateness"] : [];
+function takePart() {
+  stage.canvas.focus();
+  viewpoint.lookAtHeld();
+  showHand("take");
+}
+
+// Recordings do not have the servo's lateness, virtual time has no times, and not every script goes somewhere.
+function withoutValues({ mode, virtual_time: virtual, goal }) {
+  const without = goal ? [] : ["To the goal"];
+  if (virtual) return [...without, "Tick time", "Servo lateness"];
+  return mode === "replay" ? [...without, "Servo lateness"] : without;
 }
 
 async function begin() {
   let bundle = embeddedBundle();
   const token = new URLSearchParams(location.search).get("token");
   if (!bundle) {
-    live = new Live(token, { onFrame: showFrame, onStatus: showStatus, onEnd: showMessage });
+    live = new Live(token, { onFrame: showLiveFrame, onStatus: showStatus, onEnd: showMessage });
     bundle = await live.scene();
   }
-  if (bundle.about.mode === "replay") {
+  const recording = bundle.about.mode === "replay";
+  if (recording) {
     if (live) addReview($("review"), live, bundle.about.title, showMessage);
     live = null;
-    replay = new Replay(bundle, { onFrame: showFrame, onStatus: showStatus });
   }
   parts = new Parts(stage, live && ((command) => live.edit(command)), showMessage);
-  plots = new Plots($("plots"), replay ? (t) => replay.seek(t) : null, withoutValues(bundle.about));
+  plots = new Plots($("plots"), null, withoutValues(bundle.about), bundle.about.goal ?? null);
+  bundle.about.scripted = bundle.about.parts.findIndex((part) => part.held);
   showScene(bundle);
   showRun();
   connect();
   viewpoint.look(6);
-  if (replay) {
-    $("scrub").max = replay.count - 1;
-    plots.setRecording(replay);
-    showStatus({ paused: true });
-    replay.show(0);
-  } else live.watch();
+  ended = new Ended($("ended"), { take: about.led ? takePart : null, again: playAgain, anew: about.restartable ? control.restart : null });
+  if (recording) play(new Recorded(bundle, { onFrame: showFrame, onStatus: ({ paused }) => showPaused(paused) }));
+  else live.watch();
 }
 
-// Where a point of the world is on the screen.
-function project(point) {
-  stage.camera.updateMatrixWorld();
-  const rect = stage.canvas.getBoundingClientRect();
-  const p = stage.camera.position.clone().set(...point).project(stage.camera);
-  return [rect.left + ((p.x + 1) / 2) * rect.width, rect.top + ((1 - p.y) / 2) * rect.height];
-}
-
-// What a test may ask the page.
-window.__tegotae = {
-  get state() {
-    return {
-      mode: about?.mode, parts: stage.parts?.map(({ name, held, visible, removed }) => ({ name, held, visible, removed })), places: stage.parts?.map(({ group }) => group.position.toArray()), selected: parts?.selected ?? null, frame, frames,
-      status, shown: overlay.shown, plots: plots?.state(), drawn: stage.drawn,
-      arrows: { force: overlay.force.group.visible ? overlay.force.length : 0, torque: overlay.torque.group.visible ? overlay.torque.length : 0 },
-      force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0, camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), background: cssColor("--stage"), count: replay?.count, message: $("message").textContent,
-    };
-  },
-  project,
-  // Of all parts together, on the screen.
-  corners() {
-    const { min, max } = stage.measure();
-    return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => project([i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z]));
-  },
-  // Where the mouse holds the part.
-  grip: () => hand.grip && [hand.grip.x, hand.grip.y],
-  center: () => overlay.center.clone().applyMatrix4(stage.held.group.matrixWorld).toArray(),
-};
+addTestDoor({ stage, viewpoint, overlay, hand, section, measure, get now() { return { about, parts, plots, player, frame, frames, status }; } });
 
 begin().catch((error) => {
   showMessage(error.message);

@@ -1,28 +1,32 @@
 // The newest values as text, slower than frames come, so that one can read them.
 import { element } from "../common/dom.js";
+import { fixed } from "../common/number.js";
 import { forceState } from "./force.js";
 import { distance, lagReasons, norm } from "./frame.js";
 
 const periodMs = 120;
-const signed = (v, digits) => (Number(v.toFixed(digits)) < 0 ? "−" : "\u2007") + Math.abs(v).toFixed(digits);
-const triple = (v, scale, digits) => v.map((c) => signed(c * scale, digits)).join(" ");
+// A figure space in the place of the sign keeps columns in line.
+const column = (v, places) => (fixed(v, places).startsWith("−") ? "" : "\u2007") + fixed(v, places);
+const triple = (v, scale, places) => v.map((c) => column(c * scale, places)).join(" ");
 
+// [id, name, unit, value, detail, only for who looks at the program itself]
 const rows = [
-  ["force", "Force", "N", (f) => norm(f.force).toFixed(2), (f) => triple(f.force, 1, 2)],
-  ["torque", "Torque", "N·mm", (f) => norm(f.torque.map((v) => 1e3 * v)).toFixed(1), (f) => triple(f.torque, 1e3, 1)],
+  ["force", "Force", "N", (f) => fixed(norm(f.force), 2), (f) => triple(f.force, 1, 2)],
+  ["torque", "Torque", "N·mm", (f) => fixed(1e3 * norm(f.torque), 1), (f) => triple(f.torque, 1e3, 1)],
   ["position", "Part at", "mm", () => "", (f) => triple(f.x.slice(0, 3), 1e3, 2)],
-  ["lag", "Pen to part", "mm", (f) => (1e3 * distance(f.x, f.y)).toFixed(2), (f) => lagReasons[f.lagReason] ?? ""],
-  ["gap", "Smallest gap", "µm", (f) => (Number.isFinite(f.gap) ? (1e6 * f.gap).toFixed(1) : "–"), () => ""],
-  ["contacts", "Contacts", "", (f) => String(f.contacts), (f) => `of ${f.limits} near pairs`],
-  ["tick", "Tick", "µs", (f) => (f.tickUs > 0 ? f.tickUs.toFixed(0) : "–"), (f) => (f.cut ? "cut short" : "")],
-  ["late", "Servo late", "µs", (f) => (Number.isFinite(f.lateUs) ? f.lateUs.toFixed(0) : "–"), () => ""],
+  ["lag", "Pen to part", "mm", (f) => fixed(1e3 * distance(f.x, f.y), 2), (f) => lagReasons[f.lagReason] ?? ""],
+  ["gap", "Smallest gap", "µm", (f) => fixed(1e6 * f.gap, 1), () => ""],
+  ["contacts", "Contacts", "", (f) => String(f.contacts), () => ""],
+  ["near", "Near pairs", "", (f) => String(f.limits), () => "", true],
+  ["tick", "Tick", "µs", (f) => (f.tickUs > 0 ? fixed(f.tickUs, 0) : "–"), (f) => (f.cut ? "cut short" : ""), true],
+  ["late", "Servo late", "µs", (f) => fixed(f.lateUs, 0), () => "", true],
 ];
 
 export class Numbers {
   constructor(parent) {
     const table = element("table", "", "numbers");
-    this.rows = rows.map(([id, name, unit, value, detail]) => {
-      const row = element("tr");
+    this.rows = rows.map(([id, name, unit, value, detail, technical = false]) => {
+      const row = element("tr", "", technical ? "technical" : "");
       const head = element("th", name);
       head.scope = "row";
       const cells = ["value", "unit", "detail"].map((kind) => element("td", "", kind));

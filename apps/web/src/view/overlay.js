@@ -3,6 +3,7 @@
 import * as THREE from "three";
 import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
+import { round125 } from "./compass.js";
 import { norm } from "./frame.js";
 import { FrictionCones } from "./friction.js";
 
@@ -12,12 +13,6 @@ const mostForces = 6;
 const leastArrow = 0.05;
 
 const over = { depthTest: false, depthWrite: false, transparent: true };
-
-// A number like 1, 2 or 5 times a power of ten, not above `value`.
-function round125(value) {
-  const power = 10 ** Math.floor(Math.log10(value));
-  return ([5, 2, 1].find((k) => k * power <= value * 1.0001) ?? 1) * power;
-}
 
 class Arrow {
   constructor(double) {
@@ -91,6 +86,7 @@ export class Overlay {
   }
 
   setScene(about) {
+    if (!this.stage.held) return;
     const radius = this.stage.held.radius;
     this.center = new THREE.Vector3(...about.center);
     this.unit = radius;
@@ -114,6 +110,11 @@ export class Overlay {
     this.enabled[layer] = on;
     for (const object of this.layers[layer]) object.visible = on;
     this.stage.draw();
+  }
+
+  // Nothing of it is where the parts are while they are apart.
+  hide(hidden) {
+    this.group.visible = !hidden;
   }
 
   show(frame) {

@@ -1,49 +1,109 @@
 // The parts in 3-D. Draws only when something changed.
 import * as THREE from "three";
 import { cssColor } from "../common/theme.js";
+import { coarseMesh } from "./lod.js";
+import { dress, partMaterials } from "./materials.js";
+import { pick } from "./picking.js";
+import { Quality } from "./quality.js";
 import { shadedSurface } from "./surface.js";
 
 const mostPixelRatio = 1.5;
 const fixedColors = 5;
+const heavyTriangles = 30_000; // more of them are drawn coarsely while things move
+const coarseTriangles = 9_000; // then, all together
+const restMs = 160; // after the last motion
+// Time (ms) between pictures from which on edges are no longer smoothed while things move, and below which they are
+// again; what is longer was no motion.
+const slowMs = 60, fastMs = 25, longestMs = 1500;
 
 export function setPose(object, pose) {
   object.position.set(pose[0], pose[1], pose[2]);
   object.quaternion.set(pose[4], pose[5], pose[6], pose[3]);
 }
 
+const geometryOf = (attributes) => {
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, array] of Object.entries(attributes)) geometry.setAttribute(name, new THREE.BufferAttribute(array, 3));
+  geometry.computeBoundingSphere();
+  return geometry;
+};
+
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, mostPixelRatio));
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: false });
+    this.quality = new Quality(this.renderer);
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.001, 10);
     this.camera.up.set(0, 0, 1);
-    this.light = new THREE.DirectionalLight(0xffffff, 2.1);
-    this.light.position.set(-0.4, 0.7, 1);
-    this.camera.add(this.light);
-    this.sky = new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.5);
-    this.sky.position.set(0, 0, 1);
-    this.scene.add(this.camera, this.sky);
+    this.addLights();
     this.world = new THREE.Group();
     this.scene.add(this.world);
-    this.section = new THREE.Plane(new THREE.Vector3(-1, 0, 0), 0);
-    this.drawn = 0; // frames drawn, for tests
+    this.section = null; // a plane: what is behind it is not drawn
+    this.seesThrough = new Set(); // numbers of parts that something must be seen behind
+    this.explosion = 0;
+    this.drawn = 0; // pictures drawn, for tests
+    this.drawnCoarse = 0; // of them
     this.scheduled = false;
+    Object.assign(this, { movedAt: -Infinity, lastDrawn: -Infinity, interval: 30, slow: false });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+  }
+
+  // Soft light from all around, more from above, and two lamps that go with the eye.
+  addLights() {
+    this.sky = new THREE.HemisphereLight(0xffffff, 0x9a9ea6, 1.35);
+    this.sky.position.copy(this.camera.up);
+    for (const [x, y, z, strength] of [[-0.5, 0.8, 1, 1.7], [0.9, -0.3, 0.6, 0.55]]) {
+      const lamp = new THREE.DirectionalLight(0xffffff, strength);
+      lamp.position.set(x, y, z);
+      this.camera.add(lamp);
+    }
+    this.scene.add(this.camera, this.sky);
   }
 
   // The parts of a bundle.
   setScene(bundle) {
+    this.about = bundle.about;
     this.geometry = bundle.about.meshes.map((mesh) => this.geometries(bundle, mesh));
-    this.parts = bundle.about.parts.map((about) => {
-      const part = { name: about.name, mesh: about.mesh, group: new THREE.Group(), visible: true };
-      this.addSurface(part, this.geometry[about.mesh]);
-      this.world.add(part.group);
-      return part;
-    });
+    this.parts = bundle.about.parts.map((about, i) => this.addPart(about, i));
+    const triangles = this.parts.reduce((sum, part) => sum + this.geometry[part.mesh].indices.length / 3, 0);
+    this.heavy = triangles > heavyTriangles;
+    if (this.heavy) this.addCoarse(coarseTriangles / triangles);
     this.setParts(bundle.about.parts);
     this.radius = this.box.getBoundingSphere(new THREE.Sphere()).radius;
+  }
+
+  geometries(bundle, mesh) {
+    const positions = bundle.floats(mesh.positions), indices = bundle.integers(mesh.indices);
+    const { edges, closed, ...surface } = shadedSurface(positions, indices);
+    return {
+      positions, indices, closed,
+      surface: geometryOf({ position: surface.positions, normal: surface.normals }),
+      edges: geometryOf({ position: edges }),
+    };
+  }
+
+  addPart({ name, mesh, path = [], color = null }, number) {
+    const { surface, edges } = this.geometry[mesh];
+    const materials = partMaterials(number);
+    const part = {
+      name, mesh, path, fileColor: color && new THREE.Color().setRGB(...color.slice(0, 3), THREE.SRGBColorSpace), group: new THREE.Group(),
+      pose: null, visible: true, faded: color !== null && color[3] < 0.99, materials,
+      mesh3d: new THREE.Mesh(surface, materials.surface), inside: new THREE.Mesh(surface, materials.cut), lines3d: new THREE.LineSegments(edges, materials.lines),
+    };
+    part.inside.renderOrder = 2;
+    part.group.add(part.mesh3d, part.inside, part.lines3d);
+    this.world.add(part.group);
+    return part;
+  }
+
+  addCoarse(share) {
+    for (const shape of this.geometry) {
+      const { positions, indices } = shape;
+      const coarse = coarseMesh(positions, indices, Math.max(40, Math.round((share * indices.length) / 3)));
+      const { positions: position, normals: normal } = shadedSurface(coarse.positions, coarse.indices);
+      shape.coarse = geometryOf({ position, normal });
+    }
   }
 
   // Where the parts are, which of them is held and which were removed: [{held, pose, removed?}], as in the bundle.
@@ -52,28 +112,39 @@ export class Stage {
     let color = 0;
     parts.forEach(({ held, pose, removed = false }, i) => {
       const part = this.parts[i];
-      Object.assign(part, { held, removed, colorName: held ? "--part-held" : `--part-${color++ % fixedColors}` });
-      setPose(part.group, pose);
+      Object.assign(part, { held, removed, pose, colorName: held ? "--part-held" : `--part-${color++ % fixedColors}` });
       part.group.visible = part.visible && !removed;
     });
-    const held = this.parts.find((part) => part.held);
+    const held = this.parts.find((part) => part.held) ?? null;
     const another = held !== this.held;
-    if (another) {
-      this.held = held;
+    this.held = held;
+    if (another && this.ghost) this.world.remove(this.ghost);
+    if (another) this.ghost = null;
+    if (another && held) {
       held.radius = this.geometry[held.mesh].surface.boundingSphere.radius;
-      if (this.ghost) this.world.remove(this.ghost);
       this.addGhost(this.geometry[held.mesh]);
     }
-    setPose(this.ghost, parts[this.parts.indexOf(held)].pose);
-    this.ghost.visible = held.visible;
-    this.measure();
+    if (held) {
+      setPose(this.ghost, held.pose);
+      this.ghost.visible = held.visible;
+    }
+    this.explode(this.explosion);
     this.applyTheme();
     return another;
   }
 
+  addGhost({ surface, edges }) {
+    this.ghost = new THREE.Group();
+    this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.13, depthWrite: false });
+    this.ghostLines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7 });
+    this.ghost.add(new THREE.Mesh(surface, this.ghostMaterial), new THREE.LineSegments(edges, this.ghostLines));
+    this.ghost.renderOrder = 1;
+    this.world.add(this.ghost);
+  }
+
   // Part number `i`, or none for null, in another light.
   highlight(i) {
-    this.parts.forEach((part, k) => part.material.emissive.set(k === i ? cssColor("--selected") : "#000000"));
+    this.parts.forEach((part, k) => part.materials.surface.emissive.set(k === i ? cssColor("--selected") : "#000000"));
     this.draw();
   }
 
@@ -87,119 +158,137 @@ export class Stage {
     return this.box;
   }
 
-  geometries(bundle, mesh) {
-    const shaded = shadedSurface(bundle.floats(mesh.positions), bundle.integers(mesh.indices));
-    const surface = new THREE.BufferGeometry();
-    surface.setAttribute("position", new THREE.BufferAttribute(shaded.positions, 3));
-    surface.setAttribute("normal", new THREE.BufferAttribute(shaded.normals, 3));
-    surface.computeBoundingSphere();
-    const edges = new THREE.BufferGeometry();
-    edges.setAttribute("position", new THREE.BufferAttribute(shaded.edges, 3));
-    return { surface, edges };
+  // Parts go away from the middle of all, by so many times their distance from it.
+  explode(factor) {
+    this.explosion = factor;
+    for (const part of this.parts) setPose(part.group, part.pose);
+    this.measure();
+    if (factor > 0) {
+      const middle = this.box.getCenter(new THREE.Vector3());
+      for (const part of this.parts) {
+        const own = this.geometry[part.mesh].surface.boundingSphere.center.clone().applyMatrix4(part.group.matrixWorld);
+        part.group.position.addScaledVector(own.sub(middle), factor);
+      }
+      this.measure();
+    }
+    if (this.ghost) this.ghost.visible = factor === 0 && this.held.visible;
+    this.draw();
   }
 
-  addSurface(part, { surface, edges }) {
-    // Lines lie on the surface: it steps back a little, so that they win.
-    const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-    part.material = new THREE.MeshStandardMaterial({ roughness: 0.75, metalness: 0, ...behind });
-    part.inside = new THREE.MeshBasicMaterial({ side: THREE.BackSide, ...behind });
-    part.lines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55, depthWrite: false });
-    part.mesh3d = new THREE.Mesh(surface, part.material);
-    // Inner sides in one flat color look like the cut that a section plane makes, if they come after the lines on them.
-    const inside = new THREE.Mesh(surface, part.inside);
-    inside.renderOrder = 2;
-    part.group.add(part.mesh3d, inside, new THREE.LineSegments(edges, part.lines));
-  }
-
-  addGhost({ surface, edges }) {
-    this.ghost = new THREE.Group();
-    this.ghostMaterial = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.13, depthWrite: false });
-    this.ghostLines = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7 });
-    this.ghost.add(new THREE.Mesh(surface, this.ghostMaterial), new THREE.LineSegments(edges, this.ghostLines));
-    this.ghost.renderOrder = 1;
-    this.world.add(this.ghost);
+  colorOf(part) {
+    return part.fileColor ?? new THREE.Color(cssColor(part.colorName));
   }
 
   applyTheme() {
     this.scene.background = new THREE.Color(cssColor("--stage"));
-    for (const part of this.parts ?? []) {
-      const color = new THREE.Color(cssColor(part.colorName));
-      part.material.color.copy(color);
-      part.inside.color.copy(color).lerp(new THREE.Color(cssColor("--cut")), 0.3);
-      part.lines.color.set(cssColor("--edge"));
-    }
+    for (const part of this.parts ?? []) this.dress(part);
     this.ghostMaterial?.color.set(cssColor("--ghost"));
     this.ghostLines?.color.set(cssColor("--ghost"));
     this.draw();
   }
 
+  dress(part) {
+    const faded = part.faded || this.seesThrough.has(this.parts.indexOf(part));
+    dress(part.materials, { color: this.colorOf(part), held: part.held, faded, section: this.section });
+    part.inside.visible = (this.section !== null && !faded) || !this.geometry[part.mesh].closed;
+    part.mesh3d.renderOrder = faded ? 3 : 0;
+  }
+
+  fade(part, faded) {
+    part.faded = faded;
+    this.dress(part);
+    this.draw();
+  }
+
+  // Numbers of the parts that something must be seen behind.
+  seeThrough(numbers) {
+    const changed = [...numbers, ...this.seesThrough].filter((i) => numbers.has(i) !== this.seesThrough.has(i));
+    this.seesThrough = new Set(numbers);
+    for (const i of changed) if (this.parts[i]) this.dress(this.parts[i]);
+    if (changed.length > 0) this.draw();
+  }
+
   showPoses(x, y) {
+    const near = (a, b) => a.every((v, i) => Math.abs(v - b[i]) < 1e-6 * (i < 3 ? this.radius : 1));
+    if (this.explosion > 0) return;
+    const still = near(x, this.held.pose) && this.shownY && near(y, this.shownY);
+    this.held.pose = x;
+    this.shownY = y;
     setPose(this.held.group, x);
     setPose(this.ghost, y);
-    this.draw();
+    this.draw(!still);
   }
 
   setVisible(part, visible) {
     part.visible = visible;
     part.group.visible = visible && !part.removed;
-    if (part.held) this.ghost.visible = visible;
+    if (part.held) this.ghost.visible = visible && this.explosion === 0;
     this.draw();
   }
 
-  // axis: 0, 1, 2 or null for none; at: 0..1 of the scene's box.
-  setSection(axis, at, flipped) {
-    const on = axis !== null;
-    if (on) {
-      const sign = flipped ? 1 : -1;
-      const place = this.box.min.getComponent(axis) + at * (this.box.max.getComponent(axis) - this.box.min.getComponent(axis));
-      this.section.normal.set(0, 0, 0).setComponent(axis, sign);
-      this.section.constant = -sign * place;
-    }
-    this.renderer.localClippingEnabled = on;
-    for (const part of this.parts) {
-      part.inside.transparent = on; // only such are drawn after the lines
-      for (const material of [part.material, part.inside, part.lines]) {
-        material.clippingPlanes = on ? [this.section] : null;
-        material.needsUpdate = true;
-      }
-    }
+  // A plane that cuts what is behind it off, or null.
+  setSection(plane) {
+    this.section = plane;
+    this.renderer.localClippingEnabled = plane !== null;
+    for (const part of this.parts) this.dress(part);
     this.draw();
   }
 
-  // The part under the pointer: {part, point} or null.
-  pick(clientX, clientY) {
-    const rect = this.canvas.getBoundingClientRect();
-    // They may have moved since the last picture.
-    this.camera.updateMatrixWorld();
-    this.world.updateMatrixWorld();
-    const ray = new THREE.Raycaster();
-    ray.setFromCamera(
-      new THREE.Vector2((2 * (clientX - rect.left)) / rect.width - 1, 1 - (2 * (clientY - rect.top)) / rect.height), this.camera);
-    const shown = this.parts.filter((part) => part.group.visible);
-    const cut = this.renderer.localClippingEnabled ? this.section : null;
-    for (const hit of ray.intersectObjects(shown.map((part) => part.mesh3d), false)) {
-      if (cut && cut.distanceToPoint(hit.point) < 0) continue;
-      return { part: shown.find((part) => part.mesh3d === hit.object), point: hit.point };
-    }
-    return null;
+  // The part under the pointer: {part, point, normal, face, cut} or null.
+  pick(clientX, clientY, parts = this.parts) {
+    return pick(this, clientX, clientY, parts);
   }
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
+    const ratio = Math.min(devicePixelRatio, mostPixelRatio);
+    this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
+    this.quality.resize(width, height, ratio);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.onResize?.();
     this.draw();
   }
 
-  draw() {
+  // moving: what is drawn now will not be for long.
+  draw(moving = false) {
+    if (moving) this.movedAt = performance.now();
     if (this.scheduled) return;
     this.scheduled = true;
     requestAnimationFrame(() => {
       this.scheduled = false;
+      const moving = performance.now() - this.movedAt < restMs;
+      this.pace(moving);
+      const coarse = moving && (this.heavy === true || this.slow);
+      if (this.heavy) this.useCoarse(coarse);
+      this.onDraw?.();
+      this.quality.draw(this.scene, this.camera, coarse);
       ++this.drawn;
-      this.renderer.render(this.scene, this.camera);
+      if (!coarse) return;
+      ++this.drawnCoarse;
+      clearTimeout(this.rest);
+      this.rest = setTimeout(() => this.draw(), restMs + 20);
     });
+  }
+
+  // Whether this machine is too slow for smooth edges while things move: by the time from one picture to the next.
+  pace(moving) {
+    const now = performance.now();
+    if (moving && now - this.lastDrawn < longestMs) this.interval += (now - this.lastDrawn - this.interval) / 8;
+    this.lastDrawn = now;
+    if (this.interval > slowMs) this.slow = true;
+    if (this.interval < fastMs) this.slow = false;
+  }
+
+  useCoarse(on) {
+    if (on === this.coarse) return;
+    this.coarse = on;
+    for (const part of this.parts) {
+      const { surface, coarse } = this.geometry[part.mesh];
+      part.mesh3d.geometry = part.inside.geometry = on ? coarse : surface;
+      part.lines3d.visible = !on;
+    }
   }
 }

@@ -32,7 +32,7 @@ function cornersAt(indices, vertexCount) {
   return { begin, corners };
 }
 
-// {positions, normals, edges}: nine numbers a triangle, nine a triangle, six a line.
+// {positions, normals, edges, closed}: nine numbers a triangle, nine a triangle, six a line; whether no edge is open.
 export function shadedSurface(positions, indices) {
   const flat = faceNormals(positions, indices);
   const { begin, corners } = cornersAt(indices, positions.length / 3);
@@ -53,8 +53,7 @@ export function shadedSurface(positions, indices) {
       out.normals[3 * i + j] = sum[j] / length;
     }
   }
-  out.edges = featureEdges(positions, indices, flat);
-  return out;
+  return { ...out, ...featureEdges(positions, indices, flat) };
 }
 
 function featureEdges(positions, indices, flat) {
@@ -74,6 +73,11 @@ function featureEdges(positions, indices, flat) {
       }
     }
   }
-  for (const [key, face] of open) if (face >= 0) add(Math.floor(key / count), key % count);
-  return new Float32Array(lines);
+  let closed = true;
+  for (const [key, face] of open) {
+    if (face < 0) continue;
+    closed = false;
+    add(Math.floor(key / count), key % count);
+  }
+  return { edges: new Float32Array(lines), closed };
 }
