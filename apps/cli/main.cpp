@@ -11,6 +11,7 @@
 #include "experiments/experiments.hpp"
 #include "plan/plan_command.hpp"
 #include "review/review_command.hpp"
+#include "review/script_report.hpp"
 #include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -124,6 +125,7 @@ int main(int argc, char** argv) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };
     check_options.load = load;
+    options.review = view_options.run.review = review::script_report;
     if (check->parsed()) return check_files(check_options);
     if (view->parsed()) return view_file(view_options, load);
     if (measure->parsed()) return bench::run_bench(bench_options);

@@ -1,39 +1,18 @@
 #include "cli/view_command.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <iostream>
 
 #include "import/file_check.hpp"
 #include "review/review_command.hpp"
 #include "shared/status_line.hpp"
+#include "shared/temporary_folder.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
 #include "view/replay.hpp"
 
 namespace tegotae::apps {
 namespace {
-
-/// A folder for what is made of an assembly while it is looked at.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "tegotae-view-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw Error(pattern + ": no temporary folder can be made there");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;  // what is left in the temporary folder is the system's to clear
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A page is looked at before anybody knows what to hold: the smallest part is most often what goes into another.
 std::string smallest_part(const Scene& scene) {

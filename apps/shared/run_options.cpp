@@ -84,11 +84,12 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   {
     const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
     ProgressLine line(progress, depth_offset, show);
-    summary = options.view ? view::run_viewed(file, settings, page_address(options.page), interrupted,
-                                              [&](const view::Server& server) {
-                                                return announce_page(server, options.page, options.json);
-                                              })
-                           : run_session(file, settings);
+    summary = options.view
+                  ? view::run_viewed(
+                        file, settings, page_address(options.page), interrupted,
+                        [&](const view::Server& server) { return announce_page(server, options.page, options.json); },
+                        options.review)
+                  : run_session(file, settings);
   }
   summary.depth_m += depth_offset;
   if (options.json)

@@ -6,6 +6,7 @@
 #include "shared/guarded_main.hpp"
 #include "tegotae/session/session.hpp"
 #include "view/address.hpp"
+#include "view/script_review.hpp"
 
 namespace tegotae::view {
 class Server;
@@ -30,6 +31,7 @@ struct RunOptions {
   bool check_all = false;
   bool view = false;
   PageOptions page;
+  view::ScriptReview review;  ///< for the page's reports on what the mouse did; empty: there are none
 };
 
 /// The options --view-address and --no-browser.

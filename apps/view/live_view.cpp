@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/whole_number.hpp"
+#include "loop/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/mass.hpp"
@@ -61,17 +62,23 @@ struct LiveView::Segment {
   int suspended_count = 0;                         // of the contact loop's thread
 };
 
-LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop)
+LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop,
+                   ScriptReview review)
     : file_(file),
       virtual_time_(virtual_time),
       restartable_(restartable),
       led_(led),
       stop_(stop),
+      review_(std::move(review)),
       paused_(virtual_time),
       parts_(file.scene) {
-  bundle_.about = {
-      {"mode", "live"}, {"title", file.path},          {"virtual_time", virtual_time_}, {"restartable", restartable_},
-      {"led", led_},    {"reasons", force_off_names()}};
+  bundle_.about = {{"mode", "live"},
+                   {"title", file.path},
+                   {"virtual_time", virtual_time_},
+                   {"restartable", restartable_},
+                   {"led", led_},
+                   {"reviewable", review_ != nullptr},
+                   {"reasons", force_off_names()}};
   add_scene(bundle_, file.scene, Vec3::Zero());
   add_script(bundle_, file.script);
   begin();
@@ -199,6 +206,20 @@ void LiveView::command(const json& command) {
   } else {
     throw Error("unknown command " + json(what).dump());
   }
+}
+
+std::string LiveView::review(const std::string& script) {
+  if (!review_ || script.empty()) return {};
+  const std::lock_guard<std::mutex> one(reviewing_);
+  SceneFile file = file_;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    file.scene.parts = parts_.in_scene();
+    // The scene's script is of the part that the scene holds.
+    const Part& held = parts_.all()[parts_.held()];
+    if (held.name != held_part(file_.scene).name) file.script = StylusScript({{0, held.pose}});
+  }
+  return review_(std::move(file), script);
 }
 
 void LiveView::lead(const json& command) {

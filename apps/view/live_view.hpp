@@ -12,6 +12,7 @@
 #include "view/frame_maker.hpp"
 #include "view/frame_ring.hpp"
 #include "view/page_parts.hpp"
+#include "view/script_review.hpp"
 #include "view/source.hpp"
 
 namespace tegotae::view {
@@ -22,7 +23,9 @@ class LiveView final : public RunObserver, public ViewSource {
  public:
   /// `stop` ends the session (RunSettings::stop); commands that need another session set it. Keeps references.
   /// `restartable`: whether the page may ask for that; `led`: whether the session's hand follows guide().
-  LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop);
+  /// `review` makes reports for review(), in a thread of the server; empty: there are none.
+  LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop,
+           ScriptReview review = {});
   ~LiveView() override;
 
   /// Another session of the scene begins.
@@ -44,6 +47,7 @@ class LiveView final : public RunObserver, public ViewSource {
   const FrameRing* frames() const override { return &ring_; }
   std::string status() const override;
   void command(const nlohmann::json& command) override;
+  std::string review(const std::string& script) override;
 
  private:
   /// What belongs to one session.
@@ -73,6 +77,7 @@ class LiveView final : public RunObserver, public ViewSource {
   const bool restartable_;
   const bool led_;
   std::atomic<bool>& stop_;
+  const ScriptReview review_;
   FrameRing ring_;
   Frame frame_;  // of the contact loop's thread
   Mailbox<PenSpace> pen_;
@@ -85,6 +90,7 @@ class LiveView final : public RunObserver, public ViewSource {
   std::int64_t paced_ns_ = 0;
 
   std::mutex editing_;        // one edit at a time
+  std::mutex reviewing_;      // one report at a time
   mutable std::mutex mutex_;  // of the server's threads and of begin(); no loop takes it
   std::shared_ptr<Session> session_;
   std::shared_ptr<Segment> segment_;

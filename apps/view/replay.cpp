@@ -56,7 +56,7 @@ class ReplaySource final : public ViewSource {
   const FrameRing* frames() const override { return nullptr; }
   std::string status() const override { return "{}"; }
   void command(const nlohmann::json&) override { throw Error("a recording takes no commands"); }
-  std::string review() override {
+  std::string review(const std::string&) override {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (review_.empty()) review_ = make_review_();
     return review_;

@@ -32,6 +32,8 @@ constexpr const char* kQueue = "200";
 constexpr const char* kTimeout = "10000";
 constexpr std::size_t kMaxHeader = 8192;
 constexpr std::size_t kMaxCommand = 2048;
+// A quarter of an hour of a hand, 30 rows a second.
+constexpr std::size_t kMaxScript = 4u << 20;
 // A drag sends one a frame.
 constexpr double kCommandsPerSecond = 200;
 constexpr auto kFramePeriod = std::chrono::milliseconds(33);
@@ -118,7 +120,10 @@ struct Server::Impl {
     } else if (method == "GET" && uri == "/stream" && source.frames()) {
       serve_stream(connection);
     } else if (method == "GET" && uri == "/review") {
-      serve_review(connection);
+      serve_review(connection, {});
+    } else if (method == "POST" && uri == "/review") {
+      std::string script;
+      if (read_body(connection, request.content_length, kMaxScript, script)) serve_review(connection, script);
     } else if (method == "POST" && uri == "/command") {
       serve_command(connection, request.content_length);
     } else {
@@ -136,11 +141,32 @@ struct Server::Impl {
                 "'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\nX-Frame-Options: DENY\r\n");
   }
 
-  void serve_review(mg_connection* connection) {
+  /// False, and answered where anybody waits for it, when there is no whole body of at most `most` bytes.
+  bool read_body(mg_connection* connection, long long length, std::size_t most, std::string& body) {
+    constexpr const char* text = "text/plain; charset=utf-8";
+    if (length < 0 || length > static_cast<long long>(most)) {
+      respond(connection, 413, "Content Too Large", text, "at most " + std::to_string(most) + " bytes\n");
+      return false;
+    }
+    if (!rate.take()) {
+      respond(connection, 429, "Too Many Requests", text, "slower\n");
+      return false;
+    }
+    body.assign(static_cast<std::size_t>(length), '\0');
+    std::size_t got = 0;
+    while (got < body.size()) {
+      const int n = mg_read(connection, body.data() + got, body.size() - got);
+      if (n <= 0) return false;
+      got += static_cast<std::size_t>(n);
+    }
+    return true;
+  }
+
+  void serve_review(mg_connection* connection, const std::string& script) {
     constexpr const char* text = "text/plain; charset=utf-8";
     try {
-      const std::string report = source.review();
-      if (report.empty()) return respond(connection, 404, "Not Found", text, "this is no recording\n");
+      const std::string report = source.review(script);
+      if (report.empty()) return respond(connection, 404, "Not Found", text, "there is nothing to report on\n");
       respond(connection, 200, "OK", "application/octet-stream", report);
     } catch (const Error& e) {
       respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
@@ -149,16 +175,8 @@ struct Server::Impl {
 
   void serve_command(mg_connection* connection, long long length) {
     constexpr const char* text = "text/plain; charset=utf-8";
-    if (length < 0 || length > static_cast<long long>(kMaxCommand))
-      return respond(connection, 413, "Content Too Large", text, "a command has a length of at most 2 KB\n");
-    if (!rate.take()) return respond(connection, 429, "Too Many Requests", text, "slower\n");
-    std::string body(static_cast<std::size_t>(length), '\0');
-    std::size_t got = 0;
-    while (got < body.size()) {
-      const int n = mg_read(connection, body.data() + got, body.size() - got);
-      if (n <= 0) return;
-      got += static_cast<std::size_t>(n);
-    }
+    std::string body;
+    if (!read_body(connection, length, kMaxCommand, body)) return;
     try {
       source.command(parse_command(body));
       respond(connection, 200, "OK", text, "");

@@ -22,8 +22,9 @@ class ViewSource {
   virtual std::string status() const = 0;
   /// Obeys a command of the page. Throws Error when it cannot.
   virtual void command(const nlohmann::json& command) = 0;
-  /// The report (HTML) on the recording that is shown; empty when none is. May take seconds. Throws Error.
-  virtual std::string review() { return {}; }
+  /// The report (HTML) on the recording that is shown, or on a run by `script` (a stylus script, CSV) where one goes
+  /// on; empty when there is none. May take seconds. Throws Error.
+  virtual std::string review(const std::string& script) = 0;
 };
 
 }  // namespace tegotae::view

@@ -28,8 +28,8 @@ void wait_for_page(const Server& server, const std::atomic<bool>& stop) {
 }  // namespace
 
 RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
-                      const std::function<bool(const Server&)>& announce) {
-  LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop);
+                      const std::function<bool(const Server&)>& announce, const ScriptReview& review) {
+  LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop, review);
   Server server(address, live);
   if (announce(server) && settings.real_time) wait_for_page(server, stop);
   if (settings.seconds == 0) settings.seconds = kForever;

@@ -5,6 +5,7 @@
 
 #include "tegotae/session/session.hpp"
 #include "view/address.hpp"
+#include "view/script_review.hpp"
 
 namespace tegotae::view {
 
@@ -13,8 +14,9 @@ class Server;
 /// run_session with a page to look at it. The run goes on after its script, until `stop` (which must be
 /// `settings.stop`) or for `settings.seconds`; the page may begin it anew, and change its parts while it runs.
 /// `announce` gets the server, whose address is to be opened, and returns whether the run is to wait for the first page
-/// (half a minute at most). Returns the summary of the last run.
+/// (half a minute at most). `review` makes reports on what the mouse did (LiveView). Returns the summary of the last
+/// run.
 RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
-                      const std::function<bool(const Server&)>& announce);
+                      const std::function<bool(const Server&)>& announce, const ScriptReview& review = {});
 
 }  // namespace tegotae::view

@@ -27,9 +27,13 @@ export class Live {
   async parts() {
     return (await this.get("parts")).json();
   }
-  // The report on a recording, a blob.
-  async review() {
-    return (await this.get("review")).blob();
+  // The report on a recording, or on a run by `script`; a blob.
+  async review(script = null) {
+    const answer = await fetch("review", script === null ? { headers: this.headers } : { method: "POST", headers: this.headers, body: script }).catch(() => {
+      throw new Error("The program does not answer.");
+    });
+    if (!answer.ok) throw new Error((await answer.text()).trim());
+    return answer.blob();
   }
 
   // Until the server ends it.

@@ -17,7 +17,7 @@ import { Numbers } from "./numbers.js";
 import { Overlay } from "./overlay.js";
 import { Memory, Recorded, Remembered } from "./playback.js";
 import { Plots } from "./plots.js";
-import { addReview } from "./review.js";
+import { addReview, saveScript, stylusScript } from "./review.js";
 import { Section } from "./section.js";
 import { Stage } from "./stage.js";
 import { addTestDoor } from "./test_door.js";
@@ -315,8 +315,14 @@ async function begin() {
   }
   const recording = bundle.about.mode === "replay";
   if (recording) {
-    if (live) addReview($("review"), live, bundle.about.title, showMessage);
+    const program = live;
+    if (program) addReview($("review"), () => program.review(), bundle.about.title, showMessage);
     live = null;
+  } else if (bundle.about.led) {
+    const { title } = bundle.about;
+    $("save").hidden = false;
+    $("save").addEventListener("click", () => memory.frames.length > 1 && saveScript(memory.frames, title));
+    if (bundle.about.reviewable) addReview($("review"), () => live.review(stylusScript(memory.frames)), title, showMessage);
   }
   parts = new Parts(stage, live && ((command) => live.edit(command)), showMessage);
   plots = new Plots($("plots"), null, withoutValues(bundle.about), bundle.about.goal ?? null);

@@ -1,15 +1,22 @@
-// Asks the program for the report on the recording that is shown, and saves it.
-export function addReview(button, program, title, onMessage) {
+// Asks the program for a report, and saves it; saves what the hand did as a stylus script.
+function save(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+const stem = (title) => title.replace(/.*\//, "").replace(/\.[^.]*$/, "");
+
+// ask(): the report, a blob, of a recording or a run called `title`.
+export function addReview(button, ask, title, onMessage) {
   button.hidden = false;
   button.addEventListener("click", async () => {
     button.disabled = true;
     onMessage("Making the report …");
     try {
-      const link = document.createElement("a");
-      link.href = URL.createObjectURL(await program.review());
-      link.download = `${title.replace(/\.[^.]*$/, "")}.review.html`;
-      link.click();
-      URL.revokeObjectURL(link.href);
+      save(await ask(), `${stem(title)}.review.html`);
       onMessage("");
     } catch (error) {
       onMessage(error.message);
@@ -17,4 +24,21 @@ export function addReview(button, program, title, onMessage) {
       button.disabled = false;
     }
   });
+}
+
+// What `run --script` reads: where the pen wanted the held part's file frame, from the first of these frames on.
+export function stylusScript(frames) {
+  if (frames.length === 0) throw new Error("The run has not begun.");
+  const rows = ["t,px,py,pz,qw,qx,qy,qz"];
+  let last = -Infinity;
+  for (const { t, y } of frames) {
+    if (!(t > last)) continue;
+    last = t;
+    rows.push([t - frames[0].t, ...y].map((v) => Number(v.toPrecision(9))).join());
+  }
+  return rows.join("\n") + "\n";
+}
+
+export function saveScript(frames, title) {
+  save(new Blob([stylusScript(frames)], { type: "text/csv" }), `${stem(title)}.hand.csv`);
 }
