@@ -80,8 +80,7 @@ function showFrame(next) {
   frame = next;
   ++frames;
   hand.showFrame(frame);
-  stage.showPoses(frame.x, frame.y);
-  overlay.show(frame);
+  stage.showPoses(frame.x, frame.y, overlay.show(frame));
   behind.show(frame);
   contact.show(frame);
   numbers.show(frame, about.reasons);

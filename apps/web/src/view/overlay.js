@@ -66,6 +66,9 @@ function fill(object, numbers) {
 
 const along = (p, n, s) => [p[0] + s * n[0], p[1] + s * n[1], p[2] + s * n[2]];
 
+// To hundredths: what is less is not seen.
+const rounded = (v) => (Array.isArray(v) ? v.map(rounded) : Math.round(100 * Number(v)));
+
 export class Overlay {
   constructor(stage) {
     this.stage = stage;
@@ -117,10 +120,12 @@ export class Overlay {
     this.group.visible = !hidden;
   }
 
+  // Returns whether it shows something else than before.
   show(frame) {
-    const held = this.stage.held.group;
-    held.updateMatrixWorld();
-    const center = this.center.clone().applyMatrix4(held.matrixWorld);
+    const [x, y, z, qw, qx, qy, qz] = frame.x;
+    const center = this.center.clone().applyQuaternion(new THREE.Quaternion(qx, qy, qz, qw)).add(new THREE.Vector3(x, y, z));
+    const before = JSON.stringify(this.seen);
+    this.seen = [frame.force, frame.torque.map((v) => 100 * v), frame.pairs.map((p) => [p.touching, p.part, ...p.point.map((v) => (100 * v) / this.unit)])].map(rounded);
     const arrow = (shape, layer, from, vector, scale) => {
       const scaled = vector.map((v) => v * scale);
       shape.show(from, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
@@ -140,5 +145,6 @@ export class Overlay {
     fill(this.near, near.flatMap((p) => p.point));
     fill(this.links, near.flatMap((p) => [...p.point, ...along(p.point, p.normal, -p.gap)]));
     this.shown = { contacts: touching.length, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length, friction };
+    return JSON.stringify(this.seen) !== before;
   }
 }

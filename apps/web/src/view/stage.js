@@ -12,9 +12,9 @@ const fixedColors = 5;
 const heavyTriangles = 30_000; // more of them are drawn coarsely while things move
 const coarseTriangles = 9_000; // then, all together
 const restMs = 160; // after the last motion
-// Time (ms) between pictures from which on edges are no longer smoothed while things move, and below which they are
-// again; what is longer was no motion.
-const slowMs = 60, fastMs = 25, longestMs = 1500;
+// How long (ms) a picture waits for its turn where edges are no longer smoothed while things move, and where they are
+// again. The browser gives turns as fast as pictures get done.
+const slowMs = 45, fastMs = 22;
 
 export function setPose(object, pose) {
   object.position.set(pose[0], pose[1], pose[2]);
@@ -45,7 +45,7 @@ export class Stage {
     this.drawn = 0; // pictures drawn, for tests
     this.drawnCoarse = 0; // of them
     this.scheduled = false;
-    Object.assign(this, { movedAt: -Infinity, lastDrawn: -Infinity, interval: 30, slow: false });
+    Object.assign(this, { moving: false, movedAt: -Infinity, wait: slowMs, slow: true });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
@@ -208,7 +208,8 @@ export class Stage {
     if (changed.length > 0) this.draw();
   }
 
-  showPoses(x, y) {
+  // changed: something else than the poses has, too.
+  showPoses(x, y, changed) {
     const near = (a, b) => a.every((v, i) => Math.abs(v - b[i]) < 1e-6 * (i < 3 ? this.radius : 1));
     if (this.explosion > 0) return;
     const still = near(x, this.held.pose) && this.shownY && near(y, this.shownY);
@@ -216,7 +217,7 @@ export class Stage {
     this.shownY = y;
     setPose(this.held.group, x);
     setPose(this.ghost, y);
-    this.draw(!still);
+    if (!still || changed) this.draw(!still);
   }
 
   setVisible(part, visible) {
@@ -255,12 +256,15 @@ export class Stage {
   // moving: what is drawn now will not be for long.
   draw(moving = false) {
     if (moving) this.movedAt = performance.now();
+    this.moving ||= moving; // also when the picture comes late
     if (this.scheduled) return;
     this.scheduled = true;
+    const asked = performance.now();
     requestAnimationFrame(() => {
       this.scheduled = false;
-      const moving = performance.now() - this.movedAt < restMs;
-      this.pace(moving);
+      const moving = this.moving || performance.now() - this.movedAt < restMs;
+      this.moving = false;
+      if (moving) this.pace(performance.now() - asked);
       const coarse = moving && (this.heavy === true || this.slow);
       if (this.heavy) this.useCoarse(coarse);
       this.onDraw?.();
@@ -273,13 +277,11 @@ export class Stage {
     });
   }
 
-  // Whether this machine is too slow for smooth edges while things move: by the time from one picture to the next.
-  pace(moving) {
-    const now = performance.now();
-    if (moving && now - this.lastDrawn < longestMs) this.interval += (now - this.lastDrawn - this.interval) / 8;
-    this.lastDrawn = now;
-    if (this.interval > slowMs) this.slow = true;
-    if (this.interval < fastMs) this.slow = false;
+  // Whether this machine is too slow for smooth edges while things move. It is until it has shown that it is not.
+  pace(waited) {
+    this.wait += (Math.min(waited, 4 * slowMs) - this.wait) / 8;
+    if (this.wait > slowMs) this.slow = true;
+    if (this.wait < fastMs) this.slow = false;
   }
 
   useCoarse(on) {
