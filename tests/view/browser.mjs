@@ -4,6 +4,7 @@ import "./browser_first_hour.mjs";
 import "./browser_live.mjs";
 import "./browser_replay.mjs";
 import "./browser_review.mjs";
+import "./pieces.mjs";
 import { runCases } from "./cases.mjs";
 
 process.exit((await runCases(process.argv[2] ?? "")) > 0 ? 1 : 0);
