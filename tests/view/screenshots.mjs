@@ -1,6 +1,6 @@
 // Makes the pictures of docs/view.md and docs/review.md:
 //   TEGOTAE_BIN_DIR=build/release/bin node tests/view/screenshots.mjs
-// A live run in virtual time, stopped where the tilted peg jams (light), and a recording at the rim (dark).
+// A live run in virtual time, stopped where the tilted peg jams (light), a recording at the rim (dark), and jammed on a narrow screen.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -67,6 +67,18 @@ async function dark() {
   await picture(page, "view-dark.png");
 }
 
+async function narrow() {
+  const page = await open(browser, `file://${join(folder, "peg.html")}`, { width: 390, height: 700 });
+  await page.evaluate(() => {
+    const bar = document.getElementById("scrub");
+    bar.value = 5300;
+    bar.dispatchEvent(new Event("input"));
+  });
+  await page.click('#tabs [data-panel="right"]');
+  await page.keyboard.press("f");
+  await picture(page, "view-narrow.png");
+}
+
 async function review() {
   const recording = join(folder, "peg.csv"), file = join(folder, "review.html");
   await run("tegotae", "run", scene, "--fast", "--record", recording);
@@ -80,6 +92,7 @@ async function review() {
 
 await light();
 await dark();
+await narrow();
 await review();
 await browser.close();
 rmSync(folder, { recursive: true });

@@ -160,3 +160,21 @@ TEST_CASE("anything can be looked at: a mesh, a scene that holds nothing, a reco
   }
   ::unsetenv("TMPDIR");
 }
+
+TEST_CASE("a report on a script is made for who has the token, of scripts that can be read") {
+  Served s({"tegotae", "run", TEGOTAE_MODELS_DIR "/peg_in_hole_0.94.toml", "--view", "--fast", "--json"});
+  const auto review = [](const Served& served, const std::string& script) {
+    return Request{"POST", "/review", served.token, served.host(), "http://" + served.host(), script, ""};
+  };
+  Request stranger = review(s, "t");
+  stranger.token = "";
+  CHECK(ask(s.port, stranger) == 403);
+  std::string answer;
+  CHECK(ask(s.port, review(s, "t,px,py,pz,qw,qx,qy,qz\n0,0,0,x,1,0,0,0\n"), &answer) == 400);
+  CHECK_THAT(answer, Catch::Contains("x"));
+  CHECK(ask(s.port, review(s, "")) == 404);
+  CHECK(ask(s.port, review(s, std::string((4u << 20) + 1, ' '))) == 413);
+  // A program without reports says so.
+  Served peg({"peg_in_hole", "--view", "--fast", "--json"});
+  CHECK(ask(peg.port, review(peg, "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n")) == 404);
+}
