@@ -18,9 +18,13 @@ async function openOn(browser, url, { width, height, dark, touch = false }) {
   const page = await open({ newPage: () => context.newPage() }, url, { play: true });
   page.tapAt = (at) => (touch ? page.touchscreen.tap(...at) : page.mouse.click(...at));
   page.narrow = width <= 1000;
-  page.panel = async (name) => page.narrow && (await page.click(`#tabs [data-panel="${name}"]`));
+  page.panel = async (name) => page.narrow && (await press(page, `#tabs [data-panel="${name}"]`));
   return { page, context };
 }
+
+// Without Playwright's waiting for two pictures in which a button stands still: software rendering on a busy machine may
+// take longer than its patience.
+const press = (page, selector) => page.click(selector, { force: true });
 
 const at = (page, point) => page.evaluate((p) => window.__tegotae.project(p), point);
 const size = (page, selector) => page.evaluate((s) => document.querySelector(s).getBoundingClientRect().toJSON(), selector);
@@ -42,21 +46,21 @@ async function fits(page, screen) {
 async function look(page) {
   await page.click("#views button:nth-child(2)");
   await until(page, (s) => Math.abs(s.camera[0] - s.target[0]) < 1e-6 && s.camera[1] > s.target[1]);
-  await page.click("#parallel");
+  await press(page, "#parallel");
   assert.equal((await state(page)).parallel, true);
   await page.selectOption("#up", "y");
   const turned = await until(page, (s) => s.up === "y");
   assert.ok(turned.camera[1] > turned.target[1], "from above, where that is along y");
   await page.selectOption("#up", "z");
-  await page.click("#parallel");
+  await press(page, "#parallel");
   await page.panel("left");
-  await page.click("#section [data-kind=x]");
+  await press(page, "#section [data-kind=x]");
   assert.deepEqual((await state(page)).section.normal.map(Math.abs), [1, 0, 0]);
   await page.focus("#stage canvas");
   const before = (await state(page)).section.constant;
   await page.keyboard.press("]");
   assert.notEqual((await state(page)).section.constant, before);
-  await page.click("#section [data-kind=off]");
+  await press(page, "#section [data-kind=off]");
   await page.panel("");
   const places = (await state(page)).places;
   await page.keyboard.press("e");
@@ -70,7 +74,7 @@ const figure = (s, name) => s.measured.find(([what]) => what === name)?.[2];
 
 // The block is a cube of 10 mm whose middle is at the pose that the program reports; the floor's top is at z = 0.
 async function measure(page) {
-  await page.click("#measure");
+  await press(page, "#measure");
   await page.tapAt(await at(page, [0.001, -0.001, 0.013]));
   await page.tapAt(await at(page, [0.016, -0.016, 0]));
   const gap = await until(page, (s) => s.picked.length === 2);
@@ -95,15 +99,15 @@ async function hold(page) {
   await page.tapAt(await at(page, [0.016, -0.016, 0]));
   await until(page, (s) => s.selected === 0);
   await page.panel("left");
-  await page.click("#fade");
+  await press(page, "#fade");
   assert.ok((await state(page)).faded.includes("floor"));
-  await page.click("#fade");
-  await page.click("#isolate");
+  await press(page, "#fade");
+  await press(page, "#isolate");
   assert.deepEqual((await state(page)).parts.map((part) => part.visible), [true, false]);
-  await page.click("#show-all");
-  await page.click("#hold");
+  await press(page, "#show-all");
+  await press(page, "#hold");
   await until(page, (s) => s.parts[0].held && s.frame.generation === s.status.generation);
-  await page.click("#undo");
+  await press(page, "#undo");
   await until(page, (s) => s.parts[1].held && s.frame.generation === s.status.generation);
   await page.panel("");
 }
@@ -141,7 +145,7 @@ async function askContact(page) {
   await page.mouse.click(...(await at(page, pressed.frame.pairs.find((pair) => pair.touching).point)));
   const card = await page.textContent("#contact dl");
   assert.match(card, /^PartfloorFeature(corner|edge|face) of block <b>1<\/b> on (corner|edge|face)Gap[\d.]+\u00a0[µm]mForce/);
-  await page.click("#contact .close");
+  await press(page, "#contact .close");
   await page.keyboard.press("Escape");
   await until(page, (s) => s.frame.forceOn && s.force < 0.1);
 }
@@ -167,7 +171,7 @@ for (const screen of screens) {
     await pictures(page, `page-${name}`);
     // The other light, and the panels.
     const light = (await state(page)).background;
-    await page.click("#theme");
+    await press(page, "#theme");
     assert.notEqual((await state(page)).background, light);
     for (const panel of page.narrow ? ["left", "right"] : []) {
       await page.panel(panel);
@@ -185,7 +189,7 @@ for (const screen of screens) {
 async function report(page) {
   const saved = async (button, file) => {
     const saving = page.waitForEvent("download", { timeout: 4 * patience });
-    await page.click(button);
+    await press(page, button);
     const download = await saving;
     await download.saveAs(file);
     return readFileSync(file, "utf8");
@@ -205,16 +209,16 @@ test("when the script has ended, the page offers the part, a replay and a new st
   await page.waitForSelector("#ended:not([hidden])");
   const last = await state(page);
   assert.ok(last.frame.t > 1);
-  await page.click("#again");
+  await press(page, "#again");
   const playing = await until(page, (s) => s.count > 1 && s.frame.t < 1);
   assert.ok(playing.playing);
   await until(page, (s) => s.frame.t > 1 && !s.playing);
-  await page.click("#live");
+  await press(page, "#live");
   await until(page, (s) => s.count === undefined && s.frame.t >= last.frame.t);
-  await page.click("#restart");
+  await press(page, "#restart");
   await until(page, (s) => s.frame.t < 1);
   await page.waitForSelector("#ended:not([hidden])");
-  await page.click("#take");
+  await press(page, "#take");
   assert.match(await page.textContent("#hand"), /^Drag the blue part/);
   assert.equal(await page.isVisible("#ended"), false);
   assert.deepEqual(page.complaints, []);
