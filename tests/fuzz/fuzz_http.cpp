@@ -28,7 +28,7 @@ class CountingSource final : public view::ViewSource {
     ++asked;
     if (!command.is_object()) throw Error("this is no object");
   }
-  std::string review() override {
+  std::string review(const std::string&) override {
     ++asked;
     return "<p>report</p>";
   }
