@@ -2,28 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
-#include <numeric>
 
 #include "curve/axis_refine.hpp"
+#include "curve/facet_angle.hpp"
+#include "curve/facets.hpp"
+#include "curve/rises.hpp"
 #include "curve/screw_fit.hpp"
 
 namespace tegotae {
 namespace {
 
-/// Facets that are looked at; of larger meshes a sample.
-constexpr std::size_t kMaxFacets = 8000;
 /// Places at which the search begins, and facets around each of them that the first fit takes.
 constexpr int kSeeds = 40;
 constexpr std::size_t kNearest[] = {1200, 300, 60};
 /// Every so many facets are asked first, and this part of the surface must follow a motion or it is dropped.
 constexpr std::size_t kFirstStride = 8;
 constexpr double kMinShare = 0.01;
-/// How far a facet's normal may be from square to the motion (rad) beyond what its own width explains: a corner of a
-/// chord of length d over the radius r is off by d / 2r, and more where the facet is no chord's half.
-constexpr double kTolerance = 0.02, kWidthShare = 0.75, kMaxWidth = 0.15;
+/// How far a facet's normal may be from square to the motion (rad) beyond what its own width explains.
+constexpr double kTolerance = 0.02;
 /// The last rounds weigh facets by their angle against this: a cone beside a flank must not bend the flank's rise.
 constexpr double kSharpAngle = 0.008;
 constexpr int kSharpRounds = 4, kRiseRounds = 3;
@@ -43,118 +40,11 @@ constexpr double kSectorShare = 0.002;
 constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// Facets that lean less than this along the axis (cosine) say nothing about a rise.
 constexpr double kMinLean = 0.3;
-/// What is left of a chord's angle at its middle, for facets that are no chord's half.
-constexpr double kChordError = 0.05;
 /// Facets are of one rise where their own ones lie within so many times their spread, which is at least this part of
 /// the size.
 constexpr double kSameSpread = 2, kMinSpread = 1e-4;
-/// Rises from which the most frequent one is looked for, steps of each.
-constexpr int kStarts = 16, kSteps = 12;
 /// Two motions are one where axes and rises agree to this (rad, shares of the size).
 constexpr double kSameAngle = 0.02, kSamePlace = 0.01, kSameRise = 0.1;
-
-using Key = std::array<double, 9>;
-
-/// The three corners, least first: the same for every order in which they are listed.
-Key key_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  std::array<Vec3, 3> v{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-  std::sort(v.begin(), v.end(), [](const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-  });
-  return {v[0].x(), v[0].y(), v[0].z(), v[1].x(), v[1].y(), v[1].z(), v[2].x(), v[2].y(), v[2].z()};
-}
-
-std::uint64_t hash_of(const Key& key) {
-  std::uint64_t h = 0x9e3779b97f4a7c15ull;
-  for (const double x : key) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    h = (h ^ bits) * 0xd6e8feb86659fd93ull;
-    h ^= h >> 29;
-  }
-  return h;
-}
-
-/// The mesh's triangles as facets, by place; of many the same sample whatever their order.
-class Facets {
- public:
-  explicit Facets(const TriangleMesh& mesh) {
-    Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-    for (const auto& t : mesh.triangles) {
-      for (const std::uint32_t v : t) {
-        lo = lo.cwiseMin(mesh.vertices[v]);
-        hi = hi.cwiseMax(mesh.vertices[v]);
-      }
-    }
-    middle = 0.5 * (lo + hi);
-    size = 0.5 * (hi - lo).norm();
-    if (!(size > 0) || !std::isfinite(size)) return;
-    std::vector<Key> keys;
-    for (const std::uint32_t t : sample(mesh)) keys.push_back(key_of(mesh, mesh.triangles[t]));
-    std::sort(keys.begin(), keys.end());
-    for (const Key& k : keys) add(k);
-  }
-
-  std::vector<Facet> all;
-  Vec3 middle;
-  double size = 0;  ///< half the diagonal of the box, m
-  double area = 0;  ///< of all facets, in size²
-
- private:
-  static std::vector<std::uint32_t> sample(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> chosen(mesh.triangles.size());
-    std::iota(chosen.begin(), chosen.end(), 0u);
-    if (chosen.size() <= kMaxFacets) return chosen;
-    std::vector<std::uint64_t> hash(chosen.size());
-    for (const std::uint32_t t : chosen) hash[t] = hash_of(key_of(mesh, mesh.triangles[t]));
-    std::vector<std::uint64_t> sorted = hash;
-    std::nth_element(sorted.begin(), sorted.begin() + kMaxFacets, sorted.end());
-    // Equal faces have equal hashes and stay or go together.
-    const std::uint64_t bound = sorted[kMaxFacets];
-    chosen.erase(std::remove_if(chosen.begin(), chosen.end(), [&](std::uint32_t t) { return hash[t] >= bound; }),
-                 chosen.end());
-    return chosen;
-  }
-
-  void add(const Key& k) {
-    std::array<Vec3, 3> v;
-    for (int i = 0; i < 3; ++i) v[i] = (Vec3(k[3 * i], k[3 * i + 1], k[3 * i + 2]) - middle) / size;
-    Facet f;
-    f.center = (v[0] + v[1] + v[2]) / 3;
-    for (int i = 0; i < 3; ++i) f.edge[i] = v[(i + 1) % 3] - v[i];
-    f.normal = f.edge[0].cross(f.edge[1]);
-    const double length = f.normal.norm();
-    const double longest = std::max({f.edge[0].squaredNorm(), f.edge[1].squaredNorm(), f.edge[2].squaredNorm()});
-    if (!(length > 1e-6 * longest)) return;
-    f.normal /= length;
-    f.area = 0.5 * length;
-    area += f.area;
-    all.push_back(f);
-  }
-};
-
-/// The angle between the facet and the motion at the middle of its chord.
-double angle_at_middle(const Facet& f, const ScrewMotion& m) {
-  const Vec3 v = m.velocity(chord_middle(f, m));
-  const double speed = v.norm();
-  return speed > 0 ? std::abs(f.normal.dot(v)) / speed : 0;
-}
-
-/// How far the facet is from being tangent to the motion, as an angle, at the worst of its corners, beyond what its
-/// width explains: a facet of width d across the motion is a chord.
-double angle_off(const Facet& f, const ScrewMotion& m) {
-  const Vec3 middle = m.velocity(f.center);
-  const double speed2 = middle.squaredNorm();
-  if (!(speed2 > 0)) return 1;
-  double width = 0, worst = 0;
-  for (const Vec3& e : f.edge) width = std::max(width, std::abs(e.dot(middle)));
-  for (const Vec3& x : f.corners()) {
-    const Vec3 v = m.velocity(x);
-    const double speed = v.norm();
-    worst = std::max(worst, speed > 0 ? std::abs(f.normal.dot(v)) / speed : 1.0);
-  }
-  return std::max(0.0, worst - std::min(kWidthShare * width / speed2, kMaxWidth));
-}
 
 class Search {
  public:
@@ -281,7 +171,7 @@ class Search {
       if (is_end(f, motion)) free_[i] = 0;
       if (!free_[i] || angle_off(f, motion) > 4 * kTolerance) continue;
       if (std::abs(f.normal.dot(motion.c)) >= kMinLean) {
-        const double own = own_rise(f, plain).rise, rise = motion.rise();
+        const double own = own_rise(f, plain, rough_).rise, rise = motion.rise();
         const bool other = std::abs(rise) < kMinSpread ? std::abs(own) > 2 * kSameSpread * spread_
                                                        : std::abs(own) < std::abs(own - rise);
         if (other) continue;
@@ -310,21 +200,6 @@ class Search {
     }
   }
 
-  /// The rise that one facet asks for by itself, what its width may make of it, and its weight.
-  struct OwnRise {
-    double rise, spread, weight;
-  };
-
-  OwnRise own_rise(const Facet& f, const ScrewMotion& plain) const {
-    const double lean = f.normal.dot(plain.c);
-    const Vec3 v = plain.velocity(chord_middle(f, plain));
-    double width = 0;
-    for (const Vec3& e : f.edge) width = std::max(width, std::abs(e.dot(v)));
-    const double speed = std::max(v.norm(), 1e-6),
-                 chord = kChordError * width / speed * std::sqrt(1 - std::min(1.0, lean * lean));
-    return {-f.normal.dot(v) / lean, (chord + rough_ * speed) / std::abs(lean), f.area * lean * lean};
-  }
-
   /// How far normals are off anyway, rad: a part of the facets follows any rise, so a quantile of them tells.
   double roughness(const ScrewMotion& motion) const {
     std::vector<double> angle;
@@ -346,7 +221,7 @@ class Search {
     double spread = 0, weight = 0;
     for (const std::size_t i : of_) {
       if (std::abs(facets_.all[i].normal.dot(motion.c)) < kMinLean) continue;
-      own.push_back(own_rise(facets_.all[i], plain));
+      own.push_back(own_rise(facets_.all[i], plain, rough_));
       spread += own.back().weight * own.back().spread;
       weight += own.back().weight;
     }
@@ -385,7 +260,7 @@ class Search {
     for (const std::size_t i : of_) {
       const Facet& f = facets_.all[i];
       if (std::abs(f.normal.dot(motion.c)) >= kMinLean &&
-          std::abs(own_rise(f, plain).rise - rise) > kSameSpread * spread)
+          std::abs(own_rise(f, plain, rough_).rise - rise) > kSameSpread * spread)
         continue;
       of_[kept++] = i;
     }
@@ -393,31 +268,6 @@ class Search {
     weight_.clear();
     for (const std::size_t i : of_)
       weight_.push_back(facets_.all[i].area / std::max(motion.velocity(facets_.all[i].center).squaredNorm(), 1e-4));
-  }
-
-  static double most_frequent(std::vector<OwnRise>& own, double spread) {
-    std::sort(own.begin(), own.end(), [](const OwnRise& a, const OwnRise& b) {
-      return a.rise != b.rise ? a.rise < b.rise : a.weight < b.weight;
-    });
-    double best = 0, most = -1;
-    for (int k = 0; k < kStarts; ++k) {
-      double at = own[own.size() * static_cast<std::size_t>(2 * k + 1) / (2 * kStarts)].rise, density = 0;
-      for (int step = 0; step < kSteps; ++step) {
-        double sum = 0;
-        density = 0;
-        for (const OwnRise& o : own) {
-          const double x = (o.rise - at) / spread;
-          if (std::abs(x) > 3) continue;
-          const double w = o.weight * std::exp(-0.5 * x * x);
-          sum += w * o.rise;
-          density += w;
-        }
-        if (!(density > 0)) break;
-        at = sum / density;
-      }
-      if (density > most) most = density, best = at;
-    }
-    return best;
   }
 
   bool turns(const ScrewMotion& motion) const {
