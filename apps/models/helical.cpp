@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
-void check(const Thread& t) {
+void check(const WavyThread& t) {
   if (!(t.depth > 0 && t.radius > t.depth && t.pitch > 0 && t.low < t.high && t.segments >= 3 && t.rings >= 2))
     throw Error("a thread needs a radius over its depth, a pitch, a length, and divisions");
 }
 
 /// The thread's rings, from its low end to the high one.
-std::vector<Ring> thread_rings(const Thread& t, MeshBuilder& b) {
+std::vector<Ring> thread_rings(const WavyThread& t, MeshBuilder& b) {
   const int n = std::max(1, static_cast<int>(std::ceil(t.rings * (t.high - t.low) / t.pitch)));
   std::vector<Ring> rings;
   for (int k = 0; k <= n; ++k) {
@@ -82,14 +82,14 @@ TriangleMesh full(MeshBuilder& b, const std::vector<Ring>& rings, const Vec3& fi
 
 }  // namespace
 
-TriangleMesh screw(const Thread& t) {
+TriangleMesh screw(const WavyThread& t) {
   check(t);
   MeshBuilder b("screw");
   const std::vector<Ring> rings = thread_rings(t, b);
   return full(b, rings, {0, 0, t.low}, {0, 0, t.high});
 }
 
-TriangleMesh nut(const Thread& t, double outside) {
+TriangleMesh nut(const WavyThread& t, double outside) {
   check(t);
   if (!(outside > t.radius + t.depth)) throw Error("a nut is larger than its thread");
   MeshBuilder b("nut");

@@ -6,7 +6,7 @@
 namespace tegotae::shapes {
 
 /// A right-handed thread about z whose flanks are waves: r = radius + depth / 2 · cos(2π (z / pitch − angle / 2π)).
-struct Thread {
+struct WavyThread {
   double radius = 0.008;  ///< mean
   double depth = 0.0012;
   double pitch = 0.003;
@@ -16,9 +16,9 @@ struct Thread {
 };
 
 /// A headless screw: the inside of the thread.
-TriangleMesh screw(const Thread& t);
+TriangleMesh screw(const WavyThread& t);
 /// A round nut of outer radius `outside` around the thread.
-TriangleMesh nut(const Thread& t, double outside);
+TriangleMesh nut(const WavyThread& t, double outside);
 
 /// A round bar of radius `radius` bent about the y axis: its center line runs at `bend` from the axis, from the angle
 /// `from` to `to` (rad, from x towards z).

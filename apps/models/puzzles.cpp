@@ -64,9 +64,9 @@ Puzzle l_shaped() {
 Puzzle screw_in_nut() {
   Puzzle p;
   p.name = "screw";
-  Thread thread;
+  WavyThread thread;
   p.held = screw(thread);
-  Thread inner = thread;
+  WavyThread inner = thread;
   inner.radius += 0.15 * kMm;
   p.fixed = nut(inner, 14 * kMm);
   // By sixths of a turn: a motion of more than half a turn is another one.

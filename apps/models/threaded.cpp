@@ -67,9 +67,9 @@ class Wall {
   void close(bool outward) {
     const std::size_t n = columns_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      // The helices of the first column, met after a turn, have moved on by one pitch.
+      // The helices of the first column, met after a turn, have moved on by one pitch for each start.
       const bool seam = i + 1 == n;
-      const long shift = seam ? (t_.left_hand ? 1 : -1) * static_cast<long>(o_.w.size()) : 0;
+      const long shift = seam ? (t_.left_hand ? 1 : -1) * t_.starts * static_cast<long>(o_.w.size()) : 0;
       strip(columns_[i], columns_[(i + 1) % n], shift, outward);
     }
   }
@@ -80,7 +80,7 @@ class Wall {
   Column column(int i) {
     Column c;
     const double turn = static_cast<double>(i) / t_.segments, angle = 2 * kPi * turn;
-    const double rise = (t_.left_hand ? -1 : 1) * t_.pitch * turn;
+    const double rise = (t_.left_hand ? -1 : 1) * t_.starts * t_.pitch * turn;
     const auto add = [&](long line, double w) {
       const double z = w + rise;
       const double r = radius_(radius_at(o_, t_.pitch, w), z);
@@ -143,6 +143,7 @@ void check(const Thread& t, double length, double width) {
   if (!(t.pitch > 0 && t.diameter > 4 * depth)) throw Error("a thread needs a pitch, and a diameter of some pitches");
   if (t.segments < 12 || t.segments % 6 != 0) throw Error("a thread's number of segments must be a multiple of 6");
   if (t.rows < 1 || t.rows > 16) throw Error("a thread's flank has 1 to 16 rows");
+  if (t.starts < 1 || t.starts > 8) throw Error("a thread has 1 to 8 starts");
   if (!(length > t.pitch)) throw Error("a thread must be longer than its pitch");
   if (!(width > 1.1 * t.diameter)) throw Error("a hexagon must be wider than its thread");
 }
@@ -153,9 +154,17 @@ TriangleMesh bolt(const Bolt& p) {
   check(p.thread, p.length, p.head_width);
   if (!(p.chamfer >= 0 && p.chamfer < p.thread.diameter / 4 && p.head_height > 0))
     throw Error("a bolt needs a head, and a chamfer smaller than a quarter of its diameter");
+  if (!(p.shank >= 0 && p.runout >= 0 && p.length - p.shank - p.runout > p.thread.pitch))
+    throw Error("a bolt's shank and run-out must leave a thread of some length");
   MeshBuilder b("bolt");
-  const double tip = p.thread.diameter / 2 - p.chamfer;
-  Wall wall(b, p.thread, 0, 0, p.length, [tip](double r, double z) { return std::min(r, tip + z); });
+  const double major = p.thread.diameter / 2, tip = major - p.chamfer, depth = 0.625 * kSharp * p.thread.pitch;
+  // The root rises along a cone, as a die leaves it.
+  const double end = p.length - p.shank;
+  const auto root = [=](double z) {
+    if (z > end) return major;
+    return p.runout > 0 ? major - depth * (end - z) / p.runout : 0.0;
+  };
+  Wall wall(b, p.thread, 0, 0, p.length, [=](double r, double z) { return std::min(std::max(r, root(z)), tip + z); });
   wall.close(true);
   b.disk(Ring(wall.low.rbegin(), wall.low.rend()), b.vertex({0, 0, 0}));
   const Ring under = hexagon(b, p.head_width, p.length, p.thread.segments);

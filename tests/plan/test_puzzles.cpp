@@ -41,7 +41,7 @@ TEST_CASE("bricks make the solid that they cover") {
 }
 
 TEST_CASE("threads and bent bars have the volume of their closed forms") {
-  shapes::Thread t;
+  shapes::WavyThread t;
   t.segments = 256;
   t.low = -2 * t.pitch;
   // The mean of r² over whole turns is R² + depth² / 8.
