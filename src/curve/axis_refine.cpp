@@ -2,8 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <map>
 #include <tuple>
 
 namespace tegotae {
@@ -16,6 +19,10 @@ constexpr int kRounds = 6, kNormalCells = 24;
 constexpr double kCell = 0.02;
 /// A rise that is only rounding, of the size.
 constexpr double kNoRise = 1e-10;
+/// The rise is looked for within this part of itself, in so many steps for a turn of the thread, among so many corners
+/// of facets that lean along the axis by this (cosine in the profile), and taken where it lays them so much better.
+constexpr double kWindow = 0.08, kStepsPerTurn = 24, kLeaning = 0.3, kBetter = 1.05;
+constexpr std::size_t kMaxLaid = 1500, kHarmonics = 4;
 /// Keeps what the facets leave open where it is, relative to the trace.
 constexpr double kDamping = 1e-9;
 /// Changes of the axis beyond this say that the facets are no screw surface.
@@ -163,17 +170,58 @@ class Equations {
   double square_ = 0, weight_ = 0;
 };
 
+/// How well the corners of a long thread lie on top of each other with one rise: the largest of some harmonics of
+/// their places along the axis, over a turn (a thread of n starts has the n-th).
+double coherence(const std::vector<Sample>& samples, double rise) {
+  std::map<int, std::array<std::complex<double>, kHarmonics>> sums;
+  double area = 0;
+  for (const Sample& s : samples) {
+    const double place = (s.z + s.nr / s.nw * s.r) / rise - s.phi;
+    const std::complex<double> one = std::polar(1.0, place);
+    std::complex<double> power = s.area;
+    for (auto& sum : sums[std::get<2>(s.cell)]) sum += power *= one;
+    area += s.area;
+  }
+  std::array<double, kHarmonics> of{};
+  for (const auto& [turn, sum] : sums)
+    for (std::size_t n = 0; n < kHarmonics; ++n) of[n] += std::abs(sum[n]);
+  return area > 0 ? *std::max_element(of.begin(), of.end()) / area : 0;
+}
+
+/// The rise near `motion`'s that lays all turns of a thread onto one another. A few percent off, and the ends of a long
+/// thread are turns apart: no step from there leads to it.
+ScrewMotion laid(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, ScrewMotion motion) {
+  const Frame f(motion);
+  std::vector<Sample> samples;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Sample& s : samples_of(facets, of, f))
+    if (s.nw > kLeaning) samples.push_back(s), low = std::min(low, s.z), high = std::max(high, s.z);
+  if (f.rise == 0 || samples.empty()) return motion;
+  const double turns = (high - low) / (2 * kPi * std::abs(f.rise));
+  const std::size_t stride = samples.size() / kMaxLaid + 1;
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
+  const int steps = static_cast<int>(std::ceil(kWindow * kStepsPerTurn * turns));
+  double rise = f.rise, most = kBetter * coherence(some, rise);
+  for (int i = -steps; i <= steps; ++i) {
+    const double other = f.rise * (1 + kWindow * i / std::max(steps, 1)), here = coherence(some, other);
+    if (here > most) most = here, rise = other;
+  }
+  motion.c_bar += (rise - f.rise) * motion.c;
+  return motion;
+}
+
 }  // namespace
 
 ScrewMotion refined(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const ScrewMotion& motion) {
-  ScrewMotion best = motion;
+  ScrewMotion best = laid(facets, of, motion);
   double scale = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
     const Frame f(best);
     const Equations equations(samples_of(facets, of, f), f.rise, scale);
     scale = std::max(2 * equations.rms(), 1e-9);
     const Vec5 x = equations.solve();
-    if (!x.allFinite() || x.norm() > kMaxChange) return round == 0 ? motion : best;
+    if (!x.allFinite() || x.norm() > kMaxChange) return best;
     ScrewMotion next;
     next.c = (f.c + x[2] * f.e1 + x[3] * f.e2).normalized();
     const Vec3 p = f.p + x[0] * f.e1 + x[1] * f.e2;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "curve/axis_family.hpp"
 #include "curve/axis_refine.hpp"
 #include "curve/facet_angle.hpp"
 #include "curve/facets.hpp"
@@ -31,24 +32,24 @@ constexpr double kMaxWider = 1.35;
 constexpr double kMuch = 0.3, kMaxWiderOfMuch = 1.75;
 /// So many motions that turn out to be none end the search.
 constexpr int kMaxFailures = 16;
-/// Normals within 11° of the axis are those of ends and shoulders, which follow any motion about it.
-constexpr double kEndNormal = 0.98;
 /// A surface that turns about an axis has normals in at least so many of the sectors around it; prisms do not.
 constexpr int kSectors = 32, kMinSectors = 8;
 constexpr double kSectorShare = 0.002;
 /// On a sphere all axes through its center fit alike: the second least mean square is as small as the least.
 constexpr double kDistinct = 8, kMinSecond = 1e-3;
-/// Facets that lean less than this along the axis (cosine) say nothing about a rise.
-constexpr double kMinLean = 0.3;
-/// Facets are of one rise where their own ones lie within so many times their spread, which is at least this part of
-/// the size.
-constexpr double kSameSpread = 2, kMinSpread = 1e-4;
+/// Facets are of one rise where their own ones lie within so many times their spread.
+constexpr double kSameSpread = 2;
+/// Threads whose axes lean from each other by less (rad) are one, fitted well or badly.
+constexpr double kNearly = 0.3;
+/// Several motions about one axis are taken where they explain so much more of the surface, to within this (rad).
+constexpr double kMuchMore = 1.05, kSharpTolerance = 0.004, kSharpPart = 0.8;
 /// Two motions are one where axes and rises agree to this (rad, shares of the size).
 constexpr double kSameAngle = 0.02, kSamePlace = 0.01, kSameRise = 0.1;
 
 class Search {
  public:
-  explicit Search(const TriangleMesh& mesh) : facets_(mesh), free_(facets_.all.size(), 1) {}
+  explicit Search(const TriangleMesh& mesh)
+      : facets_(mesh), free_(facets_.all.size(), 1), family_(facets_.all, free_) {}
 
   std::vector<ScrewAxis> run() {
     std::vector<double> apart(facets_.all.size(), std::numeric_limits<double>::infinity());
@@ -59,12 +60,44 @@ class Search {
       for (const std::size_t k : kNearest)
         if (try_seed(seed, k)) break;
     }
+    look_beside();
     std::stable_sort(found_.begin(), found_.end(),
                      [](const ScrewAxis& a, const ScrewAxis& b) { return a.area > b.area; });
     return found_;
   }
 
  private:
+  /// A thread about the axis of what turns without a rise may have been missed, or fitted badly from a place where it
+  /// is cut by chamfers.
+  void look_beside() {
+    const std::vector<ScrewAxis> known = found_;
+    for (const ScrewAxis& axis : known) {
+      if (axis.rise != 0) continue;
+      std::fill(free_.begin(), free_.end(), 1);
+      if (!family_.settle_about(motion_of(axis)) || family_.rises().size() < 2 || !is_sharp()) continue;
+      const ScrewMotion thread = with_rise(family_.axis(), family_.rises()[0]);
+      const double share = share_at(thread);
+      // What leans from it a little and explains less is the same thread, badly fitted.
+      std::vector<ScrewAxis> better;
+      bool worse = false;
+      for (const ScrewAxis& other : found_) {
+        const bool same = other.rise != 0 && other.direction.cross(thread.c).norm() < kNearly;
+        if (same && !(share_at(motion_of(other)) < share)) worse = true;
+        if (!same || !(share_at(motion_of(other)) < share)) better.push_back(other);
+      }
+      if (worse) continue;
+      better.swap(found_);
+      if (!accept_of_family(0)) better.swap(found_);
+    }
+  }
+
+  ScrewMotion motion_of(const ScrewAxis& axis) const {
+    ScrewMotion m;
+    m.c = axis.direction;
+    m.c_bar = -axis.direction.cross((axis.origin - facets_.middle) / facets_.size);
+    return with_rise(m, axis.rise / facets_.size);
+  }
+
   /// The largest facet first, then whatever is farthest from all seeds and follows no axis yet.
   std::size_t next_seed(const std::vector<double>& apart) const {
     std::size_t best = facets_.all.size();
@@ -132,8 +165,6 @@ class Search {
     return all > 0 ? in / all : 0;
   }
 
-  static bool is_end(const Facet& f, const ScrewMotion& m) { return std::abs(f.normal.dot(m.c)) > kEndNormal; }
-
   /// From a first motion to the one of all facets that follow it, and whether that is a surface that turns.
   bool grow(ScrewMotion motion) {
     ScrewFit fit;
@@ -153,13 +184,80 @@ class Search {
     }
     for (int round = 0; round < kRiseRounds; ++round)
       if (!settle_rise(motion)) return false;
-    if (!(fit.second > kDistinct * fit.best && fit.second > kMinSecond) || !turns(motion)) return false;
-    const double in = share_within(motion, kTolerance, 1), wider = share_within(motion, 4 * kTolerance, 1);
+    const bool distinct = fit.second > kDistinct * fit.best && fit.second > kMinSecond;
+    // What turns without a rise about the same axis may have drawn the fit to an axis between both.
+    if (family_.settle(motion) && family_.rises().size() == 2 && family_.is_distinct() && is_sharp() &&
+        family_share() > kMuchMore * share_at(motion)) {
+      bool any = false;
+      for (std::size_t k = 0; k < family_.rises().size(); ++k) any |= accept_of_family(k);
+      return any;
+    }
+    return distinct && accept(motion);
+  }
+
+  /// Keeps the facets of_ as a surface about `motion`, if it is one that turns.
+  bool accept(const ScrewMotion& motion) {
+    if (!turns(motion)) return false;
+    const double in = share_within(motion, kTolerance, 1), wider = share_beside(motion);
     if (in < kMinShare || wider > (in > kMuch ? kMaxWiderOfMuch : kMaxWider) * in) return false;
-    motion = refined(facets_.all, of_, motion);
-    use_up(motion);
-    add(motion, in);
+    const ScrewMotion fine = refined(facets_.all, of_, motion);
+    use_up(fine);
+    add(fine, in);
     return true;
+  }
+
+  bool accept_of_family(std::size_t place) {
+    of_.clear();
+    for (std::size_t i = 0; i < facets_.all.size(); ++i)
+      if (family_.rise_of(i) == static_cast<std::int8_t>(place)) of_.push_back(i);
+    if (of_.size() < 8) return false;
+    spread_ = family_.spread();
+    return accept(with_rise(family_.axis(), family_.rises()[place]));
+  }
+
+  /// Whether what is said to follow the family does so closely.
+  bool is_sharp() const {
+    double all = 0;
+    for (std::size_t i = 0; i < facets_.all.size(); ++i)
+      if (family_.rise_of(i) != AxisFamily::kNone) all += facets_.all[i].area;
+    return family_share() * facets_.area > kSharpPart * all;
+  }
+
+  /// Share of the surface that is square to the motion to within a few mrad.
+  double share_at(const ScrewMotion& motion) const {
+    double in = 0;
+    for (std::size_t i = 0; i < facets_.all.size(); ++i)
+      if (free_[i] && !is_end(facets_.all[i], motion) && angle_at_middle(facets_.all[i], motion) < kSharpTolerance)
+        in += facets_.all[i].area;
+    return in / facets_.area;
+  }
+
+  /// The same of all motions of the family together.
+  double family_share() const {
+    double in = 0;
+    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
+      if (family_.rise_of(i) == AxisFamily::kNone) continue;
+      for (const double rise : family_.rises()) {
+        if (!(angle_at_middle(facets_.all[i], with_rise(family_.axis(), rise)) < kSharpTolerance)) continue;
+        in += facets_.all[i].area;
+        break;
+      }
+    }
+    return in / facets_.area;
+  }
+
+  /// The same within four tolerances, without what turns about the axis: the cone beside a flank leans by the thread's
+  /// rise from it, and is no chance.
+  double share_beside(const ScrewMotion& motion) const {
+    const ScrewMotion plain = with_rise(motion, -motion.rise());
+    double in = 0;
+    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
+      const Facet& f = facets_.all[i];
+      if (!free_[i] || is_end(f, motion)) continue;
+      const double off = angle_off(f, motion);
+      if (off < kTolerance || (off < 4 * kTolerance && angle_off(f, plain) >= kTolerance)) in += f.area;
+    }
+    return in / facets_.area;
   }
 
   /// What follows the motion, or nearly, begins no other search, nor do ends and shoulders; a cone beside a thread
@@ -249,11 +347,6 @@ class Search {
     return of_.size() >= 8;
   }
 
-  static ScrewMotion with_rise(ScrewMotion plain, double rise) {
-    plain.c_bar += rise * plain.c;
-    return plain;
-  }
-
   /// Drops those of of_ whose own rise is another.
   void keep_rise(const ScrewMotion& motion, const ScrewMotion& plain, double rise, double spread) {
     std::size_t kept = 0;
@@ -318,6 +411,7 @@ class Search {
   std::vector<ScrewAxis> found_;
   int failures_ = 0;
   double rough_ = 0, spread_ = 0;  ///< of the motion that is looked at
+  AxisFamily family_;              ///< the same with what turns beside it
   std::vector<std::pair<double, std::size_t>> near_;
   std::vector<std::size_t> of_;
   std::vector<double> weight_;

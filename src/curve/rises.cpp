@@ -10,6 +10,8 @@ namespace {
 constexpr double kChordError = 0.05;
 /// Rises from which the most frequent one is looked for, steps of each.
 constexpr int kStarts = 16, kSteps = 12;
+/// What is so many spreads away does not count; a step of this part of the spread is the last.
+constexpr double kReach = 3, kStill = 1e-3;
 
 }  // namespace
 
@@ -33,15 +35,17 @@ double most_frequent(std::vector<OwnRise>& own, double spread) {
     for (int step = 0; step < kSteps; ++step) {
       double sum = 0;
       density = 0;
-      for (const OwnRise& o : own) {
-        const double x = (o.rise - at) / spread;
-        if (std::abs(x) > 3) continue;
-        const double w = o.weight * std::exp(-0.5 * x * x);
-        sum += w * o.rise;
+      const auto begin = std::lower_bound(own.begin(), own.end(), at - kReach * spread,
+                                          [](const OwnRise& o, double rise) { return o.rise < rise; });
+      for (auto o = begin; o != own.end() && o->rise <= at + kReach * spread; ++o) {
+        const double x = (o->rise - at) / spread, w = o->weight * std::exp(-0.5 * x * x);
+        sum += w * o->rise;
         density += w;
       }
       if (!(density > 0)) break;
-      at = sum / density;
+      const double next = sum / density, moved = std::abs(next - at);
+      at = next;
+      if (moved < kStill * spread) break;
     }
     if (density > most) most = density, best = at;
   }

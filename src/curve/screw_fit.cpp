@@ -17,7 +17,7 @@ struct Squares {
   double weight = 0, distance2 = 0;
 
   Squares(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const std::vector<double>& w,
-          const ScrewMotion* near) {
+          const ScrewMotion* near, const std::vector<double>* rise) {
     const auto place = [near](const Facet& f) { return near == nullptr ? f.center : chord_middle(f, *near); };
     for (std::size_t i = 0; i < of.size(); ++i) {
       middle += w[i] * place(facets[of[i]]);
@@ -27,7 +27,7 @@ struct Squares {
     middle /= weight;
     for (std::size_t i = 0; i < of.size(); ++i) {
       const Facet& f = facets[of[i]];
-      const Vec3 x = place(f) - middle, m = x.cross(f.normal);
+      const Vec3 x = place(f) - middle, m = x.cross(f.normal) + (rise == nullptr ? 0.0 : (*rise)[i]) * f.normal;
       velocity += w[i] * f.normal * f.normal.transpose();
       mixed += w[i] * f.normal * m.transpose();
       turn += w[i] * m * m.transpose();
@@ -44,9 +44,9 @@ struct Squares {
 }  // namespace
 
 ScrewFit fit_screw(const std::vector<Facet>& facets, const std::vector<std::size_t>& of,
-                   const std::vector<double>& weight, const ScrewMotion* near) {
+                   const std::vector<double>& weight, const ScrewMotion* near, const std::vector<double>* rise) {
   ScrewFit fit;
-  const Squares s(facets, of, weight, near);
+  const Squares s(facets, of, weight, near, rise);
   if (!(s.weight > 0) || !(s.distance2 > 0)) return fit;
   const Mat3 inverse = s.velocity.inverse();
   const Mat3 rest = s.turn - s.mixed.transpose() * inverse * s.mixed;
@@ -64,7 +64,7 @@ ScrewFit fit_screw(const std::vector<Facet>& facets, const std::vector<std::size
 
 ScrewMotion without_rise(const std::vector<Facet>& facets, const std::vector<std::size_t>& of,
                          const std::vector<double>& weight, const ScrewMotion& motion) {
-  Squares s(facets, of, weight, &motion);
+  Squares s(facets, of, weight, &motion, nullptr);
   ScrewMotion out = motion;
   // A rise costs more than anything.
   const Mat3 along = motion.c * motion.c.transpose();

@@ -51,8 +51,10 @@ inline Vec3 chord_middle(const Facet& f, const ScrewMotion& m) {
 
 /// Fits to the facets `of[i]` with `weight[i]`. Where a whole family fits, as for a cylinder of any rise, the one of
 /// least velocity. Facets count at the middle of their chords about `near`, where one is known, else at their centers.
+/// With `rise` the facet of[i] follows the motion with so much more rise.
 ScrewFit fit_screw(const std::vector<Facet>& facets, const std::vector<std::size_t>& of,
-                   const std::vector<double>& weight, const ScrewMotion* near = nullptr);
+                   const std::vector<double>& weight, const ScrewMotion* near = nullptr,
+                   const std::vector<double>* rise = nullptr);
 
 /// The same with the direction of `motion`, and without a rise.
 ScrewMotion without_rise(const std::vector<Facet>& facets, const std::vector<std::size_t>& of,

@@ -10,6 +10,7 @@
 #include "models/revolved.hpp"
 #include "models/shapes.hpp"
 #include "models/threaded.hpp"
+#include "thread_families.hpp"
 
 using namespace tegotae;
 using namespace tegotae::shapes;
@@ -193,4 +194,55 @@ TEST_CASE("a part with several axes has them all", "[curve]") {
       return o.angle < 5e-3 && o.distance < 2e-4 && std::abs(o.pitch - pitches[i]) < 1e-4;
     }));
   }
+}
+
+namespace {
+
+/// Whether one of the first axes is the thread's, and its rise over what it should be.
+bool knows_thread(const TriangleMesh& mesh, const Pose& X, double scale, double lead, double& ratio) {
+  const auto axes = find_axes(mesh);
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, axes.size()); ++i) {
+    const Off o = off(axes[i], X);
+    if (o.angle > 5e-3 || o.distance > 1e-4 * scale || std::abs(o.pitch / scale / lead - 1) > 0.02) continue;
+    ratio = o.pitch / scale / lead;
+    return true;
+  }
+  return false;
+}
+
+/// Threads of any kind, in any place, order and size, clean and dirty: how many of `count` pairs are known on both
+/// sides.
+void check_families(unsigned seed, int count) {
+  test::ThreadFamily family(seed);
+  int missed = 0, unlike = 0;
+  for (int i = 0; i < count; ++i) {
+    const test::ThreadedPair pair = family.next();
+    const bool dirty = family.one_in(3);
+    double ratio[2] = {0, 0};
+    int side = 0;
+    for (const TriangleMesh* part : {&pair.screw, &pair.nut}) {
+      TriangleMesh mesh = dirty ? family.soiled(*part) : family.shuffled(*part);
+      const double scale = std::pow(10.0, family.between(-1.5, 2.0));
+      const Vec3 turn = family.vector(2);
+      const Pose X{rotation(turn), family.vector(0.1)};
+      for (Vec3& v : mesh.vertices) v = X * Vec3(scale * v);
+      const bool known = knows_thread(mesh, X, scale, pair.lead, ratio[side]);
+      if (!known) UNSCOPED_INFO((side == 0 ? "screw: " : "nut: ") << pair.what << (dirty ? ", dirty" : ""));
+      missed += !known;
+      ++side;
+    }
+    unlike += ratio[0] != 0 && ratio[1] != 0 && std::abs(ratio[0] / ratio[1] - 1) > 0.01;
+  }
+  // What is missed is certified by planes alone, which is slower.
+  CHECK(100 * missed <= 2 * 2 * count);
+  CHECK(100 * unlike <= count);
+}
+
+}  // namespace
+
+TEST_CASE("threads of any family are known from their triangles", "[curve]") {
+  check_families(1, 30);
+}
+TEST_CASE("threads of any family are known from their triangles, at length", "[.long]") {
+  check_families(2, 2000);
 }
