@@ -24,12 +24,16 @@ constexpr std::size_t kKeepSplits = 512;
 
 /// A tick raises half as many pairs again as it split (or the front grows without end) and this many more; what it
 /// cannot raise is owed, up to a bound, and made up by as many more a tick.
-constexpr int kRaiseAlways = 2, kMaxDebt = 4096, kMaxRaises = 6;
+constexpr int kRaiseAlways = 2, kMaxDebt = 4096, kMaxRaises = 24;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
 /// Tries to raise in one call: fewer than the least share come off, and the next call tries half as many; more than the
 /// good share, twice as many. Never less than the fewest, and one for so many pairs.
-constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8, kGoodShare = 3;
+constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 512, kPoorShare = 8, kGoodShare = 3;
+/// Pairs looked at in one call, and this part of the front.
+constexpr int kMinLooks = 512, kLookShare = 16;
+/// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
+constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
 constexpr int kLateTries = 32;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
@@ -68,8 +72,8 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   cursor_ = 0;
   debt_ = 0;
   effort_ = kMaxTries;
-  motion_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}};
+  motion_ = travel_ = 0;
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}, 0, 0};
   enter(0);
 }
 
@@ -112,6 +116,7 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   curved_.begin(*a_, center_, *b_, sweep_);
   const double carried = d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm();
   if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
+  travel_ += carried;
 }
 
 LaneSweep PatchFront::lane_sweep() const {
@@ -221,17 +226,32 @@ void PatchFront::raise() {
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
   int tries = 0;
   // Round robin over all groups, once around at most.
-  for (int looks = pairs(); looks > 0 && report_.merges < wanted && tries < most; --looks) {
+  for (int looks = std::min(pairs(), std::max(kMinLooks, pairs() / kLookShare));
+       looks > 0 && report_.merges < wanted && tries < most; --looks) {
     if (++cursor_ >= static_cast<std::uint32_t>(pairs())) cursor_ = 0;
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
-    if (parent == kNoPair || pool_[parent].child != id || !all_in_front(parent)) continue;
+    if (parent == kNoPair || pool_[parent].child != id || !may_raise(parent)) continue;
     if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (try_raise(parent)) ++report_.merges;
   }
   if (kPoorShare * report_.merges < tries) effort_ /= 2;
   if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMaxTries);
   debt_ -= report_.merges;
+}
+
+bool PatchFront::may_raise(std::uint32_t id) const {
+  return pool_[id].retry <= travel_ && all_in_front(id);
+}
+
+/// What could not be raised is tried again when the motion has changed it, at ever longer intervals.
+void PatchFront::put_off(std::uint32_t id) {
+  PairNode& p = pool_[id];
+  PatchNode scratch_a, scratch_b;
+  const double width = std::min(box_a(p, scratch_a).half[1], box_b(p, scratch_b).half[1]);
+  const double first = kFirstWait * motion_, last = std::max(first, kLastWait * width);
+  p.wait = static_cast<float>(std::clamp(2.0 * p.wait, first, last));
+  p.retry = travel_ + p.wait;
 }
 
 bool PatchFront::try_raise(std::uint32_t id) {
@@ -247,7 +267,9 @@ bool PatchFront::try_raise(std::uint32_t id) {
     set_plane(id, n);
     return true;
   }
-  return bend(id, spare);
+  if (bend(id, spare)) return true;
+  put_off(id);
+  return false;
 }
 
 }  // namespace tegotae

@@ -81,6 +81,8 @@ class PatchFront {
     std::uint8_t curved;          ///< kept apart about the axis pair of this number less one; 0: by a plane
     bool face_a, face_b;          ///< which of a and b are faces
     std::array<float, 3> normal;  ///< last plane, kept here while split or curved
+    float wait;                   ///< travel between two tries to raise it, m
+    double retry;                 ///< travel_ from which on it may be raised
   };
   /// The pairs of the front of one kind, dense.
   struct Group {
@@ -108,7 +110,9 @@ class PatchFront {
   void flatten(std::uint32_t id);
   std::uint32_t in_front(std::uint32_t i) const;  ///< the i-th of pairs()
   bool all_in_front(std::uint32_t id) const;      ///< the children
+  bool may_raise(std::uint32_t id) const;
   bool try_raise(std::uint32_t id);
+  void put_off(std::uint32_t id);
 
   std::uint32_t allocate(std::uint32_t children);
   void enter(std::uint32_t id);
@@ -149,6 +153,7 @@ class PatchFront {
   std::vector<BlockingPair> blocking_;
   std::uint32_t cursor_ = 0;  ///< where raising goes on
   double motion_ = 0;         ///< longest motion of late, m
+  double travel_ = 0;         ///< sum of the lengths of all motions, m
   int debt_ = 0;              ///< pairs to raise, for those that were split
   int effort_ = 0;            ///< pairs that one call tries to raise, fitted to what comes of it
 

@@ -52,9 +52,11 @@ bool PatchFront::split(std::uint32_t id) {
   parent.child = child;
   parent.children = static_cast<std::uint8_t>(children);
   parent.curved = 0;
+  parent.wait = 0;
+  put_off(id);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, parent.normal};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, parent.normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();

@@ -14,6 +14,9 @@ constexpr std::size_t kMaxFronts = 32;
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kMinPairs = 1u << 13;
 constexpr std::size_t kMaxPairs = 1u << 15;
+// The most of one of few parts that are held together by threads or bores, where cells would be slower by far: they
+// slide along each other, and coarse facets of both may have to be told apart one by one.
+constexpr std::size_t kMaxSlidingPairs = 1u << 16;
 // Of a front's pairs those about each of its axes that may be curved (about 160 bytes each).
 constexpr double kCurvedShare = 0.125;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
@@ -85,7 +88,10 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   FrontCapacity capacity;
   capacity.blocking = kMaxBlocking;
   capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kMinPairs, kMaxPairs));
-  if (any_axes) capacity.curved = static_cast<std::uint32_t>(kCurvedShare * capacity.pairs);
+  if (any_axes) {
+    capacity.curved = static_cast<std::uint32_t>(kCurvedShare * capacity.pairs);
+    capacity.pairs = static_cast<std::uint32_t>(std::clamp(kAllPairs / fronts, kMinPairs, kMaxSlidingPairs));
+  }
   fronts_.reserve(fronts);
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);
   part_of_.assign(fronts, kNobody);
@@ -168,7 +174,9 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
       report = ask_front(part, X, d, clearance, limit_);
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
-    if ((cuts > kMaxCuts && report.pairs > kManyPairs) || (report.overflow && report.status == CertifyStatus::cut)) {
+    const bool slides = !axes_[part]->empty();
+    if ((cuts > kMaxCuts && report.pairs > kManyPairs && !slides) ||
+        (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;
