@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <set>
 
 #include "bench/results.hpp"
@@ -71,9 +72,16 @@ SceneFigures measure_scene(const std::string& name, const BenchOptions& options,
     HapticLoop loop(scene.scene);
     center = loop.center();
     progress.say(name + ": at hand speed");
+    Scene boundless = scene.scene;
+    boundless.contact.tick_budget = std::numeric_limits<double>::infinity();
+    HapticLoop unlimited(boundless);
     f.hand = measure_loop(scene, loop, kHandSpeed, options.quick ? 1 : kRounds, trace);
+    progress.say(name + ": the same without a budget");
+    f.hand_lag = measure_lag(scene, unlimited, trace);
     progress.say(name + ": fast");
     f.fast = measure_loop(scene, loop, kFastSpeed, options.quick ? 1 : kFastRounds, trace);
+    progress.say(name + ": the same without a budget");
+    f.fast_lag = measure_lag(scene, unlimited, trace);
   }
   if (options.mu > 0) {
     progress.say(name + ": friction");

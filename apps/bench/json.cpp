@@ -24,6 +24,16 @@ void add(const LoopFigures& f, Json& j) {
   j["fifo"] = f.fifo;
 }
 
+Json to_json(const LagFigures& f) {
+  return {{"p50_m", f.p50},
+          {"p99_m", f.p99},
+          {"max_m", f.most},
+          {"force_rms_n", f.force_rms},
+          {"force_error_rms_n", f.error_rms},
+          {"force_error_share", json_number(f.error_share)},
+          {"force_error_max_n", f.error_most}};
+}
+
 Json to_json(const SeatFigures& f) {
   return {{"rest_us", apps::to_json(f.rest_us)},
           {"moving_us", apps::to_json(f.moving_us)},
@@ -44,7 +54,9 @@ Json to_json(const SceneFigures& s) {
   j["fcl_poses"] = s.fcl.poses;
   j["fcl_overlapping"] = s.fcl.overlap;
   j["fcl_pairs"] = s.fcl.pairs;
+  j["lag"] = to_json(s.hand_lag);
   add(s.fast, j["fast"]);
+  j["fast"]["lag"] = to_json(s.fast_lag);
   j["build_us_per_triangle"] = s.build.us_per_triangle;
   j["bytes_per_triangle"] = s.build.bytes_per_triangle;
   j["checked"] = s.checked;

@@ -25,6 +25,8 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
   std::vector<std::int64_t> wall, cpu;
   wall.reserve(ticks);
   cpu.reserve(ticks);
+  trace.ticks.clear();
+  trace.ticks.reserve(ticks);
   double lowest = 0;
   f.fifo = on_measuring_thread([&] {
     Rest rest;
@@ -34,6 +36,7 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
       const std::int64_t cpu0 = thread_cpu_ns(), wall0 = monotonic_ns();
       const TickReport& r = loop.step(Y, kPeriod);
       const std::int64_t wall1 = monotonic_ns(), cpu1 = thread_cpu_ns();
+      trace.ticks.push_back({r.proxy.X, Y});
       if (scene.tip) lowest = std::min(lowest, (r.proxy.X * *scene.tip).z());
       if (k % stride == 0) {
         for (const Pose& X : r.pieces) trace.committed.add(X);

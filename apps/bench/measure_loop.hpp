@@ -35,6 +35,10 @@ struct LoopTrace {
   std::int64_t checked = 0;  ///< their number
   /// An even sample of X and Y while in contact.
   std::vector<Pose> X, Y;
+  struct Tick {
+    Pose X, Y;
+  };
+  std::vector<Tick> ticks;  ///< all of the last run
 };
 
 /// Runs `rounds` rounds of the scene's pen at `speed`, a tick each millisecond of virtual time. `loop` must be where

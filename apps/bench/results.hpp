@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/measure_fcl.hpp"
+#include "bench/measure_lag.hpp"
 #include "bench/measure_loop.hpp"
 #include "bench/measure_lp.hpp"
 #include "bench/measure_seat.hpp"
@@ -43,6 +44,7 @@ struct SceneFigures {
   std::size_t fixed_triangles = 0;
   LoopFigures hand;  ///< at hand speed: what the targets are about
   LoopFigures fast;
+  LagFigures hand_lag, fast_lag;  ///< of these runs, against the same without a budget
   FclFigures fcl;
   BuildFigures build;
   std::int64_t checked = 0;       ///< committed poses that FCL was asked about after the runs

@@ -153,6 +153,24 @@ std::string budget_table(const Results& r) {
          text;
 }
 
+std::string lag_table(const Results& r) {
+  std::string text =
+      "\n### Lag: against the same pen without a budget\n\n| scene | pen | X is off: median / p99 / max, µm | force, N "
+      "RMS | its error, N RMS (max) | of the force | ticks cut |\n|---|---|---|---|---|---|---|\n";
+  const auto row = [&](const SceneFigures& s, const char* pen, const LagFigures& f, const LoopFigures& loop) {
+    const std::string share = std::isfinite(f.error_share) ? format("%.2g %%", 100 * f.error_share) : "–";
+    text += format("| `%s` | %s | %s / %s / %s | %s | %s (%s) | %s | %zu of %zu |\n", s.scene.c_str(), pen,
+                   number(1e6 * f.p50).c_str(), number(1e6 * f.p99).c_str(), number(1e6 * f.most).c_str(),
+                   number(f.force_rms).c_str(), number(f.error_rms).c_str(), number(f.error_most).c_str(),
+                   share.c_str(), loop.cut, loop.in_contact);
+  };
+  for (const SceneFigures& s : r.rows) {
+    row(s, "hand", s.hand_lag, s.hand);
+    row(s, "fast", s.fast_lag, s.fast);
+  }
+  return text;
+}
+
 std::string friction_table(const Results& r) {
   std::string text;
   for (const SceneFigures& s : r.rows) {
@@ -198,8 +216,8 @@ std::string tables(const Results& r) {
   std::string text;
   if (!r.rows.empty())
     text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
-            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + friction_table(r) + seat_table(r) +
-            "\n### Hierarchies and checks\n\n" + checks_table(r);
+            "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + lag_table(r) + friction_table(r) +
+            seat_table(r) + "\n### Hierarchies and checks\n\n" + checks_table(r);
   return text + budget_table(r) + lp_table(r);
 }
 

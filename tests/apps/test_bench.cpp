@@ -42,6 +42,12 @@ TEST_CASE("the smallest scene gives a whole report", "[bench]") {
     CHECK(run.at("contacts").get<double>() > 0);
     CHECK(run.at("ticks_in_contact").get<int>() <= run.at("ticks").get<int>());
     CHECK(run.at("resolves").get<double>() >= 1);
+    const json& lag = run.at("lag");
+    check_ordered(lag, {"p50_m", "p99_m", "max_m"});
+    CHECK(lag.at("force_rms_n").get<double>() > 0.01);  // the pen presses
+    CHECK(lag.at("force_error_share").get<double>() ==
+          Approx(lag.at("force_error_rms_n").get<double>() / lag.at("force_rms_n").get<double>()));
+    CHECK(lag.at("force_error_max_n").get<double>() >= lag.at("force_error_rms_n").get<double>());
   }
   CHECK(row.at("ticks_in_contact").get<int>() > 100);
   check_ordered(row.at("fcl_us"), {"p50", "p99"});
