@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curve/axis_judge.hpp"
 #include "curve/facet_angle.hpp"
 
 namespace tegotae {
@@ -10,12 +11,10 @@ namespace {
 
 constexpr double kEndNormal = 0.98;
 constexpr int kRounds = 6;
-/// On a sphere all axes through its center fit alike: the second least mean square is as small as the least.
+/// The second least mean square is as small as the least on a sphere.
 constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// A facet is of the nearest rise where its own one lies within so many spreads.
 constexpr double kSameSpread = 2;
-/// What does not lean follows the axis where its normal is off by less (rad).
-constexpr double kTolerance = 0.02;
 /// Squares are of angles: facets nearer to the axis than this (of the size) do not count more.
 constexpr double kLeastSpeed2 = 1e-4;
 /// Of a normal distribution, 30 % are within 1 / 2.6 of the deviation.
@@ -25,6 +24,10 @@ constexpr double kQuantile = 0.3, kOfQuantile = 2.6;
 
 bool is_end(const Facet& f, const ScrewMotion& m) {
   return std::abs(f.normal.dot(m.c)) > kEndNormal;
+}
+
+bool is_distinct(const ScrewFit& fit) {
+  return fit.second > kDistinct * fit.best && fit.second > kMinSecond;
 }
 
 ScrewMotion with_rise(ScrewMotion plain, double rise) {
@@ -67,7 +70,7 @@ void AxisFamily::collect() {
     const Facet& f = facets_[i];
     if (!free_[i] || is_end(f, axis_)) continue;
     for (const double rise : rises_) {
-      if (angle_off(f, with_rise(axis_, rise)) > kTolerance) continue;
+      if (angle_off(f, with_rise(axis_, rise)) > kAxisTolerance) continue;
       near_.push_back(i);
       break;
     }
@@ -150,10 +153,6 @@ bool AxisFamily::refit() {
   std::nth_element(angle.begin(), place, angle.end());
   rough_ = kOfQuantile * *place;
   return true;
-}
-
-bool AxisFamily::is_distinct() const {
-  return fit_.second > kDistinct * fit_.best && fit_.second > kMinSecond;
 }
 
 }  // namespace tegotae

@@ -27,9 +27,8 @@ class AxisFamily {
   const ScrewMotion& axis() const { return axis_; }                         ///< the turn without a rise
   const std::vector<double>& rises() const { return rises_; }               ///< of a thread, if there is one, and 0
   std::int8_t rise_of(std::size_t facet) const { return of_rise_[facet]; }  ///< its place in rises(), kAny or kNone
-  /// Whether no other axis fits nearly as well, as for a sphere.
-  bool is_distinct() const;
-  double spread() const { return spread_; }  ///< rises that differ by less are one
+  const ScrewFit& fit() const { return fit_; }                              ///< of all of them together
+  double spread() const { return spread_; }                                 ///< rises that differ by less are one
 
  private:
   bool settle_rounds();
@@ -53,6 +52,8 @@ class AxisFamily {
 
 /// Normals within 11° of the axis are those of ends and shoulders, which follow any motion about it.
 bool is_end(const Facet& f, const ScrewMotion& m);
+/// Whether no other axis fits nearly as well: on a sphere all axes through its center do.
+bool is_distinct(const ScrewFit& fit);
 /// The turn `plain` with a rise.
 ScrewMotion with_rise(ScrewMotion plain, double rise);
 /// Facets that lean less than this along the axis (cosine) say nothing about a rise.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "curve/axis_family.hpp"
+#include "curve/axis_judge.hpp"
 #include "curve/axis_refine.hpp"
 #include "curve/facet_angle.hpp"
 #include "curve/facets.hpp"
@@ -20,36 +21,30 @@ constexpr std::size_t kNearest[] = {1200, 300, 60};
 /// Every so many facets are asked first, and this part of the surface must follow a motion or it is dropped.
 constexpr std::size_t kFirstStride = 8;
 constexpr double kMinShare = 0.01;
-/// How far a facet's normal may be from square to the motion (rad) beyond what its own width explains.
-constexpr double kTolerance = 0.02;
 /// The last rounds weigh facets by their angle against this: a cone beside a flank must not bend the flank's rise.
 constexpr double kSharpAngle = 0.008;
 constexpr int kSharpRounds = 4, kRiseRounds = 3;
-constexpr double kRounds[] = {4 * kTolerance, 2 * kTolerance, kTolerance, kTolerance};
+constexpr double kRounds[] = {4 * kAxisTolerance, 2 * kAxisTolerance, kAxisTolerance, kAxisTolerance};
 /// Of facets that merely cross the motion as they happen to lie, four times as many are within four tolerances.
 constexpr double kMaxWider = 1.35;
 /// A rough surface spreads its normals; what is most of a part is taken all the same.
 constexpr double kMuch = 0.3, kMaxWiderOfMuch = 1.75;
 /// So many motions that turn out to be none end the search.
 constexpr int kMaxFailures = 16;
-/// A surface that turns about an axis has normals in at least so many of the sectors around it; prisms do not.
-constexpr int kSectors = 32, kMinSectors = 8;
-constexpr double kSectorShare = 0.002;
-/// On a sphere all axes through its center fit alike: the second least mean square is as small as the least.
-constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// Facets are of one rise where their own ones lie within so many times their spread.
 constexpr double kSameSpread = 2;
 /// Threads whose axes lean from each other by less (rad) are one, fitted well or badly.
 constexpr double kNearly = 0.3;
-/// Several motions about one axis are taken where they explain so much more of the surface, to within this (rad).
-constexpr double kMuchMore = 1.05, kSharpTolerance = 0.004, kSharpPart = 0.8;
+/// Several motions about one axis are taken where they explain so much more of the surface closely, and so much of what
+/// is said to follow them.
+constexpr double kMuchMore = 1.05, kSharpPart = 0.8;
 /// Two motions are one where axes and rises agree to this (rad, shares of the size).
 constexpr double kSameAngle = 0.02, kSamePlace = 0.01, kSameRise = 0.1;
 
 class Search {
  public:
   explicit Search(const TriangleMesh& mesh)
-      : facets_(mesh), free_(facets_.all.size(), 1), family_(facets_.all, free_) {}
+      : facets_(mesh), free_(facets_.all.size(), 1), judge_(facets_, free_), family_(facets_.all, free_) {}
 
   std::vector<ScrewAxis> run() {
     std::vector<double> apart(facets_.all.size(), std::numeric_limits<double>::infinity());
@@ -76,14 +71,14 @@ class Search {
       std::fill(free_.begin(), free_.end(), 1);
       if (!family_.settle_about(motion_of(axis)) || family_.rises().size() < 2 || !is_sharp()) continue;
       const ScrewMotion thread = with_rise(family_.axis(), family_.rises()[0]);
-      const double share = share_at(thread);
+      const double share = judge_.share_at(thread);
       // What leans from it a little and explains less is the same thread, badly fitted.
       std::vector<ScrewAxis> better;
       bool worse = false;
       for (const ScrewAxis& other : found_) {
         const bool same = other.rise != 0 && other.direction.cross(thread.c).norm() < kNearly;
-        if (same && !(share_at(motion_of(other)) < share)) worse = true;
-        if (!same || !(share_at(motion_of(other)) < share)) better.push_back(other);
+        if (same && !(judge_.share_at(motion_of(other)) < share)) worse = true;
+        if (!same || !(judge_.share_at(motion_of(other)) < share)) better.push_back(other);
       }
       if (worse) continue;
       better.swap(found_);
@@ -132,7 +127,7 @@ class Search {
     std::sort(of_.begin(), of_.end());
     ScrewMotion motion;
     if (!fit_locally(motion)) return false;
-    if (share_within(motion, kRounds[0], kFirstStride) < kMinShare) return false;
+    if (judge_.share_within(motion, kRounds[0], kFirstStride) < kMinShare) return false;
     const bool grown = grow(motion);
     failures_ += !grown;
     return grown;
@@ -141,7 +136,7 @@ class Search {
   /// Weights that fall off with the angle keep what belongs to another surface out.
   bool fit_locally(ScrewMotion& motion) {
     double scale = 0.3;
-    for (int round = 0; round < 5; ++round, scale = std::max(kTolerance, 0.5 * scale)) {
+    for (int round = 0; round < 5; ++round, scale = std::max(kAxisTolerance, 0.5 * scale)) {
       weight_.clear();
       for (const std::size_t i : of_) {
         const Facet& f = facets_.all[i];
@@ -155,16 +150,6 @@ class Search {
     return true;
   }
 
-  double share_within(const ScrewMotion& motion, double tolerance, std::size_t stride) const {
-    double in = 0, all = 0;
-    for (std::size_t i = 0; i < facets_.all.size(); i += stride) {
-      const Facet& f = facets_.all[i];
-      all += f.area;
-      if (free_[i] && !is_end(f, motion) && angle_off(f, motion) < tolerance) in += f.area;
-    }
-    return all > 0 ? in / all : 0;
-  }
-
   /// From a first motion to the one of all facets that follow it, and whether that is a surface that turns.
   bool grow(ScrewMotion motion) {
     ScrewFit fit;
@@ -176,7 +161,7 @@ class Search {
       motion = fit.motion;
     }
     for (int round = 0; round < kSharpRounds; ++round) {
-      take(motion, kTolerance);
+      take(motion, kAxisTolerance);
       sharpen(motion);
       fit = fit_screw(facets_.all, of_, weight_, &motion);
       if (!fit.found) return false;
@@ -184,10 +169,10 @@ class Search {
     }
     for (int round = 0; round < kRiseRounds; ++round)
       if (!settle_rise(motion)) return false;
-    const bool distinct = fit.second > kDistinct * fit.best && fit.second > kMinSecond;
+    const bool distinct = is_distinct(fit);
     // What turns without a rise about the same axis may have drawn the fit to an axis between both.
-    if (family_.settle(motion) && family_.rises().size() == 2 && family_.is_distinct() && is_sharp() &&
-        family_share() > kMuchMore * share_at(motion)) {
+    if (family_.settle(motion) && family_.rises().size() == 2 && is_distinct(family_.fit()) && is_sharp() &&
+        family_share() > kMuchMore * judge_.share_at(motion)) {
       bool any = false;
       for (std::size_t k = 0; k < family_.rises().size(); ++k) any |= accept_of_family(k);
       return any;
@@ -197,8 +182,8 @@ class Search {
 
   /// Keeps the facets of_ as a surface about `motion`, if it is one that turns.
   bool accept(const ScrewMotion& motion) {
-    if (!turns(motion)) return false;
-    const double in = share_within(motion, kTolerance, 1), wider = share_beside(motion);
+    if (!judge_.turns(of_, motion)) return false;
+    const double in = judge_.share_within(motion, kAxisTolerance, 1), wider = judge_.share_beside(motion);
     if (in < kMinShare || wider > (in > kMuch ? kMaxWiderOfMuch : kMaxWider) * in) return false;
     const ScrewMotion fine = refined(facets_.all, of_, motion);
     use_up(fine);
@@ -223,15 +208,6 @@ class Search {
     return family_share() * facets_.area > kSharpPart * all;
   }
 
-  /// Share of the surface that is square to the motion to within a few mrad.
-  double share_at(const ScrewMotion& motion) const {
-    double in = 0;
-    for (std::size_t i = 0; i < facets_.all.size(); ++i)
-      if (free_[i] && !is_end(facets_.all[i], motion) && angle_at_middle(facets_.all[i], motion) < kSharpTolerance)
-        in += facets_.all[i].area;
-    return in / facets_.area;
-  }
-
   /// The same of all motions of the family together.
   double family_share() const {
     double in = 0;
@@ -246,20 +222,6 @@ class Search {
     return in / facets_.area;
   }
 
-  /// The same within four tolerances, without what turns about the axis: the cone beside a flank leans by the thread's
-  /// rise from it, and is no chance.
-  double share_beside(const ScrewMotion& motion) const {
-    const ScrewMotion plain = with_rise(motion, -motion.rise());
-    double in = 0;
-    for (std::size_t i = 0; i < facets_.all.size(); ++i) {
-      const Facet& f = facets_.all[i];
-      if (!free_[i] || is_end(f, motion)) continue;
-      const double off = angle_off(f, motion);
-      if (off < kTolerance || (off < 4 * kTolerance && angle_off(f, plain) >= kTolerance)) in += f.area;
-    }
-    return in / facets_.area;
-  }
-
   /// What follows the motion, or nearly, begins no other search, nor do ends and shoulders; a cone beside a thread
   /// does.
   void use_up(const ScrewMotion& motion) {
@@ -267,7 +229,7 @@ class Search {
     for (std::size_t i = 0; i < facets_.all.size(); ++i) {
       const Facet& f = facets_.all[i];
       if (is_end(f, motion)) free_[i] = 0;
-      if (!free_[i] || angle_off(f, motion) > 4 * kTolerance) continue;
+      if (!free_[i] || angle_off(f, motion) > 4 * kAxisTolerance) continue;
       if (std::abs(f.normal.dot(motion.c)) >= kMinLean) {
         const double own = own_rise(f, plain, rough_).rise, rise = motion.rise();
         const bool other = std::abs(rise) < kMinSpread ? std::abs(own) > 2 * kSameSpread * spread_
@@ -312,7 +274,7 @@ class Search {
   bool settle_rise(ScrewMotion& motion) {
     ScrewMotion plain = motion;
     plain.c_bar -= motion.rise() * motion.c;
-    take(motion, kTolerance);
+    take(motion, kAxisTolerance);
     if (of_.size() < 8) return false;
     rough_ = roughness(motion);
     std::vector<OwnRise> own;
@@ -340,7 +302,7 @@ class Search {
       if (!fit.found) return false;
       motion = fit.motion;
     }
-    take(motion, kTolerance);
+    take(motion, kAxisTolerance);
     spread_ = spread;
     plain = with_rise(motion, -motion.rise());
     keep_rise(motion, plain, motion.rise(), spread);
@@ -361,24 +323,6 @@ class Search {
     weight_.clear();
     for (const std::size_t i : of_)
       weight_.push_back(facets_.all[i].area / std::max(motion.velocity(facets_.all[i].center).squaredNorm(), 1e-4));
-  }
-
-  bool turns(const ScrewMotion& motion) const {
-    std::array<double, kSectors> sector{};
-    double all = 0;
-    const Vec3 u = motion.c.unitOrthogonal(), v = motion.c.cross(u);
-    for (const std::size_t i : of_) {
-      const Facet& f = facets_.all[i];
-      if (is_end(f, motion)) continue;
-      // Which of the two sides a face shows is not known of all meshes; its place tells.
-      const Vec3 x = f.center - motion.axis_point();
-      const double x_u = x.dot(u), x_v = x.dot(v);
-      const double side = f.normal.dot(x_u * u + x_v * v) < 0 ? -1 : 1;
-      const double angle = std::atan2(side * f.normal.dot(v), side * f.normal.dot(u));
-      sector[static_cast<std::size_t>((angle / 6.283185307179586 + 1) * kSectors) % kSectors] += f.area;
-      all += f.area;
-    }
-    return std::count_if(sector.begin(), sector.end(), [&](double a) { return a > kSectorShare * all; }) >= kMinSectors;
   }
 
   void add(const ScrewMotion& motion, double share) {
@@ -410,8 +354,9 @@ class Search {
   std::vector<char> free_;  ///< follows no axis yet
   std::vector<ScrewAxis> found_;
   int failures_ = 0;
-  double rough_ = 0, spread_ = 0;  ///< of the motion that is looked at
-  AxisFamily family_;              ///< the same with what turns beside it
+  AxisJudge judge_;
+  AxisFamily family_;              ///< the motion that is looked at, with what turns beside it
+  double rough_ = 0, spread_ = 0;  ///< of that motion
   std::vector<std::pair<double, std::size_t>> near_;
   std::vector<std::size_t> of_;
   std::vector<double> weight_;

@@ -25,7 +25,7 @@ inline constexpr std::size_t kMaxAxes = 6;
 /// Found from the triangles alone: open surfaces, soups, degenerate and repeated faces do no harm. The same set of
 /// triangles gives the same answer bit for bit, whatever the order of faces and vertices. Nothing that a certificate
 /// proves depends on how well an axis fits; a bad one makes it slower.
-/// 5 to 110 ms; meshes of more than 8000 triangles are sampled.
+/// 10 to 300 ms; meshes of more than 8000 triangles are sampled.
 std::vector<ScrewAxis> find_axes(const TriangleMesh& mesh);
 
 }  // namespace tegotae

@@ -24,13 +24,16 @@ constexpr std::size_t kKeepSplits = 512;
 
 /// A tick raises half as many pairs again as it split (or the front grows without end) and this many more; what it
 /// cannot raise is owed, up to a bound, and made up by as many more a tick.
-constexpr int kRaiseAlways = 2, kMaxDebt = 4096, kMaxRaises = 24;
+constexpr int kRaiseAlways = 2, kMaxDebt = 4096, kMaxRaises = 6;
 /// This part of an old debt is paid in one call; a front that is full owes this part of its pairs.
 constexpr int kDebtShare = 64, kFullShare = 4;
 /// Tries to raise in one call: fewer than the least share come off, and the next call tries half as many; more than the
 /// good share, twice as many. Never less than the fewest, and one for so many pairs.
-constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 512, kPoorShare = 8, kGoodShare = 3;
-/// Pairs looked at in one call, and this part of the front.
+constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8, kGoodShare = 3;
+/// The same of parts that slide along each other about a common axis: their fronts grow larger, and what cannot be
+/// raised waits, so that tries go where something has changed. On parts that roll over each other it gains nothing.
+constexpr int kSlidingRaises = 24, kSlidingTries = 512;
+/// Pairs looked at in one call then, and this part of the front.
 constexpr int kMinLooks = 512, kLookShare = 16;
 /// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
 constexpr double kFirstWait = 4, kLastWait = 4;
@@ -71,7 +74,8 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
   debt_ = 0;
-  effort_ = kMaxTries;
+  slides_ = axes != nullptr && !axes->empty();
+  effort_ = slides_ ? kSlidingTries : kMaxTries;
   motion_ = travel_ = 0;
   pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}, 0, 0};
   enter(0);
@@ -220,7 +224,8 @@ void PatchFront::roll_back() {
 }
 
 void PatchFront::raise() {
-  const int wanted = std::min(debt_, kMaxRaises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
+  const int raises = slides_ ? kSlidingRaises : kMaxRaises;
+  const int wanted = std::min(debt_, raises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
   const int fewest = std::max(kMinTries, pairs() / kPairsPerTry);
   effort_ = std::max(effort_, fewest);
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
@@ -236,7 +241,7 @@ void PatchFront::raise() {
     if (try_raise(parent)) ++report_.merges;
   }
   if (kPoorShare * report_.merges < tries) effort_ /= 2;
-  if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, kMaxTries);
+  if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, slides_ ? kSlidingTries : kMaxTries);
   debt_ -= report_.merges;
 }
 
@@ -246,6 +251,7 @@ bool PatchFront::may_raise(std::uint32_t id) const {
 
 /// What could not be raised is tried again when the motion has changed it, at ever longer intervals.
 void PatchFront::put_off(std::uint32_t id) {
+  if (!slides_) return;
   PairNode& p = pool_[id];
   PatchNode scratch_a, scratch_b;
   const double width = std::min(box_a(p, scratch_a).half[1], box_b(p, scratch_b).half[1]);

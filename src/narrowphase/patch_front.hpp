@@ -154,6 +154,7 @@ class PatchFront {
   std::uint32_t cursor_ = 0;  ///< where raising goes on
   double motion_ = 0;         ///< longest motion of late, m
   double travel_ = 0;         ///< sum of the lengths of all motions, m
+  bool slides_ = false;       ///< the parts have a common axis
   int debt_ = 0;              ///< pairs to raise, for those that were split
   int effort_ = 0;            ///< pairs that one call tries to raise, fitted to what comes of it
 
