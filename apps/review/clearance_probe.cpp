@@ -4,21 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "feature/simplex_distance.hpp"
 #include "loop/scene_parts.hpp"
+#include "narrowphase/patch_cache.hpp"
 
 namespace tegotae::review {
-namespace {
-
-// Of a bound that is itself a distance: what rounding may make of it.
-constexpr double kSlack = 1e-9;
-
-Simplex triangle(const TriangleMesh& mesh, std::uint32_t face, const Pose& X) {
-  const auto& t = mesh.triangles[face];
-  return {3, {X * mesh.vertices[t[0]], X * mesh.vertices[t[1]], X * mesh.vertices[t[2]]}};
-}
-
-}  // namespace
 
 ClearanceProbe::ClearanceProbe(const Scene& scene)
     : scene_(scene), held_(held_part(scene)), ball_(bounding_sphere(*held_.mesh)) {
@@ -26,36 +15,43 @@ ClearanceProbe::ClearanceProbe(const Scene& scene)
     const Part& part = scene.parts[i];
     if (part.held) continue;
     const Sphere ball = bounding_sphere(*part.mesh);
-    others_.push_back({i, {part.pose * ball.center, ball.radius}});
+    others_.push_back({i, {part.pose * ball.center, ball.radius}, std::nullopt, 0});
   }
+}
+
+void ClearanceProbe::start_anew() {
+  for (Other& other : others_) {
+    other.surfaces.reset();
+    other.until = 0;
+  }
+  way_ = 0;
+}
+
+void ClearanceProbe::go_to(const Pose& X) {
+  const Displacement d = displacement(last_, X, ball_.center);
+  way_ += d.dp.norm() + ball_.radius * d.dr.norm();
+  last_ = X;
 }
 
 bool ClearanceProbe::measure(Other& other, const Pose& X, double limit, Clearance& out) {
   const Part& part = scene_.parts[other.part];
-  const Pose X_BA = part.pose.inverse() * X;
-  const auto nearest = [&] {
-    return closest_points(triangle(*held_.mesh, other.last.first, X_BA),
-                          triangle(*part.mesh, other.last.second, Pose()));
-  };
-  // The nearest triangles of the last pose bound the distance at this one, mostly closely.
-  ClosestPoints points = nearest();
-  const double before = std::sqrt(points.squared_distance);
-  const double bound = std::min(before, limit) * (1 + kSlack) + std::numeric_limits<double>::min();
-  const double found = fcl_.distance_below(bound, *held_.mesh, *part.mesh, X_BA, other.last);
-  if (found < bound) points = nearest();
-  const double distance = found > 0 ? std::min(before, std::sqrt(points.squared_distance)) : 0;
-  if (distance > limit) return false;
-  out = {other.part, distance, part.pose * points.a, part.pose * points.b};
-  return true;
+  if (!other.surfaces) other.surfaces.emplace(cached_patch_tree(held_.mesh), cached_patch_tree(part.mesh));
+  NearestPoints points;
+  const bool within = other.surfaces->within(limit, part.pose.inverse() * X, points);
+  other.until = way_ + (within ? points.distance : limit);
+  if (within) out = {other.part, points.distance, part.pose * points.on_a, part.pose * points.on_b};
+  return within;
 }
 
 void ClearanceProbe::at(const Pose& X, double reach, std::vector<Clearance>& out) {
   out.clear();
   order_.clear();
+  go_to(X);
   const Vec3 center = X * ball_.center;
   for (std::size_t i = 0; i < others_.size(); ++i) {
     const Sphere& ball = others_[i].ball_W;
-    order_.emplace_back((center - ball.center).norm() - ball_.radius - ball.radius, i);
+    const double apart = (center - ball.center).norm() - ball_.radius - ball.radius;
+    order_.emplace_back(std::max(apart, others_[i].until - way_), i);
   }
   std::sort(order_.begin(), order_.end());
   double best = std::numeric_limits<double>::infinity();

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "narrowphase/fcl_pairs.hpp"
+#include "feature/surface_distance.hpp"
 #include "tegotae/loop/scene.hpp"
 
 namespace tegotae::review {
@@ -17,30 +18,35 @@ struct Clearance {
   Vec3 on_other_W = Vec3::Zero();
 };
 
-/// Distances from the held part of a scene to the others, by their triangles.
+/// Distances from the held part of a scene to the others, by their triangles. For one thread.
 class ClearanceProbe {
  public:
   /// Keeps a reference to `scene`.
   explicit ClearanceProbe(const Scene& scene);
 
   /// The part nearest to the held one at `X`, and all others that are nearer than `reach` (m), the nearest first. Poses
-  /// along a path, in order, are asked fastest.
+  /// along a path, in order, are asked fastest. Distances are exact to within NearFront::kTolerance.
   void at(const Pose& X, double reach, std::vector<Clearance>& out);
+  /// Forgets the poses that were asked about: what comes next does not depend on them.
+  void start_anew();
 
  private:
   struct Other {
     std::size_t part;
     Sphere ball_W;
-    FclPairs::Faces last{0, 0};  ///< nearest pair of triangles when it was last asked
+    std::optional<SurfaceDistance> surfaces;  ///< from when it is first asked on
+    double until = 0;                         ///< way at which it may touch the held part, by what was measured
   };
   bool measure(Other& other, const Pose& X, double limit, Clearance& out);
+  void go_to(const Pose& X);
 
   const Scene& scene_;
   const Part& held_;
   Sphere ball_;
   std::vector<Other> others_;
   std::vector<std::pair<double, std::size_t>> order_;  ///< least possible distance, index into others_
-  FclPairs fcl_;
+  Pose last_;
+  double way_ = 0;  ///< m, that no point of the held part has gone farther than
 };
 
 }  // namespace tegotae::review
