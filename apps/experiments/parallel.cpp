@@ -1,11 +1,11 @@
 #include "experiments/parallel.hpp"
 
-#include "shared/parallel_for.hpp"
+#include "core/parallel_for.hpp"
 
 namespace tegotae::experiments {
 
 void Work::each(const std::string& what, int n, const std::function<void(int)>& job) const {
-  apps::parallel_for(n, options.threads, job,
+  parallel_for(n, options.threads, job,
                      [&](int done) { status.say(what + ": " + std::to_string(done) + " of " + std::to_string(n)); });
 }
 

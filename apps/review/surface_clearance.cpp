@@ -10,7 +10,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "feature/signed_distance.hpp"
 #include "loop/scene_parts.hpp"
-#include "shared/parallel_for.hpp"
+#include "core/parallel_for.hpp"
 #include "view/display_mesh.hpp"
 
 namespace tegotae::review {
@@ -192,7 +192,7 @@ void add_clearance(const Scene& scene, const std::vector<RecordFrame>& rows, con
       surface.clearance[i] = static_cast<float>(path.least(Vec3(p[0], p[1], p[2])));
     }
   };
-  apps::parallel_for(blocks, 0, color, [&](int done) {
+  parallel_for(blocks, 0, color, [&](int done) {
     if (progress) progress("clearance of the surface, point", static_cast<std::size_t>(done) * kBlock, count);
   });
 }

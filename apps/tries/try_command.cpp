@@ -6,7 +6,7 @@
 
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
-#include "shared/parallel_for.hpp"
+#include "core/parallel_for.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -41,7 +41,7 @@ void run_missing(const Task& task, const TryOptions& o, TryTable& table, const s
     status.say(apps::format("tries: %zu of %d, %d reached the goal", table.rows().size(), o.tries, reached));
   };
   tell();
-  apps::parallel_for(
+  parallel_for(
       static_cast<int>(missing.size()), o.jobs,
       [&](int i) {
         if (interrupted) return;

@@ -2,11 +2,18 @@
 
 #include <algorithm>
 
+#include "core/parallel_for.hpp"
 #include "loop/scene_parts.hpp"
+#include "narrowphase/patch_cache.hpp"
 
 namespace tegotae {
+namespace {
 
-PoseJudge::PoseJudge(const Scene& scene, const InitialContactReport& start)
+constexpr std::size_t kBlock = 256;  // poses in a row that one thread asks about
+
+}  // namespace
+
+JudgedScene::JudgedScene(const Scene& scene, const InitialContactReport& start)
     : held_(held_part(scene)), ball_(bounding_sphere(*held_.mesh)), freed_(scene.parts.size()) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const Part& part = scene.parts[i];
@@ -18,15 +25,17 @@ PoseJudge::PoseJudge(const Scene& scene, const InitialContactReport& start)
   came_free(start);
 }
 
-void PoseJudge::came_free(const InitialContactReport& start) noexcept {
+void JudgedScene::came_free(const InitialContactReport& start) noexcept {
   for (const InitialContact& pair : start.pairs) freed_[pair.part].store(pair.freed, std::memory_order_release);
 }
 
 bool PoseJudge::intersects(const Pose& X, std::uint32_t freed) {
-  spheres_.query(X * ball_.center, ball_.radius, 0.0, near_);
+  scene_.spheres_.query(X * scene_.ball_.center, scene_.ball_.radius, 0.0, near_);
   return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t i) {
-    if (freed_[number_[i]].load(std::memory_order_acquire) > freed) return false;
-    return fcl_.intersect(*held_.mesh, *fixed_[i]->mesh, fixed_[i]->pose.inverse() * X);
+    if (scene_.freed_[scene_.number_[i]].load(std::memory_order_acquire) > freed) return false;
+    const Part& fixed = *scene_.fixed_[i];
+    if (!pairs_[i]) pairs_[i].emplace(cached_patch_tree(scene_.held_.mesh), cached_patch_tree(fixed.mesh));
+    return pairs_[i]->intersect(fixed.pose.inverse() * X);
   });
 }
 
@@ -44,9 +53,17 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
 }
 
 std::int64_t PoseCheck::count_intersecting(const Scene& scene, const InitialContactReport& start) const {
-  PoseJudge judge(scene, start);
-  return std::count_if(poses_.begin(), poses_.end(),
-                       [&judge](const Kept& kept) { return judge.intersects(kept.X, kept.freed); });
+  const JudgedScene judged(scene, start);
+  const std::size_t blocks = (poses_.size() + kBlock - 1) / kBlock;
+  std::atomic<std::int64_t> count{0};
+  const auto ask = [&](int block) {
+    PoseJudge judge(judged);
+    const std::size_t begin = static_cast<std::size_t>(block) * kBlock, end = std::min(begin + kBlock, poses_.size());
+    for (std::size_t i = begin; i < end; ++i)
+      if (judge.intersects(poses_[i].X, poses_[i].freed)) ++count;
+  };
+  parallel_for(static_cast<int>(blocks), 0, ask, {});
+  return count;
 }
 
 }  // namespace tegotae

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
+#include "core/parallel_for.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -15,15 +17,17 @@ namespace {
 
 // Poses on their way: a minute of a contact loop that makes one a tick, while FCL answers one question.
 constexpr std::size_t kOnTheWay = 65536;
-// Poses that wait to be asked about; of more, every second, fourth, ... one.
-constexpr std::size_t kMaxWaiting = 20000;
+// Poses in a row that are asked about one after the other.
+constexpr std::size_t kBlock = 64;
+// Blocks that wait to be asked about; of more, every second, fourth, ... one.
+constexpr std::size_t kMaxWaiting = 20000 / kBlock;
 constexpr double kIdle = 5e-3;  // s between two looks for poses where there are none
 constexpr int kNice = 10;
 
 }  // namespace
 
 CheckedSegment::CheckedSegment(const Scene& scene, const InitialContactReport& start, bool waits)
-    : judge_(scene, start), ring_(kOnTheWay), waits_(waits) {}
+    : judged_(scene, start), ring_(kOnTheWay), waits_(waits) {}
 
 void CheckedSegment::add(const Pose& X, std::uint32_t freed) noexcept {
   const bool first = poses_.load(std::memory_order_relaxed) == 0;
@@ -86,17 +90,17 @@ void RunCheck::end(double seconds, const std::atomic<bool>* stop, std::atomic<do
 void RunCheck::work() {
   // Threads of Linux have priorities of their own. Where it is refused the quarter still holds.
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
-  for (;;) {
-    const bool last = ended_;  // before the poses are collected: none comes after it
-    collect();
-    left_ = static_cast<std::int64_t>(waiting_.size());
-    if (waiting_.empty() && last) break;
+  Asker asker;
+  for (bool last = false; !last;) {
+    last = ended_;  // before the poses are collected: none comes after it
+    collect(last);
+    if (last) break;
     const std::int64_t begin = monotonic_ns();
-    if (!waiting_.empty()) ask();
+    const bool asked = ask_one(asker);
     const double took = 1e-9 * static_cast<double>(monotonic_ns() - begin);
-    const bool hold_back = real_time_ && !last;
-    if (!rest(waiting_.empty() ? kIdle : hold_back ? took * (1 / kShare - 1) : 0)) break;
+    if (!rest(!asked ? kIdle : real_time_ ? took * (1 / kShare - 1) : 0)) return;
   }
+  ask_all();
   done_ = true;
 }
 
@@ -107,31 +111,68 @@ bool RunCheck::rest(double seconds) {
   return !abandoned_;
 }
 
-void RunCheck::collect() {
+void RunCheck::collect(bool last) {
   const std::lock_guard<std::mutex> lock(mutex_);
   CheckedSegment::Item item;
-  for (CheckedSegment* s : segments_)
+  for (CheckedSegment* s : segments_) {
+    const auto own = std::find_if(filling_.begin(), filling_.end(), [s](const Block& b) { return b.segment == s; });
+    Block& block = own == filling_.end() ? filling_.emplace_back(Block{s, {}}) : *own;
     while (s->ring_.pop(item)) {
-      if (seen_++ % stride_ != 0) continue;
-      waiting_.push_back({s, item});
-      if (!all_ && waiting_.size() == kMaxWaiting) thin_out();
+      block.items.push_back(item);
+      if (block.items.size() == kBlock) add(std::exchange(block, Block{s, {}}));
     }
+    if (last && !block.items.empty()) add(std::exchange(block, Block{s, {}}));
+  }
+}
+
+void RunCheck::add(Block block) {
+  if (seen_++ % stride_ != 0) return;
+  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  left_ += static_cast<std::int64_t>(block.items.size());
+  waiting_.push_back(std::move(block));
+  if (!all_ && waiting_.size() == kMaxWaiting) thin_out();
 }
 
 void RunCheck::thin_out() {
   // They are in no order, but half of them in any order is a fair half.
-  for (std::size_t i = 0; 2 * i < waiting_.size(); ++i) waiting_[i] = waiting_[2 * i];
-  waiting_.resize(waiting_.size() / 2);
+  for (std::size_t i = 1; i < waiting_.size(); i += 2) left_ -= static_cast<std::int64_t>(waiting_[i].items.size());
+  for (std::size_t i = 0; 2 * i < waiting_.size(); ++i) std::swap(waiting_[i], waiting_[2 * i]);
+  waiting_.resize((waiting_.size() + 1) / 2);
   stride_ *= 2;
 }
 
-void RunCheck::ask() {
-  // At random, so that what is asked by the end is spread over the whole run.
-  std::swap(waiting_[rng_() % waiting_.size()], waiting_.back());
-  const Waiting w = waiting_.back();
-  waiting_.pop_back();
-  if (w.segment->judge_.intersects(w.item.X, w.item.freed)) ++intersecting_;
-  ++checked_;
+/// Asks about a block; false when there is none.
+bool RunCheck::ask_one(Asker& asker) {
+  Block block;
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    if (waiting_.empty()) return false;
+    // At random, so that what is asked by the end is spread over the whole run.
+    std::swap(waiting_[rng_() % waiting_.size()], waiting_.back());
+    block = std::move(waiting_.back());
+    waiting_.pop_back();
+  }
+  if (asker.segment != block.segment) {
+    asker.segment = block.segment;
+    asker.judge.emplace(block.segment->judged_);
+  }
+  for (const CheckedSegment::Item& item : block.items) {
+    if (asker.judge->intersects(item.X, item.freed)) ++intersecting_;
+    ++checked_;
+    --left_;
+  }
+  return true;
+}
+
+/// Asks about what waits, on all processors.
+void RunCheck::ask_all() {
+  const auto ask = [this](int) {
+    Asker asker;
+    while (rest(0) && ask_one(asker)) {
+    }
+  };
+  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  parallel_for(threads, threads, ask, {});
 }
 
 }  // namespace tegotae

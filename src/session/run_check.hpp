@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <thread>
 #include <vector>
@@ -21,7 +22,7 @@ class CheckedSegment {
   CheckedSegment(const Scene& scene, const InitialContactReport& start, bool waits);
   /// Never allocates. A pose equal to the last one counts once. `freed`: how many pairs of the start had come free.
   void add(const Pose& X, std::uint32_t freed) noexcept;
-  void came_free(const InitialContactReport& start) noexcept { judge_.came_free(start); }
+  void came_free(const InitialContactReport& start) noexcept { judged_.came_free(start); }
 
  private:
   friend class RunCheck;
@@ -29,15 +30,16 @@ class CheckedSegment {
     Pose X;
     std::uint32_t freed = 0;
   };
-  PoseJudge judge_;
+  JudgedScene judged_;
   Ring<Item> ring_;
   const bool waits_;
   Pose last_;
   std::atomic<std::int64_t> poses_{0};  // different ones
 };
 
-/// Asks FCL about the poses that a run commits, beside the run, in a thread of its own and in no order. Of a run in
-/// real time it takes a quarter of one processor, so that the loops keep theirs.
+/// Asks FCL about the poses that a run commits, beside the run, in a thread of its own: some in a row at a time, which is
+/// fast, and the rows in no order. Of a run in real time it takes a quarter of one processor, so that the loops keep
+/// theirs; after any run it works on all processors.
 class RunCheck {
  public:
   /// Share of the run's time that the check takes beside a run in real time and, at most, after any run.
@@ -59,7 +61,7 @@ class RunCheck {
   /// No pose comes any more, after `seconds`. Goes on while there is time, until `stop` (may be null); `share` (may be
   /// null) is told how far that is, from 0 to 1.
   void end(double seconds, const std::atomic<bool>* stop, std::atomic<double>* share);
-  /// Ends at once, after the one question at hand.
+  /// Ends at once, after the questions at hand.
   void abandon() noexcept;
 
   // After end().
@@ -68,15 +70,23 @@ class RunCheck {
   std::int64_t intersecting() const { return intersecting_; }  ///< of these, how many intersect
 
  private:
-  struct Waiting {
+  /// Poses of a segment, in a row.
+  struct Block {
     CheckedSegment* segment;
-    CheckedSegment::Item item;
+    std::vector<CheckedSegment::Item> items;
+  };
+  /// Who asks, in one thread: of the segment of the last block.
+  struct Asker {
+    const CheckedSegment* segment = nullptr;
+    std::optional<PoseJudge> judge;
   };
 
   void work();
-  void collect();
+  void collect(bool last);
+  void add(Block block);
   void thin_out();
-  void ask();
+  bool ask_one(Asker& asker);
+  void ask_all();
   bool rest(double seconds);
 
   const bool all_, real_time_;
@@ -89,8 +99,11 @@ class RunCheck {
   std::atomic<bool> done_{false};
 
   // The thread's own.
-  std::vector<Waiting> waiting_;
-  std::uint64_t stride_ = 1, seen_ = 0;
+  std::vector<Block> filling_;  // one a segment, with fewer poses than a block has
+  std::uint64_t stride_ = 1, seen_ = 0;  // blocks
+
+  std::mutex queue_mutex_;  // of the next two
+  std::vector<Block> waiting_;
   std::mt19937 rng_;
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-#include "shared/parallel_for.hpp"
+#include "core/parallel_for.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace tegotae::apps {
+namespace tegotae {
 
 void parallel_for(int n, int threads, const std::function<void(int)>& job, const std::function<void(int)>& done) {
   std::atomic<int> next{0};
@@ -25,7 +25,8 @@ void parallel_for(int n, int threads, const std::function<void(int)>& job, const
       }
       const std::lock_guard<std::mutex> lock(mutex);
       if (thrown && !failure) failure = thrown;
-      done(++count);
+      ++count;
+      if (done) done(count);
     }
   };
   const int wanted = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
@@ -36,4 +37,4 @@ void parallel_for(int n, int threads, const std::function<void(int)>& job, const
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace tegotae::apps
+}  // namespace tegotae

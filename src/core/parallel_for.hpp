@@ -2,10 +2,11 @@
 
 #include <functional>
 
-namespace tegotae::apps {
+namespace tegotae {
 
 /// Calls `job(i)` for i = 0 to n - 1 on `threads` threads (0: all processors), in any order; when one throws, no more
-/// begin and the first exception is thrown when all have ended. `done(count)` is told after each, one at a time.
+/// begin and the first exception is thrown when all have ended. `done(count)` (may be empty) is told after each, one
+/// at a time.
 void parallel_for(int n, int threads, const std::function<void(int)>& job, const std::function<void(int)>& done);
 
-}  // namespace tegotae::apps
+}  // namespace tegotae
