@@ -117,7 +117,7 @@ void write_step(const Scene& scene, const Removal& step, const std::string& path
   held.pose = rows.front().x;
   write_file(path + ".glb", review::path_gltf(then, rows, true));
   const review::Scan scan = review::scan_path(then, path, rows, {});
-  write_file(path + ".csv", review::path_csv(then, rows, scan));
+  write_file(path + ".csv", review::path_csv(then, rows, scan, {}));
 }
 
 }  // namespace

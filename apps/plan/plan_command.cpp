@@ -13,6 +13,7 @@
 #include "plan/order_output.hpp"
 #include "plan/plan_output.hpp"
 #include "plan/planner.hpp"
+#include "review/review_command.hpp"
 #include "shared/format.hpp"
 #include "shared/length_option.hpp"
 #include "shared/pose_option.hpp"
@@ -48,7 +49,7 @@ PlanOptions plan_options(const PlanCommand& o, const Scene& scene, apps::StatusL
 }
 
 /// Measures the path, and writes it.
-void finish(PlanReport& r, apps::StatusLine& status) {
+void finish(PlanReport& r, const std::optional<review::ClearanceBand>& band, apps::StatusLine& status) {
   held_part(r.file.scene).pose = r.plan.path.front();
   const review::Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
     status.show(what, done, total);
@@ -56,14 +57,15 @@ void finish(PlanReport& r, apps::StatusLine& status) {
   // A part's center is where its contact loop has it, which the scan tells; radius and rows only set the pace.
   const Sphere ball = bounding_sphere(*held_part(r.file.scene).mesh);
   const std::vector<RecordFrame> rows = path_rows(r.plan.path, r.plan.center, ball.radius);
-  const review::Scan scan = review::scan_path(r.file.scene, r.file.path, rows, progress);
+  const review::Scan scan = review::scan_path(r.file.scene, r.file.path, rows, progress, band ? band->high : 0);
   std::vector<StylusScript::Key> keys = {{0, rows.front().x}, {1, rows.back().x}};
   r.file.script = StylusScript(std::move(keys));
   const review::Findings found = review::find(r.file, rows, scan, scan.center);
   r.way = found.way;
   r.turn = found.turn;
   r.tightest = found.clearances;
-  write_path(r.file, rows, scan, r.folder);
+  if (band) r.band = review::find_band(*band, rows, scan);
+  write_path(r.file, rows, scan, r.band, r.folder);
   write_file(r.folder + "/plan.json", plan_json(r) + "\n");
 }
 
@@ -104,6 +106,7 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
   plan->add_flag("--out", o.out, "Out of all other parts (the default without --goal)")->excludes(goal);
   CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whoever is held");
   apps::add_length_option(*plan, "--clearance", o.clearance, "That the path is to leave at least");
+  CLI::Option* band = review::add_band_option(*plan, o.band);
   plan->add_option("--seed", o.seed, "Of all that is random; the same seed gives the same path")->type_name("N");
   plan->add_option("--iterations", o.iterations, "Of the search, at most")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
@@ -114,7 +117,7 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
                              ->type_name("S");
   plan->add_option("--to", o.folder, "Folder for what it writes")->capture_default_str()->type_name("DIR");
   CLI::Option* json = plan->add_flag("--json", o.json, "Print what came out as one line of JSON");
-  for (CLI::Option* one : {goal, hold, seconds, json}) all->excludes(one);
+  for (CLI::Option* one : {goal, hold, seconds, json, band}) all->excludes(one);
   return plan;
 }
 
@@ -134,7 +137,7 @@ int run_plan(const PlanCommand& o) {
   {
     apps::StatusLine status;
     r.plan = plan_path(r.file.scene, plan_options(o, r.file.scene, status));
-    finish(r, status);
+    finish(r, o.band, status);
   }
   if (o.json)
     std::cout << plan_json(r) << std::endl;

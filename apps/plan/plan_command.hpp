@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "review/clearance_band.hpp"
+
 namespace tegotae::plan {
 
 struct PlanCommand {
@@ -13,6 +15,7 @@ struct PlanCommand {
   bool out = false;  ///< said so
   bool all = false;  ///< take everything apart
   double clearance = 0;
+  std::optional<review::ClearanceBand> band;
   std::optional<std::uint64_t> seed;
   std::optional<std::int64_t> iterations;
   std::optional<double> seconds;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "plan/planner.hpp"
+#include "review/clearance_band.hpp"
 #include "review/findings.hpp"
 #include "tegotae/record/recording.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
@@ -20,7 +22,7 @@ std::vector<std::string> path_files(const std::string& folder);
 
 /// Writes path.csv, path.glb, script.csv and recording.csv into `folder`. Throws Error.
 void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
-                const std::string& folder);
+                const std::optional<review::BandFindings>& band, const std::string& folder);
 
 /// What is said of a plan: for a person, and as JSON (docs/planning.md).
 struct PlanReport {
@@ -31,6 +33,7 @@ struct PlanReport {
   Plan plan;
   double way = 0, turn = 0;                     ///< that the path goes and turns, m, rad
   std::vector<review::PartClearance> tightest;  ///< along the path, by part
+  std::optional<review::BandFindings> band;     ///< of the band that was asked for
   std::string folder;
 };
 std::string plan_text(const PlanReport& report);

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "loop/scene_parts.hpp"
@@ -44,6 +45,8 @@ std::string found_text(const PlanReport& r) {
                    r.file.scene.parts[c.part].name.c_str(), 1e3 * c.distance, c.t, 1e3 * c.place_W.x(),
                    1e3 * c.place_W.y(), 1e3 * c.place_W.z());
   }
+  if (r.band)
+    for (const std::string& line : review::band_text(*r.band, r.tightest, r.file.scene)) text += "  " + line + "\n";
   return text;
 }
 
@@ -61,6 +64,32 @@ std::string not_found_text(const PlanReport& r) {
                    r.file.scene.parts[p.part].name.c_str(), 100 * static_cast<double>(p.stops) / all);
   }
   return text;
+}
+
+Json clearance_json(const review::PartClearance& c, const Scene& scene) {
+  return {{"part", scene.parts[c.part].name},
+          {"distance_m", c.distance},
+          {"t", c.t},
+          {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}}};
+}
+
+Json band_json(const review::BandFindings& found, const Scene& scene) {
+  Json j = {{"low_m", found.band.low}, {"high_m", found.band.high}};
+  for (const review::BandZone zone : review::kBandZones) {
+    const auto i = static_cast<std::size_t>(zone);
+    j[to_string(zone)] = {{"seconds", found.seconds[i]}, {"way_m", found.way[i]}};
+  }
+  j["spans"] = Json::array();
+  for (const review::BandSpan& s : found.spans) {
+    Json span = {{"zone", to_string(s.zone)},
+                 {"begin_s", s.span.begin},
+                 {"end_s", s.span.end},
+                 {"way_begin_m", s.way_begin},
+                 {"way_end_m", s.way_end}};
+    if (std::isfinite(s.tightest.distance)) span["tightest"] = clearance_json(s.tightest, scene);
+    j["spans"].push_back(span);
+  }
+  return j;
 }
 
 }  // namespace
@@ -88,11 +117,8 @@ std::string plan_json(const PlanReport& r) {
   j["farthest_m"] = r.plan.way;
   j["farthest_turn_rad"] = r.plan.turn;
   j["tightest"] = Json::array();
-  for (const review::PartClearance& c : r.tightest)
-    j["tightest"].push_back({{"part", r.file.scene.parts[c.part].name},
-                             {"distance_m", c.distance},
-                             {"t", c.t},
-                             {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}}});
+  for (const review::PartClearance& c : r.tightest) j["tightest"].push_back(clearance_json(c, r.file.scene));
+  if (r.band) j["band"] = band_json(*r.band, r.file.scene);
   j["in_the_way"] = Json::array();
   for (const PartInTheWay& p : r.plan.in_the_way)
     j["in_the_way"].push_back({{"part", r.file.scene.parts[p.part].name}, {"stops", p.stops}});

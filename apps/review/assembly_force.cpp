@@ -44,7 +44,7 @@ struct Sum {
 
 /// What the ticks of a run say, stretch by stretch.
 struct Profile {
-  std::vector<Sum> in = std::vector<Sum>(kStretches), out = std::vector<Sum>(kStretches);
+  std::vector<Sum> in = std::vector<Sum>(kStretches), out = in, stands = in;
   ForcePeak insertion, seating, pull_out;
   double deepest = 0;
 };
@@ -84,6 +84,7 @@ Profile profile(const std::vector<Tick>& ticks, const Vec3& direction, double wa
       p.out[stretch].add(-against, -friction);
       take_peak(tick, -against, scene, p.pull_out);
     } else if (tick.depth > (1 - kSeated) * p.deepest) {
+      p.stands[stretch].add(against, friction);
       take_peak(tick, against, scene, p.seating);
     }
   }
@@ -172,6 +173,7 @@ AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progr
   out.seating = nominal.seating;
   out.pull_out = nominal.pull_out;
   out.insertion_mean = mean_of(nominal.in);
+  out.pull_out_mean = mean_of(nominal.out);
   double work = 0, rubbed = 0;
   for (std::size_t k = 0; k < kStretches; ++k) {
     const Sum& in = nominal.in[k];
@@ -180,7 +182,9 @@ AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progr
     d.insertion = in.mean();
     d.insertion_peak = in.count > 0 ? in.most : kNan;
     d.friction = in.count > 0 ? in.friction / in.count : kNan;
+    d.seating = nominal.stands[k].mean();
     d.pull_out = nominal.out[k].mean();
+    d.pull_out_peak = nominal.out[k].count > 0 ? nominal.out[k].most : kNan;
     d.low = low.in[k].mean();
     d.high = high.in[k].mean();
     out.over_depth.push_back(d);
@@ -201,8 +205,10 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
   };
   out.push_back(peak("insertion", f.insertion) + format("; %.2f N in the mean over the way", f.insertion_mean) +
                 (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string()));
-  if (f.seating.force > 0) out.push_back(peak("seating", f.seating));
-  if (f.pull_out.force > 0) out.push_back(peak("pull-out", f.pull_out));
+  out.push_back(f.seating.force > 0 ? peak("seating (final)", f.seating) : "seating (final): no force seen");
+  out.push_back(f.pull_out.force > 0
+                    ? peak("pull-out", f.pull_out) + format("; %.2f N in the mean over the way", f.pull_out_mean)
+                    : "pull-out: no force seen");
   if (f.band.high > 0)
     out.push_back(format("insertion with friction of %.2g to %.2g: %.2f to %.2f N in the mean, to %.2f and %.2f mm",
                          f.band.low, f.band.high, f.low_mean, f.high_mean, 1e3 * f.low_depth, 1e3 * f.high_depth));
@@ -210,11 +216,13 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
 }
 
 std::string assembly_force_csv(const AssemblyForce& force) {
-  std::string text = "depth_mm,insertion_n,insertion_peak_n,friction_n,pull_out_n,low_n,high_n\n";
+  std::string text =
+      "depth_mm,insertion_n,insertion_peak_n,friction_n,seating_n,pull_out_n,pull_out_peak_n,low_n,high_n\n";
   const auto number = [](double x) { return std::isfinite(x) ? apps::format("%.6g", x) : std::string(); };
   for (const DepthForce& d : force.over_depth) {
     text += number(1e3 * d.depth);
-    for (const double x : {d.insertion, d.insertion_peak, d.friction, d.pull_out, d.low, d.high})
+    for (const double x :
+         {d.insertion, d.insertion_peak, d.friction, d.seating, d.pull_out, d.pull_out_peak, d.low, d.high})
       text += "," + number(x);
     text += "\n";
   }

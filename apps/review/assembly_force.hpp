@@ -17,7 +17,9 @@ struct DepthForce {
   double insertion = 0;       ///< mean of the ticks in which it went on
   double insertion_peak = 0;  ///< the largest of them
   double friction = 0;        ///< of `insertion`, what is friction
+  double seating = 0;         ///< mean of the ticks in which it stood at the deepest: the final force
   double pull_out = 0;        ///< mean of the ticks in which it came back
+  double pull_out_peak = 0;   ///< the largest of them
   double low = 0, high = 0;   ///< `insertion` with the least and the most friction (ForceBand)
 };
 
@@ -41,8 +43,10 @@ struct AssemblyForce {
   bool rubs = false;   ///< there is friction in it
   double way = 0;      ///< m, the deepest that it came
   std::vector<DepthForce> over_depth;
-  ForcePeak insertion, seating, pull_out;  ///< seating: standing within a hundredth of the deepest
+  ForcePeak insertion, seating, pull_out;  ///< seating, the final force: standing within a hundredth of
+                                           ///< the deepest
   double insertion_mean = 0;               ///< N, over the way
+  double pull_out_mean = 0;                ///< the same, as it came back
   double friction_share = 0;               ///< of the work of the insertion
   ForceBand band;                          ///< both 0: none was asked for
   double low_mean = 0, high_mean = 0;      ///< N, `insertion_mean` at both ends of the band
@@ -55,7 +59,7 @@ AssemblyForce assembly_force(const Review& review, const ForceBand& band, const 
 /// What of it is said in a few lines, for people; empty when nothing is known.
 std::vector<std::string> assembly_force_text(const AssemblyForce& force);
 
-/// The forces over depth as CSV: depth_mm and N.
+/// The forces over depth as CSV: depth_mm and N; empty where the part was not seen so.
 std::string assembly_force_csv(const AssemblyForce& force);
 
 }  // namespace tegotae::review

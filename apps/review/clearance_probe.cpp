@@ -19,14 +19,6 @@ ClearanceProbe::ClearanceProbe(const Scene& scene)
   }
 }
 
-void ClearanceProbe::start_anew() {
-  for (Other& other : others_) {
-    other.surfaces.reset();
-    other.until = 0;
-  }
-  way_ = 0;
-}
-
 void ClearanceProbe::go_to(const Pose& X) {
   const Displacement d = displacement(last_, X, ball_.center);
   way_ += d.dp.norm() + ball_.radius * d.dr.norm();

@@ -27,8 +27,6 @@ class ClearanceProbe {
   /// The part nearest to the held one at `X`, and all others that are nearer than `reach` (m), the nearest first. Poses
   /// along a path, in order, are asked fastest. Distances are exact to within NearFront::kTolerance.
   void at(const Pose& X, double reach, std::vector<Clearance>& out);
-  /// Forgets the poses that were asked about: what comes next does not depend on them.
-  void start_anew();
 
  private:
   struct Other {

@@ -29,9 +29,12 @@ std::string quoted(const std::string& name) {
 
 }  // namespace
 
-std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan) {
-  std::string text = "t,px,py,pz,qw,qx,qy,qz,clearance,part,force,torque\n";
-  for (const ScannedRow& s : scan.rows) {
+std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan,
+                     const std::optional<BandFindings>& band) {
+  std::string text = "t,px,py,pz,qw,qx,qy,qz,clearance,part,force,torque";
+  text += band ? ",band\n" : "\n";
+  for (std::size_t i = 0; i < scan.rows.size(); ++i) {
+    const ScannedRow& s = scan.rows[i];
     const RecordFrame& row = rows[s.row];
     add(text, row.t);
     add(text, row.x);
@@ -43,6 +46,7 @@ std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, c
     }
     add(text, row.wrench.force.norm());
     add(text, row.wrench.torque.norm());
+    if (band) text += std::string(",") + to_string(band->of_row[i]);
     text += '\n';
   }
   return text;

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "review/clearance_band.hpp"
 #include "review/path_scan.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::review {
 
 /// The path as CSV: t, pose of the held part's file frame, clearance and the part it is to, force and torque; a row for
-/// each row that was looked at.
-std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan);
+/// each row that was looked at; with a `band` also below, inside or above it.
+std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan,
+                     const std::optional<BandFindings>& band);
 
 /// The path as a stylus script (CSV) for the scene's simulated hand: where the hand has to be for its spring to give
 /// the forces that the pen met, every 10 ms. `center`: center of mass of the held part, file frame, m.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/parallel_for.hpp"
 #include "loop/scene_parts.hpp"
 #include "view/follower.hpp"
 
@@ -15,13 +16,19 @@ constexpr std::size_t kMaxRows = 20000;
 constexpr double kReachShare = 0.2;
 constexpr double kTwoSided = 0.1736;  // sine of 10 degrees
 constexpr int kMaxSteps = 500;
-constexpr std::size_t kTellEvery = 64;  // rows
 
-/// Contacts at a row whose clearances are known: those of the led loop, which knows many places of one part but only of
-/// parts that are in its way, and the nearest place of every part.
-void add_contacts(const view::Follower& follower, ScannedRow& out) {
-  const HapticLoop& loop = follower.loop();
-  out.contact_gap = loop.report().contact_gap;
+constexpr std::size_t kBlock = 128;  // rows in a row that one thread measures
+
+/// What a contact loop says at a row when it is led along the poses.
+struct LedRow {
+  double contact_gap = 0;             // m
+  std::vector<Vec3> normals, places;  // of its contacts, W, m
+};
+
+/// Sets what the contacts of a row are: those of the led loop, which knows many places of one part but only of parts
+/// that are in its way, and the nearest place of every part.
+void add_contacts(const LedRow& led, ScannedRow& out) {
+  out.contact_gap = led.contact_gap;
   std::vector<Vec3> normals;
   Vec3 sum = Vec3::Zero();
   const auto add = [&](const Vec3& normal, const Vec3& place) {
@@ -30,11 +37,49 @@ void add_contacts(const view::Follower& follower, ScannedRow& out) {
   };
   for (const Clearance& c : out.clearances)
     if (c.distance > 0 && c.distance <= out.contact_gap) add((c.on_held_W - c.on_other_W) / c.distance, c.on_held_W);
-  const Vec3 center = loop.report().proxy.X * loop.center();
-  for (const Contact& c : loop.constraints())
-    if (!follower.astray() && c.age != kOneShotAge && c.gap <= out.contact_gap) add(c.n, center + c.r);
+  for (std::size_t i = 0; i < led.normals.size(); ++i) add(led.normals[i], led.places[i]);
   out.two_sided = holds_from_two_sides(normals);
   if (out.two_sided) out.contact_W = sum / static_cast<double>(normals.size());
+}
+
+LedRow led_row(const view::Follower& follower) {
+  const HapticLoop& loop = follower.loop();
+  LedRow out;
+  out.contact_gap = loop.report().contact_gap;
+  const Vec3 center = loop.report().proxy.X * loop.center();
+  for (const Contact& c : loop.constraints()) {
+    if (follower.astray() || c.age == kOneShotAge || c.gap > out.contact_gap) continue;
+    out.normals.push_back(c.n);
+    out.places.push_back(center + c.r);
+  }
+  return out;
+}
+
+/// Leads a contact loop along all rows, which takes them one after the other.
+std::vector<LedRow> lead(view::Follower& follower, const std::vector<RecordFrame>& rows,
+                         const std::vector<ScannedRow>& scanned) {
+  std::vector<LedRow> out;
+  out.reserve(scanned.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    follower.step(rows[i]);
+    if (scanned[out.size()].row == i) out.push_back(led_row(follower));
+  }
+  return out;
+}
+
+/// Measures the clearances of a block of rows; what it finds depends on nothing else.
+void measure(const Scene& scene, const std::vector<RecordFrame>& rows, double reach, std::size_t begin, std::size_t end,
+             std::vector<ScannedRow>& scanned) {
+  ClearanceProbe probe(scene);
+  for (std::size_t i = begin; i < end; ++i) {
+    const Pose& X = rows[scanned[i].row].x;
+    const bool still =
+        i > begin && X.p == rows[scanned[i - 1].row].x.p && X.q.coeffs() == rows[scanned[i - 1].row].x.q.coeffs();
+    if (still)
+      scanned[i].clearances = scanned[i - 1].clearances;
+    else
+      probe.at(X, reach, scanned[i].clearances);
+  }
 }
 
 }  // namespace
@@ -63,33 +108,34 @@ bool holds_from_two_sides(const std::vector<Vec3>& normals) {
 }
 
 Scan scan_path(const Scene& scene, const std::string& file, const std::vector<RecordFrame>& rows,
-               const Progress& progress) {
+               const Progress& progress, double reach) {
   Scan scan;
-  scan.reach = kReachShare * bounding_sphere(*held_part(scene).mesh).radius;
+  scan.reach = std::max(reach, kReachShare * bounding_sphere(*held_part(scene).mesh).radius);
   const std::vector<std::size_t> numbers = looked_at(rows.size(), kMaxRows);
   scan.every = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
-  ClearanceProbe probe(scene);
   view::Follower follower(scene, file, rows.front().x);
   scan.center = follower.loop().center();
   scan.coupling = follower.loop().coupling();
   scan.start = follower.loop().start();
-  scan.rows.reserve(numbers.size());
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (progress && i % kTellEvery == 0) progress("measuring clearances, row", i, rows.size());
-    follower.step(rows[i]);
-    if (numbers[next] != i) continue;
-    ++next;
-    ScannedRow row;
-    row.row = i;
-    const bool still = i > 0 && rows[i].x.p == rows[i - 1].x.p && rows[i].x.q.coeffs() == rows[i - 1].x.q.coeffs();
-    if (still && scan.every == 1)
-      row.clearances = scan.rows.back().clearances;
-    else
-      probe.at(rows[i].x, scan.reach, row.clearances);
-    add_contacts(follower, row);
-    scan.rows.push_back(std::move(row));
+  for (const std::size_t i : numbers) {
+    scan.rows.emplace_back();
+    scan.rows.back().row = i;
   }
+  std::vector<LedRow> led;
+  // One thread leads the loop, the others measure, and then all do.
+  const auto job = [&](int k) {
+    if (k == 0) {
+      led = lead(follower, rows, scan.rows);
+      return;
+    }
+    const std::size_t begin = static_cast<std::size_t>(k - 1) * kBlock;
+    measure(scene, rows, scan.reach, begin, std::min(begin + kBlock, numbers.size()), scan.rows);
+  };
+  const auto blocks = static_cast<int>((numbers.size() + kBlock - 1) / kBlock);
+  parallel_for(blocks + 1, 0, job, [&](int done) {
+    if (progress) progress("measuring clearances, row", static_cast<std::size_t>(done - 1) * kBlock, numbers.size());
+  });
+  for (std::size_t i = 0; i < led.size(); ++i) add_contacts(led[i], scan.rows[i]);
   scan.astray = follower.strayed();
   return scan;
 }

@@ -39,10 +39,11 @@ struct Scan {
 };
 
 /// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the
-/// poses. `scene` holds the part where the run began. `file` is the name of the recording, for messages. Throws Error
-/// when it does not fit the scene.
+/// poses. `scene` holds the part where the run began. `file` is the name of the recording, for messages; `reach` (m):
+/// Scan::reach is at least that. Works on all processors; the result does not depend on their number. Throws Error when
+/// it does not fit the scene.
 Scan scan_path(const Scene& scene, const std::string& file, const std::vector<RecordFrame>& rows,
-               const Progress& progress);
+               const Progress& progress, double reach = 0);
 
 /// Whether no translation leaves all contacts with these normals (unit, from the others to the held part): the origin
 /// is in the convex hull of the normals, or nearer to it than a wedge of 10 degrees would be.

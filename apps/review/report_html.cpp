@@ -61,6 +61,17 @@ void add_path(view::Bundle& bundle, const Review& r) {
   bundle.about["ghosts"] = bundle.add(ghosts);
 }
 
+/// The band, and where each pose of the path is to it: 0 below, 1 inside, 2 above.
+void add_band(view::Bundle& bundle, const Review& r) {
+  std::vector<std::uint32_t> zones;
+  std::size_t next = 0;  // scanned row
+  for (const std::size_t i : looked_at(r.recording.frames.size(), kMaxPoses)) {
+    while (next + 1 < r.scan.rows.size() && r.scan.rows[next + 1].row <= i) ++next;
+    zones.push_back(static_cast<std::uint32_t>(r.band->of_row[next]));
+  }
+  bundle.about["band"] = {{"low", r.band->band.low}, {"high", r.band->band.high}, {"zones", bundle.add(zones)}};
+}
+
 void add_surface(view::Bundle& bundle, const Review& r, const Progress& progress) {
   const Scene& scene = r.file.scene;
   ColoredSurface surface = sampled_surface(held_part(scene).mesh, kMaxTriangles);
@@ -115,6 +126,7 @@ std::string report_html(const Review& r, const Progress& progress) {
                              (r.recording.info.program.empty() ? "" : ", " + r.recording.info.program);
   bundle.about["verdict"] = verdict_json(r.verdict);
   add_path(bundle, r);
+  if (r.band) add_band(bundle, r);
   add_surface(bundle, r, progress);
   bundle.about["places"] = places(r);
   bundle.about["plots"] = report_plots(r);

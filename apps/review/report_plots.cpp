@@ -87,6 +87,10 @@ json clearance_plot(const Review& r, const Buckets& buckets, const json& times) 
                       {"x", times},
                       {"y", buckets.line(value, [](double a, double b) { return a < b; })}});
   }
+  if (r.band) {
+    series.push_back(level("band, low", times, std::max(1e3 * r.band->band.low, kMinShown)));
+    series.push_back(level("band, high", times, 1e3 * r.band->band.high));
+  }
   return plot("Clearance", "clearance (mm)", series, true);
 }
 
@@ -153,6 +157,7 @@ json depth_plot(const AssemblyForce& f) {
     add(apps::format("mu %.2g", f.band.high), &DepthForce::high, true);
   }
   add("pull-out", &DepthForce::pull_out, false);
+  add("seating (final)", &DepthForce::seating, false);
   if (f.rubs) add("of the insertion, friction", &DepthForce::friction, false);
   add("insertion, largest", &DepthForce::insertion_peak, false);
   add("insertion", &DepthForce::insertion, false);

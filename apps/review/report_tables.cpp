@@ -45,11 +45,40 @@ std::string newtons(double f) {
 
 json clearances(const Review& r) {
   json t = table("Closest parts", "", {"part", "least clearance", "time (s)", "place"});
+  if (r.band) t["head"].push_back("band");
   const auto& list = r.findings.clearances;
-  for (std::size_t i = 0; i < std::min(kMaxRows, list.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxRows, list.size()); ++i) {
     t["rows"].push_back({r.file.scene.parts[list[i].part].name, length_text(list[i].distance), seconds(list[i].t),
                          place_text(list[i].place_W)});
+    if (r.band) t["rows"].back().push_back(to_string(r.band->band.zone(list[i].distance)));
+  }
   if (list.size() > kMaxRows) t["text"] = format("The closest %zu of %zu.", kMaxRows, list.size());
+  return t;
+}
+
+/// How much of the path is in which zone of a band.
+json band_shares(const BandFindings& f) {
+  json t = table("Clearance band", "The nearest part's clearance against " + band_name(f.band) + ".",
+                 {"", "for (s)", "of the way"});
+  for (const BandZone zone : kBandZones) {
+    const auto i = static_cast<std::size_t>(zone);
+    t["rows"].push_back({to_string(zone), seconds(f.seconds[i]), length_text(f.way[i])});
+  }
+  return t;
+}
+
+json band_spans(const Review& r) {
+  const auto& list = r.band->spans;
+  json t = table("Along the path", counted(list.size(), "Tightest: the least clearance meanwhile."),
+                 {"band", "from (s)", "to (s)", "from, on the way", "to", "tightest", "part", "at (s)", "place"});
+  for (const BandSpan& s : longest(list)) {
+    const PartClearance& c = s.tightest;
+    const bool near = std::isfinite(c.distance);
+    t["rows"].push_back({to_string(s.zone), seconds(s.span.begin), seconds(s.span.end), length_text(s.way_begin),
+                         length_text(s.way_end), near ? length_text(c.distance) : "–",
+                         near ? r.file.scene.parts[c.part].name : "–", near ? seconds(c.t) : "–",
+                         near ? place_text(c.place_W) : "–"});
+  }
   return t;
 }
 
@@ -138,8 +167,8 @@ json assembly(const AssemblyForce& f) {
   };
   row("insertion", f.insertion,
       newtons(f.insertion_mean) + " N" + (f.rubs ? format(", %.0f %% friction", 100 * f.friction_share) : ""));
-  row("seating", f.seating, "");
-  row("pull-out", f.pull_out, "");
+  row("seating (final)", f.seating, "");
+  row("pull-out", f.pull_out, newtons(f.pull_out_mean) + " N");
   const auto end = [&](double mu, double mean, double depth) {
     t["rows"].push_back(
         {format("insertion, mu %.2g", mu), "", "to " + length_text(depth), "", "", "", newtons(mean) + " N"});
@@ -154,7 +183,12 @@ json assembly(const AssemblyForce& f) {
 }  // namespace
 
 json report_tables(const Review& r) {
-  json out = json::array({clearances(r), loads(r)});
+  json out = json::array({clearances(r)});
+  if (r.band) {
+    out.push_back(band_shares(*r.band));
+    out.push_back(band_spans(r));
+  }
+  out.push_back(loads(r));
   if (r.assembly.known) out.push_back(assembly(r.assembly));
   if (!r.findings.start.pairs.empty()) out.push_back(start(r));
   if (!r.findings.contacts.empty()) out.push_back(contacts(r));

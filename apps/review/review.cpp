@@ -27,21 +27,21 @@ void tell_scene_changes(const RecordingInfo& info, Review& r) {
 
 }  // namespace
 
-Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
-                        const ForceBand& band, const Progress& progress) {
-  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}, {}};
+Review review_recording(const std::string& path, Recording recording, SceneFile file, const ReviewQuestions& questions,
+                        const Progress& progress) {
+  Review r{path, std::move(file), std::move(recording), Vec3::Zero(), {}, {}, {}, {}, {}};
   const std::vector<RecordFrame>& rows = r.recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (rows[i].t < rows[i - 1].t)
       throw Error(path + ": row " + std::to_string(i + 1) + ": its time is before that of the row before");
-  r.scan = scan_path(r.file.scene, path, rows, progress);
+  r.scan = scan_path(r.file.scene, path, rows, progress, questions.band ? questions.band->high : 0);
   r.center = r.scan.center;
   r.file.scene.coupling = r.scan.coupling;
   for (Part& part : r.file.scene.parts)
     if (part.held) part.pose = rows.front().x;
-  if (goal) {
-    r.file.script = StylusScript({{0, rows.front().x}, {1, *goal}});
+  if (questions.goal) {
+    r.file.script = StylusScript({{0, rows.front().x}, {1, *questions.goal}});
     r.file.scene.scale = 1;
   }
   if (2 * r.scan.astray > rows.size())
@@ -53,7 +53,8 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
   tell_scene_changes(r.recording.info, r);
-  r.assembly = assembly_force(r, band, progress);
+  r.assembly = assembly_force(r, questions.friction, progress);
+  if (questions.band) r.band = find_band(*questions.band, rows, r.scan);
   return r;
 }
 

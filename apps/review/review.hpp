@@ -3,6 +3,7 @@
 #include <string>
 
 #include "review/assembly_force.hpp"
+#include "review/clearance_band.hpp"
 #include "review/findings.hpp"
 #include "review/verdict.hpp"
 
@@ -18,13 +19,20 @@ struct Review {
   Findings findings;
   Verdict verdict;
   AssemblyForce assembly;
+  std::optional<BandFindings> band;  ///< of the band that was asked for
 };
 
-/// Looks at `recording`, read from `path`, over the scene `file`. `goal` (X_WF of the held part) replaces where the
-/// scene's script ends; `band` is of assembly_force(). Throws Error for a recording that is empty or does not fit the
-/// scene.
-Review review_recording(const std::string& path, Recording recording, SceneFile file, const std::optional<Pose>& goal,
-                        const ForceBand& band, const Progress& progress);
+/// What is asked of a review beside the recording.
+struct ReviewQuestions {
+  std::optional<Pose> goal;           ///< X_WF of the held part; empty: where the scene's script ends
+  ForceBand friction;                 ///< see assembly_force()
+  std::optional<ClearanceBand> band;  ///< of clearances
+};
+
+/// Looks at `recording`, read from `path`, over the scene `file`. Throws Error for a recording that is empty or does
+/// not fit the scene.
+Review review_recording(const std::string& path, Recording recording, SceneFile file, const ReviewQuestions& questions,
+                        const Progress& progress);
 
 /// The report, self-contained HTML.
 std::string report_html(const Review& review, const Progress& progress);

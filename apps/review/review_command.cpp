@@ -8,6 +8,7 @@
 #include "core/same_file.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
+#include "shared/length_option.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -37,7 +38,16 @@ ForceBand parse_band(const std::string& text) {
 std::string recording_report(const std::string& recording, const std::string& scene) {
   Recording read = read_recording(recording);
   SceneFile file = view::load_recorded_scene(recording, read.info, scene);
-  return report_html(review_recording(recording, std::move(read), std::move(file), std::nullopt, {}, {}), {});
+  return report_html(review_recording(recording, std::move(read), std::move(file), {}, {}), {});
+}
+
+CLI::Option* add_band_option(CLI::App& app, std::optional<ClearanceBand>& band) {
+  return apps::add_lengths_option(
+      app, "--band",
+      [&band](double low, double high) {
+        band = ClearanceBand{low, high};
+      },
+      "Also where the gap is below, inside and above this band, like 50um 0.2mm");
 }
 
 CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
@@ -50,6 +60,7 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
   review->add_option("--forces", o.forces, "Also write the force of the assembly over depth")->type_name("FILE.csv");
   review->add_option("--mu", o.mu, "Also with coefficients of friction between these, by the same pen")
       ->type_name("LOW:HIGH");
+  add_band_option(*review, o.band);
   review->add_option("--gltf", o.gltf, "Also write the path as an animation, binary when it ends in .glb")
       ->type_name("FILE.gltf");
   review->add_option("--script", o.script, "Also write the pen's path as a stylus script, for run --script")
@@ -70,13 +81,12 @@ int run_review(const ReviewOptions& o) {
   std::vector<std::string> inputs = scene.files;
   inputs.insert(inputs.end(), {o.recording, recording_info_path(o.recording)});
   refuse_to_replace({out, o.csv, o.forces, o.script, o.gltf}, inputs);
-  std::optional<Pose> goal;
-  if (!o.goal.empty()) goal = apps::parse_pose(o.goal, scene.scene);
-  const Review r =
-      review_recording(o.recording, std::move(recording), std::move(scene), goal, parse_band(o.mu), progress);
+  ReviewQuestions questions{std::nullopt, parse_band(o.mu), o.band};
+  if (!o.goal.empty()) questions.goal = apps::parse_pose(o.goal, scene.scene);
+  const Review r = review_recording(o.recording, std::move(recording), std::move(scene), questions, progress);
   const auto& rows = r.recording.frames;
   write_file(out, report_html(r, progress));
-  if (!o.csv.empty()) write_file(o.csv, path_csv(r.file.scene, rows, r.scan));
+  if (!o.csv.empty()) write_file(o.csv, path_csv(r.file.scene, rows, r.scan, r.band));
   if (!o.forces.empty()) {
     if (!r.assembly.known) throw Error("--forces: " + o.recording + " has no contact forces (MCAP has those of qp)");
     write_file(o.forces, assembly_force_csv(r.assembly));
@@ -88,6 +98,9 @@ int run_review(const ReviewOptions& o) {
   std::cout << r.verdict.headline << "\n";
   for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";
   for (const std::string& text : assembly_force_text(r.assembly)) std::cout << "  " << text << "\n";
+  if (r.band)
+    for (const std::string& text : band_text(*r.band, r.findings.clearances, r.file.scene))
+      std::cout << "  " << text << "\n";
   std::cout << "report: " << out << std::endl;
   return r.verdict.outcome == Outcome::does_not_go ? apps::kRunFailed : apps::kDone;
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+
+#include "review/clearance_band.hpp"
 
 namespace tegotae::review {
 
@@ -13,7 +16,11 @@ struct ReviewOptions {
   std::string csv, gltf, script;  ///< exports of the path; empty: none
   std::string forces;             ///< the force over depth; empty: none
   std::string mu;                 ///< "LOW:HIGH", see ForceBand; empty: none
+  std::optional<ClearanceBand> band;
 };
+
+/// Adds `--band LOW HIGH`, two lengths with units; `band` is left alone unless it is given.
+CLI::Option* add_band_option(CLI::App& app, std::optional<ClearanceBand>& band);
 
 /// The subcommand `review`.
 CLI::App* add_review(CLI::App& app, ReviewOptions& options);

@@ -8,9 +8,10 @@
 #include <unordered_map>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/parallel_for.hpp"
 #include "feature/signed_distance.hpp"
 #include "loop/scene_parts.hpp"
-#include "core/parallel_for.hpp"
+#include "narrowphase/patch_cache.hpp"
 #include "view/display_mesh.hpp"
 
 namespace tegotae::review {
@@ -19,7 +20,8 @@ namespace {
 // Triangles are cut until no edge is longer than this share of the part's radius, or a coarser one for many.
 constexpr double kEdgeShare = 1.0 / 8;
 constexpr double kCoarser = 1.3;
-constexpr std::size_t kBlock = 64;  // points that a thread takes at a time
+constexpr std::size_t kBlock = 64;      // points that a thread takes at a time
+constexpr std::size_t kNearFaces = 12;  // of a part, that a point is followed past
 
 struct Refined {
   std::vector<Vec3> points;
@@ -67,8 +69,18 @@ bool refine(Refined& mesh, double longest) {
 }
 
 SignedDistance distance_to(const std::shared_ptr<const TriangleMesh>& mesh) {
-  return SignedDistance(std::make_shared<Surface>(mesh), std::make_shared<PatchTree>(mesh));
+  return SignedDistance(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
 }
+
+/// What one thread knows of a point while it follows it: of each part the faces that are nearest, as of some pose.
+struct Followed {
+  struct Near {
+    double until = 0;                 ///< of the point's way, when a face or one that is not known may touch it
+    double others = 0;                ///< the same of those that are not known
+    std::vector<FaceDistance> faces;  ///< with the way at which each may touch it
+  };
+  std::vector<Near> parts;
+};
 
 /// Follows points along a path and asks for distances only where they may have become less.
 class PathClearance {
@@ -79,13 +91,12 @@ class PathClearance {
     const TriangleMesh& held = *held_part(scene).mesh;
     const Sphere ball = bounding_sphere(held);
     center_ = ball.center;
-    std::map<const TriangleMesh*, std::shared_ptr<const SignedDistance>> distances;
+    std::map<const TriangleMesh*, std::shared_ptr<const NearestFace>> faces;
     BoundingSpheres spheres;
-    std::vector<std::uint32_t> near;
     for (const Part& part : scene.parts) {
       if (part.held) continue;
       spheres.add(bounding_sphere(*part.mesh), part.pose);
-      others_.push_back({&part, nullptr});
+      others_.push_back({part.mesh.get(), part.pose.inverse(), nullptr});
     }
     for (const std::size_t i : numbers) {
       Step step;
@@ -95,50 +106,70 @@ class PathClearance {
         step.way = steps_.back().way + d.dp.norm();
         step.turn = steps_.back().turn + d.dr.norm();
       }
-      spheres.query(step.X * ball.center, ball.radius, reach, near);
-      step.near = near;
-      for (const std::uint32_t k : near) {
-        auto& known = distances[others_[k].part->mesh.get()];
-        if (!known) known = std::make_shared<SignedDistance>(distance_to(others_[k].part->mesh));
-        others_[k].distance = known;
+      spheres.query(step.X * ball.center, ball.radius, reach, step.near);
+      for (const std::uint32_t k : step.near) {
+        auto& known = faces[others_[k].mesh];
+        if (!known) known = nearest_faces(scene.parts, others_[k].mesh);
+        others_[k].faces = known;
       }
       steps_.push_back(std::move(step));
     }
   }
 
   /// The least distance of the point (held part's file frame) to another part over the path, at most the reach.
-  double least(const Vec3& point) const {
+  /// `followed` is scratch.
+  double least(const Vec3& point, Followed& followed) const {
     const double arm = (point - center_).norm();
-    std::vector<std::uint32_t> hints(others_.size(), 0);
-    double best = reach_, last = -1, way = 0, turn = 0;  // `last`: the distance when it was asked, there
+    followed.parts.resize(others_.size());
+    for (Followed::Near& near : followed.parts) near.until = near.others = 0;  // nothing is known
+    double best = reach_;
     for (const Step& step : steps_) {
-      if (step.near.empty()) continue;
-      if (last >= 0 && last - (step.way - way) - arm * (step.turn - turn) >= best) continue;
-      const Vec3 p = step.X * point;
-      // A point with no part near may be as near to another one as the reach.
-      last = reach_;
-      for (const std::uint32_t k : step.near) {
-        const SurfacePoint s = others_[k].distance->at(others_[k].part->pose.inverse() * p, hints[k]);
-        hints[k] = s.face;
-        last = std::min(last, std::abs(s.distance));
-      }
-      way = step.way;
-      turn = step.turn;
-      best = std::min(best, last);
+      const double way = step.way + arm * step.turn;
+      for (const std::uint32_t k : step.near)
+        if (followed.parts[k].until - way < best) best = ask(others_[k], step.X * point, way, best, followed.parts[k]);
     }
     return best;
   }
 
  private:
   struct Other {
-    const Part* part;
-    std::shared_ptr<const SignedDistance> distance;
+    const TriangleMesh* mesh;
+    Pose X_FW;  ///< W in its file frame
+    std::shared_ptr<const NearestFace> faces;
   };
   struct Step {
     Pose X;
     double way = 0, turn = 0;  ///< gone so far, m and rad
     std::vector<std::uint32_t> near;
   };
+
+  static std::shared_ptr<const NearestFace> nearest_faces(const std::vector<Part>& parts, const TriangleMesh* mesh) {
+    const auto part = std::find_if(parts.begin(), parts.end(), [mesh](const Part& p) { return p.mesh.get() == mesh; });
+    return std::make_shared<NearestFace>(std::make_shared<Surface>(part->mesh), cached_patch_tree(part->mesh));
+  }
+
+  /// The point's distance to a part, if it is less than `best`, else `best`.
+  double ask(const Other& other, const Vec3& p_W, double way, double best, Followed::Near& near) const {
+    const Vec3 p = other.X_FW * p_W;
+    if (near.others - way < best) {
+      near.others = other.faces->gather(p, best + reach_, kNearFaces, near.faces) + way;
+      for (FaceDistance& f : near.faces) {
+        best = std::min(best, f.distance);
+        f.distance += way;
+      }
+    } else {
+      for (FaceDistance& f : near.faces) {
+        if (f.distance - way >= best) continue;
+        const double distance = other.faces->distance(p, f.face);
+        best = std::min(best, distance);
+        f.distance = distance + way;
+      }
+    }
+    near.until = near.others;
+    for (const FaceDistance& f : near.faces) near.until = std::min(near.until, f.distance);
+    return best;
+  }
+
   double reach_;
   Vec3 center_;
   std::vector<Other> others_;
@@ -186,10 +217,11 @@ void add_clearance(const Scene& scene, const std::vector<RecordFrame>& rows, con
   const PathClearance path(scene, rows, looked_at, reach);
   const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
   const auto color = [&](int block) {
+    Followed followed;
     const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
     for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) {
       const float* p = surface.positions.data() + 3 * i;
-      surface.clearance[i] = static_cast<float>(path.least(Vec3(p[0], p[1], p[2])));
+      surface.clearance[i] = static_cast<float>(path.least(Vec3(p[0], p[1], p[2]), followed));
     }
   };
   parallel_for(blocks, 0, color, [&](int done) {

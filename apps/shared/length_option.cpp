@@ -22,15 +22,28 @@ double parse_length(const std::string& text) {
   }
 }
 
+std::string check_length(const std::string& text) {
+  return parse_length(text) >= 0 ? "" : text + " is no length with a unit (m, cm, mm, um, in), like 5um";
+}
+
 }  // namespace
 
 CLI::Option* add_length_option(CLI::App& app, const std::string& name, double& meters, const std::string& help) {
   const auto set = [&meters](const std::string& text) { meters = parse_length(text); };
-  return app.add_option_function<std::string>(name, set, help)
-      ->check([](const std::string& text) -> std::string {
-        return parse_length(text) >= 0 ? "" : text + " is no length with a unit (m, cm, mm, um, in), like 5um";
-      })
-      ->type_name("LENGTH");
+  return app.add_option_function<std::string>(name, set, help)->check(check_length)->type_name("LENGTH");
+}
+
+CLI::Option* add_lengths_option(CLI::App& app, const std::string& name,
+                                const std::function<void(double low, double high)>& set, const std::string& help) {
+  const auto both = [set, name](const std::vector<std::string>& texts) {
+    const double low = parse_length(texts.at(0)), high = parse_length(texts.at(1));
+    if (!(low < high)) throw CLI::ValidationError(name, texts[0] + " is not less than " + texts[1]);
+    set(low, high);
+  };
+  return app.add_option_function<std::vector<std::string>>(name, both, help)
+      ->check(check_length)
+      ->expected(2)
+      ->type_name("LOW HIGH");
 }
 
 }  // namespace tegotae::apps

@@ -4,9 +4,9 @@
 #include <mutex>
 #include <vector>
 
+#include "core/parallel_for.hpp"
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
-#include "core/parallel_for.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"

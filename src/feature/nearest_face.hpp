@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "feature/simplex_distance.hpp"
 #include "narrowphase/patch_tree.hpp"
@@ -15,6 +16,13 @@ struct NearFace {
   Vec3 point = Vec3::Zero();   ///< m
   std::uint32_t face = kNone;  ///< that has the point; kNone: no face was near enough
   unsigned mask = 0;           ///< corners of the face that carry the point (see ClosestPoints)
+};
+
+/// How far a face is from a point, m.
+struct FaceDistance {
+  double distance;
+  std::uint32_t face;
+  bool operator<(const FaceDistance& other) const { return distance < other.distance; }
 };
 
 /// Nearest faces of a surface to points, by its hierarchy. Immutable.
@@ -55,8 +63,13 @@ class NearestFace {
       stack[top++] = near;
     }
   }
+  /// The `most` faces nearest to `p`, in any order, or all that are nearer than `within` (m) if they are fewer; returns
+  /// the distance (m) below which there are no others.
+  double gather(const Vec3& p, double within, std::size_t most, std::vector<FaceDistance>& faces) const;
   /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
   void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
+  /// How far `face` is from `p`, m.
+  double distance(const Vec3& p, std::uint32_t face) const noexcept;
   /// Replaces `best` by the nearest point of one face if that is nearer.
   void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
 

@@ -9,7 +9,7 @@ namespace tegotae {
 
 /// The nearest points of two surfaces.
 struct NearestPoints {
-  double distance = 0;      ///< m; 0 when the surfaces intersect
+  double distance = 0;                            ///< m; 0 when the surfaces intersect
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  ///< m, B's file frame; where they intersect: a place near by
 };
 

@@ -6,8 +6,8 @@
 
 namespace tegotae {
 
-/// Whether a surface A that moves past a surface B intersects it: FCL's word on each pair of triangles that boxes do not
-/// keep farther apart than kNear. Knows nothing of the certificate of motions. Mutable scratch of one thread.
+/// Whether a surface A that moves past a surface B intersects it: FCL's word on each pair of triangles that boxes do
+/// not keep farther apart than kNear. Knows nothing of the certificate of motions. Mutable scratch of one thread.
 class FclNearTriangles {
  public:
   /// Triangles that are this much (m) apart are none of FCL's business; those that touch count as intersecting.

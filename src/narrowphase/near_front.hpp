@@ -19,10 +19,10 @@ class LeafQuery {
   virtual double distance(const PatchNode& a, const PatchNode& b, Vec3& normal, double& bound) = 0;
 };
 
-/// Which triangles of two surfaces may be nearer to each other than a bound, pose after pose: a front of pairs of patches
-/// that covers all pairs of triangles, each with a direction along which it was apart and with how far. A pair is not
-/// looked at before the part has moved so far that it may have come under the bound; the front is taken apart where
-/// it must be, nearest pair first, and built anew when it has grown.
+/// Which triangles of two surfaces may be nearer to each other than a bound, pose after pose: a front of pairs of
+/// patches that covers all pairs of triangles, each with a direction along which it was apart and with how far. A pair
+/// is not looked at before the part has moved so far that it may have come under the bound; the front is taken apart
+/// where it must be, nearest pair first, and built anew when it has grown.
 ///
 /// For poses at rest and in double precision, with bounds of its own: what it is used for checks the certificate of
 /// motions (PatchFront). Mutable scratch of one thread; allocates.
@@ -49,8 +49,8 @@ class NearFront {
     double until;        ///< way() at which the pair may touch: its gap when it was looked at, and the way then
   };
   struct Open {
-    double gap;      ///< lower bound of the distance
-    bool searched;   ///< the best direction has been looked for
+    double gap;     ///< lower bound of the distance
+    bool searched;  ///< the best direction has been looked for
     Pair pair;
     bool operator<(const Open& other) const { return gap > other.gap; }  // the nearest on top of the heap
   };
@@ -64,14 +64,14 @@ class NearFront {
   void keep(Pair pair, double gap);
 
   std::shared_ptr<const PatchTree> a_, b_;
-  Pose X_;             // of the last query
-  Mat3 R_;             // from A's axes to B's
-  Vec3 t_;             // A's tree origin from B's, B's axes
-  double way_ = 0;     // m, that no point of A has gone farther than since the front was built
+  Pose X_;          // of the last query
+  Mat3 R_;          // from A's axes to B's
+  Vec3 t_;          // A's tree origin from B's, B's axes
+  double way_ = 0;  // m, that no point of A has gone farther than since the front was built
   bool placed_ = false;
   std::vector<Pair> front_;
-  std::vector<Open> open_;    // heap
-  std::size_t built_ = 0;     // pairs when the front was built
+  std::vector<Open> open_;  // heap
+  std::size_t built_ = 0;   // pairs when the front was built
 };
 
 }  // namespace tegotae

@@ -37,8 +37,8 @@ class CheckedSegment {
   std::atomic<std::int64_t> poses_{0};  // different ones
 };
 
-/// Asks FCL about the poses that a run commits, beside the run, in a thread of its own: some in a row at a time, which is
-/// fast, and the rows in no order. Of a run in real time it takes a quarter of one processor, so that the loops keep
+/// Asks FCL about the poses that a run commits, beside the run, in a thread of its own: some in a row at a time, which
+/// is fast, and the rows in no order. Of a run in real time it takes a quarter of one processor, so that the loops keep
 /// theirs; after any run it works on all processors.
 class RunCheck {
  public:
@@ -99,7 +99,7 @@ class RunCheck {
   std::atomic<bool> done_{false};
 
   // The thread's own.
-  std::vector<Block> filling_;  // one a segment, with fewer poses than a block has
+  std::vector<Block> filling_;           // one a segment, with fewer poses than a block has
   std::uint64_t stride_ = 1, seen_ = 0;  // blocks
 
   std::mutex queue_mutex_;  // of the next two

@@ -10,6 +10,7 @@
 using namespace tegotae;
 using namespace tegotae::review;
 using namespace tegotae::test;
+using Catch::StartsWith;
 
 namespace {
 
@@ -20,7 +21,7 @@ Review review_of(const Pose& from, const Pose& to) {
   scene.parts.push_back({"floor", shared(box({0.4, 0.4, 0.02})), {Quat::Identity(), {0, 0, -0.01}}});
   scene.parts.push_back({"block", shared(box({0.04, 0.04, 0.02})), from, true});
   SceneFile file{"scene.toml", scene, {}, StylusScript({{0, from}, {1, to}}), {}, "", {}};
-  return {"r.mcap", std::move(file), {}, Vec3::Zero(), {}, {}, {}, {}};
+  return {"r.mcap", std::move(file), {}, Vec3::Zero(), {}, {}, {}, {}, {}};
 }
 
 /// A row `depth` down from `top`, with one contact that pushes up by `normal` and by `friction` (N).
@@ -66,17 +67,29 @@ TEST_CASE("insertion, seating and pull-out are told apart, with friction's share
   CHECK(f.insertion_mean == Approx(2).epsilon(0.01));
   CHECK(f.friction_share == Approx(0.5).epsilon(0.01));
   CHECK(f.seating.force == Approx(7));
+  CHECK(f.seating.depth == Approx(0.04));
   CHECK(f.pull_out.force == Approx(0.5));
+  CHECK(f.pull_out_mean == Approx(0.5).epsilon(0.01));
   for (const DepthForce& d : f.over_depth) {
     CHECK(d.insertion == Approx(1 + 2 * d.depth / 0.04).epsilon(0.02));
     CHECK(d.friction == Approx(2 * d.depth / 0.04).margin(0.02));
     CHECK(d.pull_out == Approx(0.5).epsilon(0.01));
+    CHECK(d.pull_out_peak == Approx(0.5).epsilon(0.01));
+    // It stood at the end of the way only.
+    if (&d == &f.over_depth.back())
+      CHECK(d.seating == Approx(7).epsilon(0.02));  // a tick of it is of the way
+    else
+      CHECK(std::isnan(d.seating));
     CHECK(std::isnan(d.low));
   }
   const std::string csv = assembly_force_csv(f);
   CHECK(csv.rfind("depth_mm,insertion_n,", 0) == 0);
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 201);
-  CHECK(assembly_force_text(f).size() == 3);
+  const std::vector<std::string> text = assembly_force_text(f);
+  REQUIRE(text.size() == 3);
+  CHECK_THAT(text[0], StartsWith("insertion: at most 3.00 N at "));
+  CHECK_THAT(text[1], StartsWith("seating (final): at most 7.00 N at 40.00 mm, against floor"));
+  CHECK_THAT(text[2], StartsWith("pull-out: at most 0.50 N at "));
 }
 
 TEST_CASE("a recording without contact forces, or of a part that goes nowhere, has no force of an assembly",

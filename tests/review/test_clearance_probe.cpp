@@ -1,86 +1,19 @@
 // Clearances against brute force over all pairs of triangles, and against closed forms.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "models/shapes.hpp"
 #include "review/clearance_probe.hpp"
 #include "review/surface_clearance.hpp"
+#include "triangle_distance.hpp"
 
 using namespace tegotae;
 using namespace tegotae::review;
 using namespace tegotae::test;
 
 namespace {
-
-using Triangle = std::array<Vec3, 3>;
-
-double point_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  return (a + std::clamp(d.dot(p - a) / d.squaredNorm(), 0.0, 1.0) * d - p).norm();
-}
-
-double point_triangle(const Vec3& p, const Triangle& t) {
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-  bool inside = true;
-  double edges = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 &a = t[k], &b = t[(k + 1) % 3];
-    inside = inside && (b - a).cross(p - a).dot(n) >= 0;
-    edges = std::min(edges, point_segment(p, a, b));
-  }
-  return inside ? std::abs(n.dot(p - t[0])) : edges;
-}
-
-double segment_segment(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = d - c, w = a - c;
-  const double uv = u.dot(v), uu = u.dot(u), vv = v.dot(v), den = uu * vv - uv * uv;
-  double best =
-      std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
-  if (den > 0) {
-    const double s = (uv * v.dot(w) - vv * u.dot(w)) / den, t = (uu * v.dot(w) - uv * u.dot(w)) / den;
-    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) best = std::min(best, (w + s * u - t * v).norm());
-  }
-  return best;
-}
-
-bool crosses(const Vec3& a, const Vec3& b, const Triangle& t) {
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double da = n.dot(a - t[0]), db = n.dot(b - t[0]);
-  if (da * db > 0) return false;
-  const Vec3 p = a + da / (da - db) * (b - a);
-  for (int k = 0; k < 3; ++k)
-    if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(n) < 0) return false;
-  return true;
-}
-
-double distance(const Triangle& s, const Triangle& t) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    best = std::min({best, point_triangle(s[i], t), point_triangle(t[i], s)});
-    const Vec3 &a = s[i], &b = s[(i + 1) % 3];
-    if (crosses(a, b, t) || crosses(t[i], t[(i + 1) % 3], s)) return 0;
-    for (int j = 0; j < 3; ++j) best = std::min(best, segment_segment(a, b, t[j], t[(j + 1) % 3]));
-  }
-  return best;
-}
-
-std::vector<Triangle> triangles(const TriangleMesh& mesh, const Pose& X) {
-  std::vector<Triangle> out;
-  for (const auto& t : mesh.triangles)
-    out.push_back({X * mesh.vertices[t[0]], X * mesh.vertices[t[1]], X * mesh.vertices[t[2]]});
-  return out;
-}
-
-double brute(const TriangleMesh& a, const Pose& X_a, const TriangleMesh& b, const Pose& X_b) {
-  double best = std::numeric_limits<double>::infinity();
-  const auto in_b = triangles(b, X_b);
-  for (const Triangle& s : triangles(a, X_a))
-    for (const Triangle& t : in_b) best = std::min(best, distance(s, t));
-  return best;
-}
 
 RecordFrame at(double t, const Pose& X) {
   RecordFrame row;
@@ -106,8 +39,8 @@ TEST_CASE("clearances along a path are those of all pairs of triangles") {
     // From the left part to the right one, turning; it runs into the right one at the end.
     const Pose X{rotation({0, 0.02 * i, 0.05 * i}), {-0.008 + 0.0004 * i, 0.001 * std::sin(0.3 * i), 0}};
     probe.at(X, reach, found);
-    const double left = brute(*scene.parts[1].mesh, X, *scene.parts[0].mesh, scene.parts[0].pose);
-    const double right = brute(*scene.parts[1].mesh, X, *scene.parts[2].mesh, scene.parts[2].pose);
+    const double left = brute_distance(*scene.parts[1].mesh, X, *scene.parts[0].mesh, scene.parts[0].pose);
+    const double right = brute_distance(*scene.parts[1].mesh, X, *scene.parts[2].mesh, scene.parts[2].pose);
     INFO("pose " << i << ", left " << left << ", right " << right);
     REQUIRE(!found.empty());
     CHECK(found.front().part == (left <= right ? 0u : 2u));

@@ -1,9 +1,11 @@
 // What a recording says, on recordings whose answers are known in closed form.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "review/clearance_band.hpp"
 #include "review/findings.hpp"
 #include "review/path_scan.hpp"
 #include "review/spans.hpp"
@@ -317,4 +319,95 @@ TEST_CASE("rows that are looked at") {
   CHECK(looked_at(0, 10).empty());
   CHECK(looked_at(3, 10) == std::vector<std::size_t>{0, 1, 2});
   CHECK(looked_at(11, 5) == std::vector<std::size_t>{0, 3, 6, 9, 10});
+}
+
+TEST_CASE("a band of clearances over the motion of a block towards a wall and back") {
+  // The gap to the wall goes from 10 mm to 1 mm and back, 9 mm/s; the floor is 40 mm away.
+  const Scene scene = blocks();
+  std::vector<RecordFrame> rows;
+  const auto gap = [](int i) { return 0.01 - 9e-6 * (i <= 1000 ? i : 2000 - i); };
+  for (int i = 0; i <= 2000; ++i) rows.push_back(row(i, 0.015 - gap(i), 0.045, 0.045, 0));
+  const ClearanceBand band{0.002, 0.005};
+  const Scan scan = scan_path(scene, "test", rows, {}, band.high);
+  CHECK(scan.reach == Approx(band.high));
+  const BandFindings found = find_band(band, rows, scan);
+  REQUIRE(found.of_row.size() == rows.size());
+  for (int i = 0; i <= 2000; ++i)
+    if (std::abs(gap(i) - band.low) > 1e-9 && std::abs(gap(i) - band.high) > 1e-9)
+      REQUIRE(found.of_row[i] == band.zone(gap(i)));
+  // Above for 5 of 9 mm, inside for 3, below for 1; each way.
+  const double row_seconds = 2.1e-3, row_way = 2.1 * 9e-6;  // at each end of a stretch a row more or less
+  CHECK(found.seconds[0] == Approx(2.0 / 9).margin(row_seconds));
+  CHECK(found.seconds[1] == Approx(6.0 / 9).margin(row_seconds));
+  CHECK(found.seconds[2] == Approx(10.0 / 9).margin(row_seconds));
+  CHECK(found.seconds[0] + found.seconds[1] + found.seconds[2] == Approx(2));
+  CHECK(found.way[0] == Approx(0.002).margin(row_way));
+  CHECK(found.way[1] == Approx(0.006).margin(row_way));
+  CHECK(found.way[2] == Approx(0.010).margin(row_way));
+  REQUIRE(found.spans.size() == 5);
+  const BandZone zones[] = {BandZone::above, BandZone::inside, BandZone::below, BandZone::inside, BandZone::above};
+  const double ends[] = {5.0 / 9, 8.0 / 9, 10.0 / 9, 13.0 / 9, 2}, ways[] = {0.005, 0.008, 0.010, 0.013, 0.018};
+  const double tightest[] = {0.005, 0.002, 0.001, 0.002, 0.005};
+  for (std::size_t k = 0; k < 5; ++k) {
+    const BandSpan& s = found.spans[k];
+    CHECK(s.zone == zones[k]);
+    CHECK(s.span.begin == (k == 0 ? 0 : found.spans[k - 1].span.end));
+    CHECK(s.way_begin == (k == 0 ? 0 : found.spans[k - 1].way_end));
+    CHECK(s.span.end == Approx(ends[k]).margin(row_seconds));
+    CHECK(s.way_end == Approx(ways[k]).margin(row_way));
+    CHECK(s.tightest.part == 1);
+    CHECK(s.tightest.distance == Approx(tightest[k]).margin(row_way));
+  }
+  // The tightest place: at the turn, in the middle of the gap of 1 mm.
+  const BandSpan& below = found.spans[2];
+  CHECK(below.tightest.distance == Approx(0.001).margin(1e-12));
+  CHECK(below.tightest.t == Approx(1));
+  CHECK(below.tightest.place_W.x() == Approx(0.0195));
+  const Findings f = find(file_of(scene, rows.back().x), rows, scan, scan.center);
+  const std::vector<std::string> text = band_text(found, f.clearances, scene);
+  CHECK_THAT(text[0], Catch::Contains("clearance of 2 mm to 5 mm: below 0.22 s and 2.0"));
+  CHECK_THAT(text[2], Catch::Contains("below the band from 0.8") && Catch::Contains("at least 1 mm to wall"));
+  CHECK_THAT(text.back(), Catch::Contains("tightest: 1 mm to wall") && Catch::Contains("below the band"));
+}
+
+TEST_CASE("a cylinder that rolls along a wall stays in the band that its gap is in") {
+  // 720 facets: the gap differs by a sagitta of 0.1 um.
+  TriangleMesh rod;
+  const int n = 720;
+  const double radius = 0.01;
+  for (int i = 0; i < n; ++i)
+    for (const double z : {-0.02, 0.02})
+      rod.vertices.emplace_back(radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), z);
+  for (int i = 0; i < n; ++i) {
+    const auto a = static_cast<std::uint32_t>(2 * i), b = static_cast<std::uint32_t>(2 * ((i + 1) % n));
+    rod.triangles.push_back({a, b, a + 1});
+    rod.triangles.push_back({b, b + 1, a + 1});
+  }
+  Scene scene;
+  scene.parts.push_back({"wall", shared(box({0.02, 0.4, 0.1})), {Quat::Identity(), {0.0102 + radius, 0, 0}}});
+  scene.parts.push_back({"rod", shared(rod), Pose{}, true});
+  std::vector<RecordFrame> rows;
+  for (int i = 0; i <= 1000; ++i) {
+    RecordFrame r;
+    r.tick = static_cast<std::uint64_t>(i);
+    r.t = 1e-3 * i;
+    const double y = -0.05 + 1e-4 * i;
+    r.x = r.y = {rotation({0, 0, y / radius}), {0, y, 0}};
+    rows.push_back(r);
+  }
+  const Scan scan = scan_path(scene, "test", rows, {});
+  const double sagitta = radius * (1 - std::cos(M_PI / n));
+  for (const ScannedRow& s : scan.rows) {
+    REQUIRE(s.clearances.size() == 1);
+    CHECK(s.clearances[0].distance >= 2e-4 - 1e-9);
+    CHECK(s.clearances[0].distance <= 2e-4 + sagitta + 1e-9);
+  }
+  for (const auto& [low, high, zone] : std::initializer_list<std::tuple<double, double, BandZone>>{
+           {1.9e-4, 2.1e-4, BandZone::inside}, {1e-5, 1.9e-4, BandZone::above}, {2.1e-4, 1e-3, BandZone::below}}) {
+    const BandFindings found = find_band({low, high}, rows, scan);
+    REQUIRE(found.spans.size() == 1);
+    CHECK(found.spans[0].zone == zone);
+    CHECK(found.spans[0].span.end == Approx(1));
+    CHECK(found.spans[0].way_end == Approx(0.1));
+  }
 }

@@ -272,3 +272,32 @@ TEST_CASE("a peg in its hole, and a peg out of its tray", "[.][parts]") {
     CHECK(tried.code == 0);
   }
 }
+
+TEST_CASE("a band of clearances: said, in the CSV and in the report") {
+  const TempFolder folder;
+  write_cubes(folder, 4, 16);
+  const std::string csv = record(folder, "r.csv");
+  // The gap goes from 3 mm to 6 mm.
+  const Output o = run_program("tegotae", "review " + csv + " --band 1mm 0.4cm --csv " + folder / "path_out.csv");
+  INFO(o.err);
+  REQUIRE(o.code == 0);
+  CHECK_THAT(o.out, Contains("clearance of 1 mm to 4 mm: below 0.00 s and 0.00 mm, inside "));
+  CHECK_THAT(o.out, Contains("inside the band from 0.000 to "));
+  CHECK_THAT(o.out, Contains(" mm to floor, \"the\" at "));
+  const auto rows = csv_rows(folder / "path_out.csv");
+  CHECK(rows[0].back() == "band");
+  int inside = 0, above = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double clearance = std::stod(rows[i][8]);
+    REQUIRE(rows[i].back() == (clearance <= 0.004 ? "inside" : "above"));
+    ++(clearance <= 0.004 ? inside : above);
+  }
+  CHECK(inside > 50);
+  CHECK(above > 50);
+  for (const std::string wrong : {"4mm 1mm", "1 4", "1mm", "1mm 1mm"}) {
+    const Output refused = run_program("tegotae", "review " + csv + " --band " + wrong);
+    INFO(wrong);
+    CHECK(refused.code != 0);
+    CHECK_THAT(refused.err, Contains("--band"));
+  }
+}

@@ -1,20 +1,29 @@
 // From a clearance to a color: red is close, blue is as far as was looked, logarithmic; gray is farther.
 const stops = [[165, 0, 38], [244, 109, 67], [254, 224, 144], [116, 173, 209], [49, 54, 149]];
 const beyond = [150, 156, 163];
+// Below, inside and above a band of clearances that was asked for.
+const zones = [[200, 38, 38], [240, 178, 50], [44, 123, 182]];
 const tickRoom = 0.24; // of the scale, for a label
 
+// Red, green, blue from 0 to 255.
+export const zoneColor = (zone) => zones[zone];
+
 export class ClearanceScale {
-  constructor(clearances, reach) {
+  // `band`: {low, high} of three colors in place of the many, or undefined.
+  constructor(clearances, reach, band) {
     let least = reach;
     for (const c of clearances) if (c > 0 && c < least) least = c;
     this.low = Math.max(1e-6, Math.min(10 ** Math.floor(Math.log10(least)), reach / 10));
     this.high = reach;
+    this.band = band;
+    if (band?.low > 0) this.low = Math.min(this.low, band.low / 2);
   }
   at(clearance) {
     return Math.log(Math.max(clearance, this.low) / this.low) / Math.log(this.high / this.low);
   }
   // Red, green, blue from 0 to 255.
   color(clearance) {
+    if (this.band) return zones[clearance < this.band.low ? 0 : clearance <= this.band.high ? 1 : 2];
     if (clearance >= this.high * (1 - 1e-6)) return beyond;
     const x = this.at(clearance) * (stops.length - 1);
     const i = Math.min(Math.floor(x), stops.length - 2);
@@ -22,6 +31,7 @@ export class ClearanceScale {
   }
   // Both ends, and powers of ten that have room between.
   ticks() {
+    if (this.band) return [this.band.low, this.band.high].filter((v) => v >= this.low && v <= this.high);
     const out = [this.low];
     for (let v = 10 * this.low; this.at(v) < 1 - tickRoom; v *= 10) if (this.at(v) - this.at(out.at(-1)) > tickRoom) out.push(v);
     return [...out, this.high];

@@ -49,7 +49,7 @@ function addButtons(path, viewpoint) {
 }
 
 function showPath() {
-  const scale = new ClearanceScale(bundle.floats(about.surface.clearance), about.surface.reach);
+  const scale = new ClearanceScale(bundle.floats(about.surface.clearance), about.surface.reach, about.band);
   const path = new PathView(document.querySelector("#stage > canvas"), bundle, scale);
   const viewpoint = new Viewpoint(path.stage);
   showLegend($("legend"), scale);
@@ -90,6 +90,7 @@ window.__tegotae = {
     return {
       headline: about.verdict.headline, rows: path.count, at: path.at, drawn: path.stage.drawn,
       layers: Object.keys(path.layers), tables: about.tables.map(({ title, rows }) => ({ title, rows: rows.length })),
+      zones: about.band && Array.from(bundle.integers(about.band.zones)),
       held: path.stage.held.group.position.toArray(),
     };
   },

@@ -4,6 +4,7 @@ import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { setPose, Stage } from "../view/stage.js";
 import { shadedSurface } from "../view/surface.js";
+import { zoneColor } from "./colors.js";
 
 const rowFloats = 8; // t and pose
 
@@ -18,7 +19,7 @@ export class PathView {
     this.layers = {};
     this.addColors(bundle, scale);
     this.addGhosts(bundle);
-    this.addPath();
+    this.addPath(bundle);
     for (const kind of ["contact", "two-sided", "stall"]) this.addPlaces(kind, bundle.about.places);
     this.applyTheme();
     this.show(this.count - 1);
@@ -70,14 +71,24 @@ export class PathView {
     this.addLayer("ghosts", group);
   }
 
-  addPath() {
+  addPath(bundle) {
     const points = [];
     const turn = new THREE.Quaternion();
     for (let i = 0; i < this.count; ++i) {
       const [x, y, z, qw, qx, qy, qz] = this.pose(i);
       points.push(this.center.clone().applyQuaternion(turn.set(qx, qy, qz, qw)).add(new THREE.Vector3(x, y, z)));
     }
-    this.line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ depthTest: false, transparent: true }));
+    const geometry = new THREE.BufferGeometry().setFromPoints(points);
+    const { band } = bundle.about;
+    if (band) {
+      const color = new THREE.Color();
+      const colors = Array.from(bundle.integers(band.zones)).flatMap((zone) => {
+        const [r, g, b] = zoneColor(zone);
+        return color.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray();
+      });
+      geometry.setAttribute("color", new THREE.Float32BufferAttribute(colors, 3));
+    }
+    this.line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ depthTest: false, transparent: true, vertexColors: Boolean(band) }));
     this.line.renderOrder = 5;
     this.addLayer("path", this.line);
   }
@@ -113,7 +124,7 @@ export class PathView {
     this.stage.applyTheme();
     this.ghostMaterial.color.set(cssColor("--ghost"));
     this.ghostLines.color.set(cssColor("--ghost"));
-    this.line.material.color.set(cssColor("--path"));
+    this.line.material.color.set(this.line.material.vertexColors ? "#ffffff" : cssColor("--path"));
     for (const [kind, material] of Object.entries(this.dots ?? {})) material.color.set(cssColor(`--${kind}`));
     this.stage.draw();
   }
