@@ -24,9 +24,10 @@ std::string script_report(SceneFile file, const std::string& script) {
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   run_session(file, settings);
   // A script that rests goes nowhere; then the hand's own end is taken.
-  std::optional<Pose> goal;
-  if (own.end() > own.begin()) goal = own.pose(own.end());
-  return report_html(review_recording("hand.mcap", read_recording(settings.record), std::move(file), goal, {}, {}), {});
+  ReviewQuestions questions;
+  if (own.end() > own.begin()) questions.goal = own.pose(own.end());
+  return report_html(review_recording("hand.mcap", read_recording(settings.record), std::move(file), questions, {}),
+                     {});
 }
 
 }  // namespace tegotae::review
