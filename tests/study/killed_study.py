@@ -28,6 +28,7 @@ while [ "${1#-}" != "$1" ]; do
 done
 name=$1
 shift
+[ "$1" = -- ] && shift
 echo $$ >> "%(folder)s/hosts/$name"
 exec %(isolate)s setsid --wait bash -c 'echo $$ >> "'"%(folder)s/hosts/$name"'"; '"$*"
 """
@@ -149,15 +150,20 @@ def run_hosts(o, folder, study, chance):
                                text=True, env=dict(drivers.environment(), HOME=folder), start_new_session=True)
 
     def alive():
-        """The newest process group of each host that runs something."""
-        found = []
-        for name in names:
-            path = os.path.join(folder, "hosts", name)
-            for line in (open(path, encoding="utf-8").read().split()[-2:] if os.path.exists(path) else []):
-                pid = int(line)
-                if any(args.startswith(o.tegotae) for _, args in children(pid)) and os.getpgid(pid) == pid:
-                    found.append((pid, True))
-        return found
+        """The process group of each host that runs something now."""
+        numbers = set()
+        for name in os.listdir(folder + "/hosts"):
+            with open(os.path.join(folder, "hosts", name), encoding="utf-8") as file:
+                numbers |= {int(line) for line in file.read().split()}
+        groups = set()
+        for pid, _, command in processes():
+            try:
+                group = os.getpgid(pid)
+            except ProcessLookupError:
+                continue
+            if command.startswith(o.tegotae) and group in numbers:
+                groups.add(group)
+        return [(group, True) for group in sorted(groups)]
 
     return watch(process, o, alive, chance, "parallel")
 

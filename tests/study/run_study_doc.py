@@ -17,6 +17,7 @@ while [ "${1#-}" != "$1" ]; do
   case $1 in -o|-p|-l) shift 2 ;; *) shift ;; esac
 done
 shift
+[ "$1" = -- ] && shift
 exec bash -c "$*"
 """,
     "sbatch": """#!/bin/bash
