@@ -15,7 +15,10 @@ namespace {
 // Of the held part's radius: between two poses that are looked at on a line, how far they are looked at, and the
 // clearance at which the part counts as out.
 constexpr double kStep = 1.0 / 25, kFarthest = 6, kOutShare = 0.05;
-constexpr int kContactSteps = 2;                       // at a tight end the part may touch for so many of them
+constexpr int kContactSteps = 2;  // at a tight end the part may touch for so many of them
+// Of the radius: how far a part goes on that is out. A hand that is not led by a hole any more misses its goal by
+// tenths of a millimeter, and a goal that is nearer than that has no tolerance for it.
+constexpr double kFartherOut = 2;
 constexpr double kHoverShare = 0.1, kMaxHover = 4e-3;  // over the rim: of the radius, at most (m)
 constexpr double kSameDirection = 0.996;               // cosine of 5 degrees
 
@@ -172,7 +175,8 @@ std::vector<Route> find_routes(const Scene& scene, const Pose& goal, const Vec3&
 
 std::vector<Route> find_routes_out(const Scene& scene, const Vec3& center) {
   const Part& held = held_part(scene);
-  const Exit exit(scene, center, radius_about(*held.mesh, center));
+  const double radius = radius_about(*held.mesh, center);
+  const Exit exit(scene, center, radius);
   if (exit.is_out(held.pose))
     throw Error(held.name + " is out of all other parts where it starts; there is nothing to try");
   std::vector<Direction> directions;
@@ -182,8 +186,9 @@ std::vector<Route> find_routes_out(const Scene& scene, const Vec3& center) {
     Route route;
   };
   std::vector<WayOut> ways;
-  for (const Pose& goal : exit.straight_out(held.pose)) {
+  for (Pose goal : exit.straight_out(held.pose)) {
     const Vec3 along = (goal.p - held.pose.p).normalized();
+    goal.p += kFartherOut * radius * along;
     const auto known = std::find_if(directions.begin(), directions.end(),
                                     [&](const Direction& d) { return d.along.dot(along) > kSameDirection; });
     if (known == directions.end()) continue;  // so near to another one that it has no name of its own

@@ -20,7 +20,7 @@ import drivers
 KILL = signal.SIGKILL
 PATIENCE = 1500  # s
 
-# Stands in for ssh: `ssh HOST COMMAND`. Its commands run in a process group that the test can kill, as when the host dies,
+# Stands in for ssh: `ssh HOST COMMAND`. Its commands run in a session that the test can kill, as when the host dies,
 # and have nothing of this machine's network where that can be had.
 HOST = """#!/bin/bash
 while [ "${1#-}" != "$1" ]; do
@@ -68,12 +68,16 @@ def children(of):
         below |= more
 
 
-def kill(pid, group=False):
-    try:
-        (os.killpg if group else os.kill)(pid, KILL)
-        return True
-    except (ProcessLookupError, PermissionError):
-        return False
+def kill(pids):
+    """Whether one of them was there."""
+    hit = False
+    for pid in pids:
+        try:
+            os.kill(pid, KILL)
+            hit = True
+        except ProcessLookupError:
+            pass
+    return hit
 
 
 def run_shards(o, folder, study, chance):
@@ -88,7 +92,7 @@ def run_shards(o, folder, study, chance):
             running.append((shard, subprocess.Popen(command, stdout=subprocess.DEVNULL)))
         time.sleep(wait * 2 * chance.random())
         if kills < o.kills:
-            if kill(chance.choice(running)[1].pid):
+            if kill([chance.choice(running)[1].pid]):
                 kills += 1
         for one in list(running):
             code = one[1].poll()
@@ -108,11 +112,11 @@ def watch(process, o, victims, chance, what):
     wait = max(0.05, o.cases * 0.012 / max(1, o.kills))
     while process.poll() is None:
         if time.time() > end:
-            kill(process.pid, group=True)
+            kill([process.pid])
             sys.exit(what + " does not end")
         time.sleep(wait * 2 * chance.random())
         found = victims()
-        if kills < o.kills and found and kill(*chance.choice(found)):
+        if kills < o.kills and found and kill(chance.choice(found)):
             kills += 1
     if process.returncode != 0:
         sys.exit("%s ended with %d\n%s" % (what, process.returncode, process.stdout.read()))
@@ -124,7 +128,7 @@ def run_hypershell(o, folder, study, chance):
         drivers.skip("no HyperShell (pip install hypershell)")
     command = [o.tegotae, "study", "run", study, "--out", folder + "/out", "--processors", "2", "--shards", "24"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=drivers.environment(), start_new_session=True)
-    workers = lambda: [(pid,) for pid, args in children(process.pid) if args.startswith(o.tegotae) and "--shard" in args]
+    workers = lambda: [[pid] for pid, args in children(process.pid) if args.startswith(o.tegotae) and "--shard" in args]
     return watch(process, o, workers, chance, "tegotae study run")
 
 
@@ -150,20 +154,22 @@ def run_hosts(o, folder, study, chance):
                                text=True, env=dict(drivers.environment(), HOME=folder), start_new_session=True)
 
     def alive():
-        """The process group of each host that runs something now."""
+        """All processes of each host that works on a shard now: those of its session."""
         numbers = set()
         for name in os.listdir(folder + "/hosts"):
             with open(os.path.join(folder, "hosts", name), encoding="utf-8") as file:
                 numbers |= {int(line) for line in file.read().split()}
-        groups = set()
+        sessions, at_work = {}, set()
         for pid, _, command in processes():
             try:
-                group = os.getpgid(pid)
+                session = os.getsid(pid)
             except ProcessLookupError:
                 continue
-            if command.startswith(o.tegotae) and group in numbers:
-                groups.add(group)
-        return [(group, True) for group in sorted(groups)]
+            if session in numbers:
+                sessions.setdefault(session, []).append(pid)
+                if command.startswith(o.tegotae):
+                    at_work.add(session)
+        return [sessions[session] for session in sorted(at_work)]
 
     return watch(process, o, alive, chance, "parallel")
 
