@@ -7,11 +7,11 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# pkg-config, dpkg-dev, file: the tests of the package.
+# pkg-config, dpkg-dev, file: the tests of the package. parallel: a test of studies.
 packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libassimp-dev libdraco-dev libmeshoptimizer-dev
           libpugixml-dev libminizip-dev zlib1g-dev libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
           libcivetweb-dev catch2 python3-venv python3-dev libspnav-dev libsdl2-dev libocct-data-exchange-dev libompl-dev
-          pkg-config dpkg-dev file)
+          pkg-config dpkg-dev file parallel)
 
 browser=false
 tools=()

@@ -15,9 +15,10 @@
 #include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
+#include "study/study_command.hpp"
+#include "study/try_command.hpp"
 #include "tegotae/import/isolated_load.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
-#include "tries/try_command.hpp"
 
 using namespace tegotae;
 using namespace tegotae::apps;
@@ -77,8 +78,11 @@ int main(int argc, char** argv) {
   review::ReviewOptions review_options;
   const CLI::App* review = review::add_review(app, review_options);
 
-  tries::TryOptions try_options;
-  const CLI::App* tries = tries::add_try(app, try_options);
+  study::TryOptions try_options;
+  const CLI::App* tries = study::add_try(app, try_options);
+
+  study::StudyOptions study_options;
+  const CLI::App* study = study::add_study(app, study_options);
 
   plan::PlanCommand plan_options;
   const CLI::App* plan = plan::add_plan(app, plan_options);
@@ -132,7 +136,8 @@ int main(int argc, char** argv) {
     if (replay->parsed()) return show_recording(recording, recorded_scene, html, replay_page);
     if (experiment->parsed()) return experiments::run(trials);
     if (review->parsed()) return review::run_review(review_options);
-    if (tries->parsed()) return tries::run_tries(try_options);
+    if (tries->parsed()) return study::run_tries(try_options);
+    if (study->parsed()) return study::run_study(study_options);
     if (plan->parsed()) return plan::run_plan(plan_options);
     if (import->parsed()) return import_file(import_options);
     const SceneOptions how{hold, true, {}, load};

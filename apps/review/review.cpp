@@ -1,6 +1,7 @@
 #include "review/review.hpp"
 
 #include "broadphase/bounding_spheres.hpp"
+#include "shared/pose_option.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 #include "view/follower.hpp"
@@ -14,6 +15,17 @@ double clearance_at(const Scene& scene, const Pose& X) {
   std::vector<Clearance> out;
   probe.at(X, 0, out);
   return out.empty() ? 0 : out.front().distance;
+}
+
+/// Where the recording says that the part was to go; none: it says nothing.
+std::optional<Pose> recorded_goal(const Review& r) {
+  const std::string& goal = r.recording.info.goal;
+  if (goal.empty()) return std::nullopt;
+  try {
+    return apps::parse_pose(goal, r.file.scene);
+  } catch (const Error& e) {
+    throw Error(r.path + ": the goal that it names: " + e.what());
+  }
 }
 
 /// The recording may be a part of a run only.
@@ -40,8 +52,9 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   r.file.scene.coupling = r.scan.coupling;
   for (Part& part : r.file.scene.parts)
     if (part.held) part.pose = rows.front().x;
-  if (questions.goal) {
-    r.file.script = StylusScript({{0, rows.front().x}, {1, *questions.goal}});
+  const std::optional<Pose> to = questions.goal ? questions.goal : recorded_goal(r);
+  if (to) {
+    r.file.script = StylusScript({{0, rows.front().x}, {1, *to}});
     r.file.scene.scale = 1;
   }
   if (2 * r.scan.astray > rows.size())

@@ -69,12 +69,11 @@ class Judge {
   std::string blocked() const {
     const double end = scan_.rows.empty() ? 0 : f_.seconds;
     const Stall* last = f_.stalls.empty() ? nullptr : &f_.stalls.back();
-    if (last && !last->parts.empty())
-      return ": blocked by " + names_text(last->parts, scene_) + " at " + place_text(last->place_W);
+    if (last && !last->parts.empty()) return ": " + apps::blocked_text(names_text(last->parts, scene_), last->place_W);
     const auto touches_at_end = [&](const ContactEpisode& e) { return e.span.end >= end - 1e-9; };
     const auto found = std::find_if(f_.contacts.begin(), f_.contacts.end(), touches_at_end);
-    if (found == f_.contacts.end()) return ": nothing was in its way at the end, the hand did not bring it there";
-    return ": blocked by " + scene_.parts[found->part].name + " at " + place_text(found->place_W);
+    if (found == f_.contacts.end()) return ": " + apps::blocked_text("", Vec3::Zero());
+    return ": " + apps::blocked_text(scene_.parts[found->part].name, found->place_W);
   }
 
   void tell_goal() {
@@ -171,12 +170,6 @@ std::string length_text(double meters) {
   const double size = std::abs(meters);
   if (size < 1e-4) return format("%.3g µm", 1e6 * meters);
   return size < 1 ? format("%.3g mm", 1e3 * meters) : format("%.3g m", meters);
-}
-
-std::string place_text(const Vec3& p) {
-  // Rounded first, so that there is no "-0.00".
-  const auto mm = [](double m) { return 0.01 * std::round(1e5 * m) + 0.0; };
-  return format("(%.2f, %.2f, %.2f) mm", mm(p.x()), mm(p.y()), mm(p.z()));
 }
 
 std::string seconds_text(double seconds) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "review/findings.hpp"
+#include "shared/blocked_text.hpp"
 
 namespace tegotae::review {
 
@@ -24,9 +25,9 @@ struct Verdict {
 /// `inwards`: whether the goal is nearer to the other parts than the start.
 Verdict judge(const Findings& findings, const Scene& scene, bool inwards, const Scan& scan, const std::string& damage);
 
-std::string length_text(double meters);       ///< "4.2 µm", "1.3 mm", "0.25 m"
-std::string place_text(const Vec3& place_W);  ///< "(1.2, 0.0, -3.4) mm"
-std::string seconds_text(double seconds);     ///< "1.25 s"
+using apps::place_text;
+std::string length_text(double meters);    ///< "4.2 µm", "1.3 mm", "0.25 m"
+std::string seconds_text(double seconds);  ///< "1.25 s"
 /// "hole", "hole and plate", "a, b and c"
 std::string names_text(const std::vector<std::size_t>& parts, const Scene& scene);
 

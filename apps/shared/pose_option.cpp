@@ -28,6 +28,15 @@ std::vector<double> numbers(const std::string& text) {
 
 }  // namespace
 
+std::string goal_error(const std::string& goal) {
+  if (goal == kOut || !numbers(goal).empty()) return "";
+  return goal + " is no pose: X,Y,Z in m, or with a quaternion X,Y,Z,QW,QX,QY,QZ; or \"out\"";
+}
+
+CLI::Option* add_goal_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help) {
+  return app.add_option(name, text, help)->check(goal_error)->type_name("POSE|out");
+}
+
 CLI::Option* add_pose_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help) {
   return app.add_option(name, text, help)
       ->check([](const std::string& pose) -> std::string {

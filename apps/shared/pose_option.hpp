@@ -11,7 +11,15 @@ namespace tegotae::apps {
 /// where the part is to be turned.
 CLI::Option* add_pose_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help);
 
-/// Reads it; without a quaternion the orientation is that in which the scene holds the part.
+/// The goal of a part that is to come out of all others.
+inline constexpr const char* kOut = "out";
+
+/// The same for a goal, which may be kOut as well.
+CLI::Option* add_goal_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help);
+/// What is wrong with the text of a goal; empty: nothing.
+std::string goal_error(const std::string& goal);
+
+/// Reads a pose; without a quaternion the orientation is that in which the scene holds the part.
 Pose parse_pose(const std::string& text, const Scene& scene);
 
 }  // namespace tegotae::apps

@@ -68,6 +68,8 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.record = options.record;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
+  BlockerWatch watch;
+  settings.observer = &watch;
   std::atomic<bool>& interrupted = catch_interrupts();
   settings.stop = settings.stop_check = &interrupted;
   settings.check_all = options.check_all;
@@ -92,10 +94,12 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
                   : run_session(file, settings);
   }
   summary.depth_m += depth_offset;
+  const Blocker blocker =
+      watch.find(file.scene);  // of a run that was looked at nobody knows: its scene may have changed
   if (options.json)
-    std::cout << json_line(summary, file) << std::endl;
+    std::cout << json_line(summary, file, blocker) << std::endl;
   else
-    std::cout << summary_text(summary, options, file, goal, interrupted.load()) << std::flush;
+    std::cout << summary_text(summary, options, file, goal, blocker, interrupted.load()) << std::flush;
   // A run that was asked to be short is done when its time is over, one that was looked at or has another process's pen
   // whenever it ends.
   const bool done =

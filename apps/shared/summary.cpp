@@ -1,5 +1,6 @@
 #include "shared/summary.hpp"
 
+#include "shared/blocked_text.hpp"
 #include "shared/format.hpp"
 #include "shared/latency_json.hpp"
 #include "shared/start_text.hpp"
@@ -45,7 +46,7 @@ std::string lag_lines(const LagSummary& lag) {
 
 }  // namespace
 
-std::string json_line(const RunSummary& s, const SceneFile& file) {
+std::string json_line(const RunSummary& s, const SceneFile& file, const Blocker& blocker) {
   nlohmann::ordered_json j;
   j["scene"] = file.path;
   j["resolver"] = to_string(file.scene.contact.resolver);
@@ -63,6 +64,8 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
   j["poses"] = s.poses;
   j["deepest_m"] = s.deepest_m;
   j["start"] = start_json(s.start, file.scene);
+  const Vec3& at = blocker.place_W;
+  j["blocked_by"] = {{"part", blocker.part}, {"place_m", {at.x(), at.y(), at.z()}}};
   j["held_fast"] = held_fast_json(s, file.scene);
   j["tick_us"] = to_json(s.tick_us);
   j["servo"] = {{"rate_hz", s.servo.rate_hz},
@@ -81,12 +84,12 @@ std::string json_line(const RunSummary& s, const SceneFile& file) {
 }
 
 std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file, const std::string& goal,
-                         bool interrupted) {
-  const char* verdict = s.completed               ? "done"
-                        : !options.device.empty() ? "ended"
-                        : interrupted             ? "interrupted"
-                        : options.seconds > 0     ? "cut short"
-                                                  : "FAILED";
+                         const Blocker& blocker, bool interrupted) {
+  const std::string verdict = s.completed               ? "done"
+                              : !options.device.empty() ? "ended"
+                              : interrupted             ? "interrupted"
+                              : options.seconds > 0     ? "cut short"
+                                                        : "FAILED: " + blocked_text(blocker.part, blocker.place_W);
   std::string text = goal + ": " + verdict + "\n";
   text += format("  %-12s %.1f mm\n", "depth", 1e3 * s.depth_m);
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);

@@ -179,6 +179,7 @@ nb::dict info_of(const RecordingInfo& info) {
   d["suspended"] = info.suspended;
   d["follows"] = info.follows;
   d["goes_on"] = info.goes_on;
+  d["goal"] = info.goal;
   return d;
 }
 

@@ -16,7 +16,7 @@ constexpr struct {
 } kFields[] = {{"scene", &RecordingInfo::scene},         {"held", &RecordingInfo::held},
                {"resolver", &RecordingInfo::resolver},   {"program", &RecordingInfo::program},
                {"suspended", &RecordingInfo::suspended}, {"follows", &RecordingInfo::follows},
-               {"goes_on", &RecordingInfo::goes_on}};
+               {"goes_on", &RecordingInfo::goes_on},     {"goal", &RecordingInfo::goal}};
 }  // namespace
 
 std::string recording_info_path(const std::string& path) {

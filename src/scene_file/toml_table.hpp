@@ -24,6 +24,7 @@ class TomlTable {
             std::initializer_list<const char*> known);
 
   bool has(const char* key) const { return table_.contains(key); }
+  bool is_table(const char* key) const { return has(key) && table_.get(key)->is_table(); }
 
   std::string text(const char* key) const;  ///< required, not empty
   std::string text(const char* key, const std::string& fallback) const;

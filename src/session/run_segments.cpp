@@ -1,6 +1,7 @@
 #include "session/run_segments.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -26,6 +27,16 @@ std::string names_of_suspended(const InitialContactReport& start, const Scene& s
   for (const InitialContact& pair : start.pairs)
     if (pair.state == InitialContactState::filtered) names += (names.empty() ? "" : ", ") + scene.parts[pair.part].name;
   return names;
+}
+
+/// As RecordingInfo::goal.
+std::string goal_text(const Pose& X) {
+  std::string text;
+  for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()}) {
+    char number[32];
+    text += (text.empty() ? "" : ",") + std::string(number, std::to_chars(number, number + sizeof number, x).ptr);
+  }
+  return text;
 }
 
 /// `path` with a number before its extension, and perhaps with another one.
@@ -87,6 +98,7 @@ void RunSegments::begin(RunSegment& segment, const Scene& scene, const InitialCo
 void RunSegments::record(RunSegment& segment, const InitialContactReport& start) {
   RecordingInfo info{file_.path, segment.held, to_string(file_.scene.contact.resolver), settings_.program,
                      names_of_suspended(start, segment.scene)};
+  if (settings_.hand != nullptr) info.goal = goal_text(file_.script.pose(file_.script.end()));
   segment.recording = settings_.record;
   if (segment.number > 0) {
     const fs::path first = settings_.record;

@@ -3,8 +3,8 @@
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
+#include "study/task.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
-#include "tries/try_table.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -29,10 +29,14 @@ std::string write_scene(const TempFolder& folder) {
 TEST_CASE("every setting that a scene file knows makes another task, and how it is written does not") {
   const TempFolder folder;
   const std::string scene = write_scene(folder), text = read_text(scene);
-  const Pose goal{Quat::Identity(), Vec3(0, 0, 0.01002)};
   const auto print = [&](const std::string& more, std::uint64_t seed = 1, double seconds = 6) {
     folder.write("scene.toml", text + more);
-    return tries::fingerprint(tries::make_task(load_scene(scene), goal, seed, seconds));
+    study::Study study;
+    study.scenes = {scene};
+    study.goal = "0,0,0.01002";
+    study.seed = seed;
+    study.seconds = seconds;
+    return study::Tasks(study, {load_scene(scene)}).fingerprint();
   };
   const std::string plain = print("");
   CHECK(print("") == plain);

@@ -20,7 +20,7 @@ class Recording:
     path : str
         Of the file.
     info : dict
-        What it says of itself: scene, held, resolver, program, suspended, follows, goes_on.
+        What it says of itself: scene, held, resolver, program, suspended, follows, goes_on, goal.
     damage : str
         What is wrong with its end; empty when it is whole.
     tick : (n,) uint64

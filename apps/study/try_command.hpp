@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <string>
 
-namespace tegotae::tries {
+namespace tegotae::study {
 
 struct TryOptions {
   std::string scene, hold;
-  std::string goal;           ///< empty: where the scene's script ends
+  std::string goal;           ///< a pose, "out", or empty: where the scene's script ends
   std::string out = "tries";  ///< folder
   int tries = 20, jobs = 0;
   std::uint64_t seed = 1;
@@ -21,4 +21,4 @@ CLI::App* add_try(CLI::App& app, TryOptions& options);
 /// Tries what is missing in the folder, and tells what came out. Returns the exit code. Throws Error.
 int run_tries(const TryOptions& options);
 
-}  // namespace tegotae::tries
+}  // namespace tegotae::study

@@ -1,0 +1,39 @@
+#include "study/merge.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tegotae/core/error.hpp"
+
+namespace tegotae::study {
+
+namespace fs = std::filesystem;
+
+std::string shard_folder(const std::string& out) {
+  return out + "/shards";
+}
+
+std::map<int, Result> read_shards(const std::string& out, const TableLayout& layout) {
+  std::vector<std::string> paths;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(shard_folder(out), failed))
+    if (entry.path().extension() == ".csv") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  std::map<int, Result> rows;
+  std::map<int, std::string> from;
+  for (const std::string& path : paths) {
+    const CaseTable table(path, layout);
+    for (const auto& [number, r] : table.rows()) {
+      const auto [there, added] = rows.emplace(number, r);
+      if (added) {
+        from[number] = path;
+      } else if (row_text(there->second) != row_text(r)) {
+        throw Error("case " + std::to_string(number) + " has another result in " + path + " than in " + from[number] +
+                    ": the machines do not compute the same; make one of them again with the other's build");
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace tegotae::study

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "study/case_table.hpp"
+
+namespace tegotae::study {
+
+/// The folder of a study's shards.
+std::string shard_folder(const std::string& out);
+
+/// All cases that the shards in the folder have, however the study was cut. Throws Error `file:line: reason` for a
+/// table of another study, and for a case that has two results.
+std::map<int, Result> read_shards(const std::string& out, const TableLayout& layout);
+
+}  // namespace tegotae::study

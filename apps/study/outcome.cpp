@@ -1,0 +1,79 @@
+#include "study/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/format.hpp"
+
+namespace tegotae::study {
+
+using apps::format;
+
+std::pair<double, double> wilson_interval(std::size_t successes, std::size_t n) {
+  constexpr double z = 1.959963984540054;  // of the normal distribution at 97.5 %
+  const double nn = static_cast<double>(n), p = static_cast<double>(successes) / nn;
+  const double middle = (p + z * z / (2 * nn)) / (1 + z * z / nn);
+  const double half = z / (1 + z * z / nn) * std::sqrt(p * (1 - p) / nn + z * z / (4 * nn * nn));
+  // Exactly 0 and 1 at the ends, whatever is rounded.
+  return {successes == 0 ? 0 : middle - half, successes == n ? 1 : middle + half};
+}
+
+double quantile(const std::vector<double>& ascending, double share) {
+  const double at = share * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(at), above = std::min(below + 1, ascending.size() - 1);
+  return ascending[below] + (at - static_cast<double>(below)) * (ascending[above] - ascending[below]);
+}
+
+std::size_t reached(const std::vector<Result>& results) {
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const Result& r) { return r.reached; }));
+}
+
+std::vector<double> times(const std::vector<Result>& results) {
+  std::vector<double> out;
+  for (const Result& r : results)
+    if (r.reached) out.push_back(r.time);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::map<std::string, std::size_t> blockers(const std::vector<Result>& results) {
+  std::map<std::string, std::size_t> out;
+  for (const Result& r : results)
+    if (!r.reached) ++out[r.blocked_by];
+  return out;
+}
+
+std::string blocker_name(const std::string& part) {
+  return part.empty() ? "nothing at the end" : part;
+}
+
+const Result* best_case(const std::vector<Result>& results) {
+  const auto better = [](const Result& a, const Result& b) {
+    if (a.reached != b.reached) return a.reached;
+    return a.reached ? a.time < b.time : a.depth > b.depth;
+  };
+  const auto best = std::min_element(results.begin(), results.end(), better);
+  return best == results.end() ? nullptr : &*best;
+}
+
+std::string headline(const std::vector<Result>& results, const char* word) {
+  const std::size_t n = reached(results);
+  std::string text = format("%zu of %zu %s reached the goal", n, results.size(), word);
+  if (!results.empty()) {
+    const auto [low, high] = wilson_interval(n, results.size());
+    text += format(" (95 %%: %.0f to %.0f %%)", 100 * low, 100 * high);
+  }
+  const std::vector<double> t = times(results);
+  if (!t.empty()) text += format(", in %.2f to %.2f s, median %.2f s", t.front(), t.back(), quantile(t, 0.5));
+  return text + ".";
+}
+
+std::string summary_text(const std::vector<Result>& results, const char* word) {
+  std::string text = headline(results, word) + "\n";
+  for (const auto& [part, n] : blockers(results))
+    text += format("  blocked %zu times by ", n) + blocker_name(part) + "\n";
+  return text;
+}
+
+}  // namespace tegotae::study

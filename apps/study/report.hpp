@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/run_case.hpp"
+
+namespace tegotae::study {
+
+/// "tries" of one scene, or "cases".
+const char* word_for(const Study& study);
+
+/// Writes summary.json and report.html into `folder`. `results` in the order of their numbers. Throws Error.
+void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::string& folder);
+
+}  // namespace tegotae::study

@@ -1,0 +1,34 @@
+// Scenes of a few cubes whose answers are known.
+#pragma once
+
+#include "apps/run_program.hpp"
+
+namespace tegotae::test {
+
+/// A cube of 10 mm, "block", 10 mm over another one, "floor"; both are scene.toml's.
+inline void write_blocks(const TempFolder& folder) {
+  folder.write(
+      "cube.obj",
+      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
+      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
+               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.02]\n");
+}
+
+/// The block between five others: open to one side, +y, alone. No other way than that is out.
+inline void write_niche(const TempFolder& folder) {
+  write_blocks(folder);
+  std::string text = "unit = \"mm\"\n[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\n";
+  const auto add = [&](const char* name, const char* place) {
+    text += std::string("[[part]]\nname = \"") + name + "\"\nmesh = \"cube.obj\"\nposition = [" + place + "]\n";
+  };
+  add("left", "-0.0101, 0, 0");
+  add("right", "0.0101, 0, 0");
+  add("below", "0, 0, -0.0101");
+  add("above", "0, 0, 0.0101");
+  add("back", "0, -0.0101, 0");
+  folder.write("niche.toml", text);
+}
+
+}  // namespace tegotae::test

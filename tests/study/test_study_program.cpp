@@ -1,0 +1,212 @@
+// `tegotae study` and the goal "out", by the program: answers that are known by construction, tables that do not belong
+// together, and cases that are made again.
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "catch.hpp"
+#include "fcl_oracle.hpp"
+#include "recording.hpp"
+#include "study_scene.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+Output study(const std::string& arguments, int code = 0) {
+  const Output o = run_program("tegotae", "study " + arguments);
+  INFO(arguments << "\n" << o.out << o.err);
+  CHECK(o.code == code);
+  return o;
+}
+
+json summary_in(const std::string& folder) {
+  return json::parse(read_text(folder + "/summary.json"));
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  REQUIRE(text.find(old) != std::string::npos);
+  return text.replace(text.find(old), old.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("a peg that is larger than its hole never goes in, a loose one always") {
+  const TempFolder folder;
+  REQUIRE(run_program("peg_in_hole", "--ratio 0.94 --fast --scene-out " + folder / "m").code == 0);
+  // The hole's radius is 10 mm, the peg's 9.4 mm and less by `by`.
+  folder.write(
+      "study.toml",
+      "scenes = [\"m/peg_in_hole_0.94.toml\"]\nseconds = 4\nrepeats = 2\n[parameters]\noperator = [\"hasty\"]\n"
+      "[[parameters.inward]]\npart = \"peg\"\nby = [-7e-4, -2e-4, 1e-4]\n");
+  const std::string file = folder / "study.toml", out = folder / "study";
+  study(file + " --jobs 2");
+  study("merge " + file);
+  const json by = summary_in(out).at("by_inward peg");
+  CHECK(by.at("-7e-04").at("reached") == 0);
+  CHECK(by.at("-7e-04").at("cases") == 2);
+  CHECK(by.at("-2e-04").at("reached") == 2);
+  CHECK(by.at("1e-04").at("reached") == 2);
+  CHECK(summary_in(out).at("blocked_by") == json::object({{"hole", 2}}));
+  CHECK_THAT(read_text(out + "/cases.csv"), Contains("\"blocked by hole at ("));
+  CHECK_THAT(read_text(out + "/report.html"), Contains("tegotae study case"));
+
+  // The written case has the peg's size, and its recording a verdict in the review.
+  const Output again = study("case " + file + " 2 --to " + folder / "c");
+  CHECK_THAT(again.out, Contains("case 2: reached the goal"));
+  for (const Part& part : load_scene(folder / "c/scene.toml").scene.parts) {
+    double x = 0;
+    for (const Vec3& v : part.mesh->vertices) x = std::max(x, v.x());
+    if (part.held) CHECK(x == Approx(9.3e-3).margin(2e-6));
+  }
+  const Output review = run_program("tegotae", "review " + folder / "c/recording.mcap");
+  INFO(review.out << review.err);
+  CHECK(review.code == 0);
+  CHECK_THAT(review.out, Contains("It goes in"));
+  const Output fails = study("case " + file + " 0 --to " + folder / "d");
+  CHECK_THAT(fails.out, Contains("case 0: FAILED: blocked by hole at ("));
+  CHECK_THAT(run_program("tegotae", "review " + folder / "d/recording.mcap").out, Contains("It does not go in"));
+}
+
+TEST_CASE("out of a niche is where it is open, and the review of it has a verdict") {
+  const TempFolder folder;
+  write_niche(folder);
+  const std::string scene = folder / "niche.toml", out = folder / "t";
+  const Output o = run_program("tegotae", "try " + scene + " --goal out --tries 3 --seconds 8 --out " + out);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  const json summary = summary_in(out);
+  CHECK(summary.at("by_route").size() == 1);
+  CHECK(summary.at("by_route").at("along y").at("reached") == 3);
+  // Out: beside the box around the others, whose face is at y = 5 mm, so the center is beyond 10 mm, and by as much
+  // again as the cube is large from corner to corner, 17.3 mm.
+  CHECK(summary.at("goal").at(1).get<double>() > 0.0273);
+  CHECK(summary.at("goal").at(0).get<double>() == Approx(0).margin(1e-12));
+  const FclOracle oracle(load_scene(scene).scene);
+  const std::vector<RecordedRow> rows = read_recording(out + "/best.csv");
+  for (const RecordedRow& row : rows) REQUIRE(oracle.intersecting(row.x).empty());
+  CHECK(rows.back().x.p.y() > 0.010);
+  const Output review = run_program("tegotae", "review " + out + "/best.csv");
+  INFO(review.out << review.err);
+  CHECK(review.code == 0);
+  CHECK_THAT(review.out, Contains("It comes out"));
+}
+
+TEST_CASE("a part with no way out fails, and who is in the way is told in the words of the review") {
+  const TempFolder folder;
+  write_niche(folder);
+  std::string text = read_text(folder / "niche.toml");
+  text += "[[part]]\nname = \"front\"\nmesh = \"cube.obj\"\nposition = [0, 0.0101, 0]\n";
+  folder.write("closed.toml", text);
+  const Output o =
+      run_program("tegotae", "try " + folder / "closed.toml --goal out --tries 1 --seconds 2 --out " + folder / "t");
+  CHECK(o.code == 1);
+  CHECK_THAT(o.out, Contains("FAILED: blocked by "));
+  const Output review = run_program("tegotae", "review " + folder / "t/best.csv");
+  CHECK(review.code == 1);
+  CHECK_THAT(review.out, Contains("It does not come out: blocked by ") || Contains("It does not go in: blocked by "));
+  const Output already = run_program("tegotae", "try " + folder / "scene.toml --goal out --out " + folder / "u");
+  CHECK(already.code == 2);
+  CHECK_THAT(already.err, Contains("block is out of all other parts where it starts"));
+}
+
+TEST_CASE("an order that takes the lid first goes, the other way round does not") {
+  const TempFolder folder;
+  write_niche(folder);
+  std::string text = read_text(folder / "niche.toml");
+  text += "[[part]]\nname = \"front\"\nmesh = \"cube.obj\"\nposition = [0, 0.0101, 0]\n";
+  folder.write("closed.toml", replaced(text, "held = true\n", ""));
+  folder.write(
+      "study.toml",
+      "scenes = [\"closed.toml\"]\ngoal = \"out\"\nseconds = 8\n[parameters]\noperator = [\"hasty\"]\n"
+      "[[parameters.order]]\nparts = [\"front\", \"block\"]\n[[parameters.order]]\nparts = [\"block\", \"front\"]\n");
+  study(folder / "study.toml");
+  study("merge " + folder / "study.toml");
+  const json by = summary_in(folder / "study").at("by_order");
+  CHECK(by.at("front, block").at("reached") == 1);
+  CHECK(by.at("block, front").at("reached") == 0);
+}
+
+TEST_CASE("parts of a study that do not belong together are refused, with file and line") {
+  const TempFolder folder;
+  write_blocks(folder);
+  const std::string text = "scenes = [\"scene.toml\"]\ngoal = \"0,0,0.0195\"\nseconds = 0.8\nrepeats = 6\n";
+  folder.write("study.toml", text);
+  const std::string file = folder / "study.toml", out = folder / "study";
+  study(file + " --shard 1/2");
+  CHECK_THAT(study("merge " + file, 1).err, Contains("3 of 6 cases are missing: 1, 3, 5"));
+  CHECK_FALSE(std::filesystem::exists(out + "/cases.csv"));
+  study(file + " --shard 2/2");
+  study("merge " + file);
+  const std::string table = read_text(out + "/cases.csv"), report = read_text(out + "/report.html");
+  // However it is cut, and more than once.
+  study(file + " --shard 2/3");
+  study("merge " + file);
+  CHECK(read_text(out + "/cases.csv") == table);
+  std::filesystem::remove_all(out);
+  for (const char* shard : {"4/4", "2/4", "3/4", "1/4"}) study(file + " --shard " + std::string(shard));
+  study("merge " + file);
+  CHECK(read_text(out + "/cases.csv") == table);
+  CHECK(read_text(out + "/report.html") == report);
+
+  const auto refused = [&](const std::string& why) {
+    const Output o = study("merge " + file, 2);
+    CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    CHECK_THAT(o.err, Contains(why));
+  };
+  for (const std::string& other : {replaced(text, "0.8", "0.9"), replaced(text, "0.0195", "0.0194"),
+                                   text + "seed = 2\n", text + "[parameters]\nmu = [0]\n"}) {
+    folder.write("study.toml", other);
+    refused("shards/1-of-4.csv:1: holds cases of another");
+    study(file + " --shard 1/4", 2);
+  }
+  // The number of repeats and comments change no case.
+  folder.write("study.toml", "# again\n" + replaced(text, "repeats = 6", "repeats = 5"));
+  study("merge " + file);
+  CHECK(std::count(table.begin(), table.end(), '\n') == 8);
+  folder.write("study.toml", text);
+  const std::string shard = out + "/shards/1-of-4.csv", rows = read_text(shard);
+  folder.write("study/shards/1-of-4.csv", rows.substr(0, rows.size() - 3));
+  refused("1-of-4.csv:4: is no case; delete the line");
+  folder.write("study/shards/1-of-4.csv", rows);
+  folder.write("study/shards/1-of-9.csv", replaced(rows, "careful", "Careful"));
+  refused("has another result in ");
+  std::filesystem::remove(out + "/shards/1-of-9.csv");
+  std::string changed = read_text(folder / "scene.toml");
+  folder.write("scene.toml", replaced(changed, "0.02]", "0.0201]"));
+  refused("shards/1-of-4.csv:1: holds cases of another");
+}
+
+TEST_CASE("bad commands of study are one line") {
+  const TempFolder folder;
+  write_blocks(folder);
+  folder.write("study.toml", "scenes = [\"scene.toml\"]\ngoal = \"0,0,0.0195\"\nseconds = 0.2\n");
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Output o = study(arguments, 2);
+    CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    CHECK_THAT(o.err, Contains(why));
+  };
+  const std::string file = folder / "study.toml";
+  refused("", "name a study file");
+  refused(file + " --shard 0/4", "is not I/N");
+  refused(file + " --shard 5/4", "is not I/N");
+  refused(file + " --shard 1/4x", "is not I/N");
+  refused("case " + file + " 1", "has no case 1, but 0 to 0");
+  folder.write("study.toml", "scenes = [\"scene.toml\"]\n");
+  refused(file, "its script goes nowhere; tell where the part is to go with goal in ");
+  folder.write("study.toml",
+               "scenes = [\"scene.toml\"]\ngoal = \"out\"\n[[parameters.inward]]\npart = \"lid\"\nby = [0]\n");
+  refused(file, "has no part lid, which the study names (there are floor, block)");
+  // Without HyperShell.
+  folder.write("study.toml", "scenes = [\"scene.toml\"]\ngoal = \"out\"\n");
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);
+  const Output o = run_program("tegotae", "study run " + file);
+  ::setenv("PATH", path.c_str(), 1);
+  CHECK(o.code == 2);
+  CHECK_THAT(o.err, Contains("pip install hypershell") && Contains("tegotae study " + file));
+}

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""How many cases a second, on how many processors, and what the drivers cost: throughput.py TEGOTAE [--markdown FILE]
+[--cases N]. With --markdown it replaces the generated part of a file."""
+import argparse
+import os
+import shlex
+import sys
+import tempfile
+import time
+
+import drivers
+
+BEGIN, END = "<!-- begin generated -->\n", "<!-- end generated -->\n"
+
+
+def commands(tegotae, study, out, processors, shards):
+    """The drivers, and how each is told."""
+    shard = "%s study %s --out %s --jobs 1 --shard {}/%d" % (tegotae, study, out, shards)
+    ways = {"one process": [tegotae, "study", study, "--out", out, "--jobs", str(processors)]}
+    if drivers.program("parallel"):
+        ways["GNU parallel"] = ["sh", "-c", "seq %d | parallel --will-cite -j %d %s" % (shards, processors, shlex.quote(shard))]
+    if drivers.program("hs"):
+        ways["HyperShell"] = [tegotae, "study", "run", study, "--out", out, "--processors", str(processors), "--shards",
+                              str(shards)]
+    return ways
+
+
+def measure(tegotae, folder, way, cases, processors, per_shard):
+    """Seconds that it takes."""
+    where = tempfile.mkdtemp(dir=folder)
+    study = drivers.write_study(where, cases)
+    command = commands(tegotae, study, where + "/out", processors, cases // per_shard)[way]
+    begin = time.monotonic()
+    drivers.run(command, cwd=where)
+    return time.monotonic() - begin
+
+
+def line(tegotae, folder, way, cases, processors, per_shard, alone):
+    """A row: the time of a quarter of the cases tells what a case takes and what the start does."""
+    few, many = (measure(tegotae, folder, way, n, processors, per_shard) for n in (cases // 4, cases))
+    each = (many - few) / (cases - cases // 4)
+    start = max(0.0, few - each * (cases // 4))
+    if way == "one process":
+        alone[processors] = each
+        return "| %d | %s | – | %.1f | %.1f | – |" % (processors, way, start, 1 / each)
+    cost = 1e3 * processors * (each - alone[processors])
+    return "| %d | %s | %d | %.1f | %.1f | %.1f |" % (processors, way, per_shard, start, 1 / each, cost)
+
+
+def main():
+    parse = argparse.ArgumentParser()
+    parse.add_argument("tegotae")
+    parse.add_argument("--markdown")
+    parse.add_argument("--cases", type=int, default=400)
+    o = parse.parse_args()
+    tegotae = os.path.abspath(o.tegotae)
+    steps, n = [], 1
+    while n <= (os.cpu_count() or 1):
+        steps.append(n)
+        n *= 2
+    rows = ["Command: `python3 tests/study/throughput.py build/release/bin/tegotae --cases %d --markdown docs/study.md`" % o.cases,
+            "", "| processors | driver | cases a shard | start and end, s | cases a second | driver's cost, ms a case |",
+            "|---|---|---|---|---|---|"]
+    alone = {}
+    with tempfile.TemporaryDirectory(prefix="tegotae_throughput_") as folder:
+        for processors in steps:
+            for way in commands(tegotae, "", "", 1, 1):
+                for per_shard in (20,) if way == "one process" else (1, 20):
+                    rows.append(line(tegotae, folder, way, o.cases, processors, per_shard, alone))
+                    print(rows[-1], flush=True)
+    if not o.markdown:
+        return
+    with open(o.markdown, encoding="utf-8") as file:
+        page = file.read()
+    if BEGIN not in page or END not in page:
+        sys.exit(o.markdown + ": has no generated part")
+    page = page[: page.index(BEGIN) + len(BEGIN)] + "\n".join(rows) + "\n" + page[page.index(END):]
+    with open(o.markdown, "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+main()
