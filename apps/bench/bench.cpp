@@ -124,6 +124,7 @@ int run_bench(const BenchOptions& options) {
     }
     progress.say("linear programs");
     results.lp = measure_lp(options.quick);
+    if (options.mu > 0) results.friction_solves = measure_friction_solves(options.quick);
   }
   results.seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);
   if (!options.markdown.empty()) update_markdown(options.markdown, options.command, results);

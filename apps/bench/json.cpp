@@ -100,6 +100,9 @@ std::string json_line(const Results& results) {
     row["ball"] = to_json(f.ball);
     j["lp"].push_back(row);
   }
+  for (const FrictionSolveFigures& f : results.friction_solves)
+    j["friction_solves"].push_back(
+        {{"contacts", f.contacts}, {"p50_us", f.us.p50}, {"p99_us", f.us.p99}, {"exact", f.exact}});
   j["seconds"] = results.seconds;
   return j.dump();
 }

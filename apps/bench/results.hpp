@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/measure_fcl.hpp"
+#include "bench/measure_friction.hpp"
 #include "bench/measure_lag.hpp"
 #include "bench/measure_loop.hpp"
 #include "bench/measure_lp.hpp"
@@ -58,7 +59,8 @@ struct SceneFigures {
 struct Results {
   std::vector<SceneFigures> rows;
   std::vector<LpFigures> lp;
-  double seconds = 0;  ///< the whole took
+  std::vector<FrictionSolveFigures> friction_solves;  ///< empty: not asked for
+  double seconds = 0;                                 ///< the whole took
 };
 
 /// One line: {"rows": [...], "lp": [...]}; what was not measured is null.

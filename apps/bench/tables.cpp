@@ -171,6 +171,20 @@ std::string lag_table(const Results& r) {
   return text;
 }
 
+std::string friction_solve_table(const Results& r) {
+  if (r.friction_solves.empty()) return "";
+  std::string text =
+      "\n### Solves with friction\n\n| contacts | median (target), µs | p99, µs | exact | verdict "
+      "|\n|---|---|---|---|---|\n";
+  for (const FrictionSolveFigures& f : r.friction_solves) {
+    const bool judged = std::isfinite(f.target_us);
+    text += format("| %d | %.1f (%s) | %.0f | %.1f %% | ", f.contacts, f.us.p50, number(f.target_us).c_str(), f.us.p99,
+                   100 * f.exact);
+    text += (judged ? verdict(f.us.p50 <= f.target_us) : "–") + " |\n";
+  }
+  return text;
+}
+
 std::string friction_table(const Results& r) {
   std::string text;
   for (const SceneFigures& s : r.rows) {
@@ -218,7 +232,7 @@ std::string tables(const Results& r) {
     text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
             "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + lag_table(r) + friction_table(r) +
             seat_table(r) + "\n### Hierarchies and checks\n\n" + checks_table(r);
-  return text + budget_table(r) + lp_table(r);
+  return text + budget_table(r) + lp_table(r) + friction_solve_table(r);
 }
 
 }  // namespace tegotae::bench

@@ -6,6 +6,7 @@
 #include "experiments/friction_motion.hpp"
 #include "experiments/friction_peg.hpp"
 #include "experiments/friction_scenes.hpp"
+#include "experiments/friction_tips.hpp"
 #include "experiments/load_rig.hpp"
 
 namespace tegotae::experiments {
@@ -21,7 +22,8 @@ double largest(const std::vector<T>& all, F value) {
 }
 
 void add_thresholds(const Work& work, Outcome& out) {
-  const std::vector<Threshold> all = thresholds(work.options.quick);
+  std::vector<Threshold> all = thresholds(work.options.quick);
+  for (Threshold& t : tip_thresholds(work.options.quick)) all.push_back(std::move(t));
   const int steps = work.options.quick ? 1000 : 4000;
   std::vector<double> found(all.size());
   work.each("thresholds", static_cast<int>(all.size()), [&](int i) {
@@ -37,10 +39,22 @@ void add_thresholds(const Work& work, Outcome& out) {
     table.rows.push_back({all[i].name, all[i].formula, all[i].expected, found[i], error});
     csv.rows.push_back({all[i].name, all[i].formula, all[i].expected, found[i], error});
   }
+  std::vector<double> locks(screws().size());
+  work.each("self-locking", static_cast<int>(locks.size()), [&](int i) {
+    locks[static_cast<std::size_t>(i)] = self_locking_mu(screws()[static_cast<std::size_t>(i)]);
+  });
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    const Screw& s = screws()[i];
+    const double expected = s.lead() * s.flank(), error = 100 * (locks[i] / expected - 1);
+    worst = std::isnan(error) ? error : std::max(worst, std::abs(error));
+    const std::string name = std::string(s.name) + ", holds itself from", formula = "mu = tan(lead) cos(flank)";
+    table.rows.push_back({name, formula, expected, locks[i], error});
+    csv.rows.push_back({name, formula, expected, locks[i], error});
+  }
   out.claims.push_back(at_most("thresholds: largest error", worst, 0.5, "%"));
   out.sections.push_back({"Where it begins to move",
                           "The load grows in " + std::to_string(steps) +
-                              " steps from half to one and a half of what is expected (the collar's arm shrinks); "
+                              " steps past what is expected (the collar's arm shrinks); "
                               "measured is where the part first moves by 0.1 µm or 1 µrad.",
                           {},
                           {table}});

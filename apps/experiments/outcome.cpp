@@ -70,16 +70,23 @@ Json to_json(const std::vector<Claim>& claims) {
   return j;
 }
 
+/// As RFC 4180 has it: a cell with a comma stands between quotes.
+std::string quoted(const std::string& cell) {
+  return cell.find(',') == std::string::npos ? cell : '"' + cell + '"';
+}
+
 std::string csv_text(const Csv& csv) {
   std::string text;
   const auto line = [&](const auto& cells, const auto& word) {
     for (std::size_t i = 0; i < cells.size(); ++i) text += (i ? "," : "") + word(cells[i]);
     text += "\n";
   };
-  line(csv.head, [](const std::string& s) { return s; });
+  line(csv.head, quoted);
   for (const auto& row : csv.rows)
     line(row, [](const Json& v) {
-      return v.is_string() ? v.get<std::string>() : v.is_number_float() ? short_text(v.get<double>()) : v.dump();
+      return v.is_string()         ? quoted(v.get<std::string>())
+             : v.is_number_float() ? short_text(v.get<double>())
+                                   : v.dump();
     });
   return text;
 }

@@ -36,9 +36,12 @@ bool ContactSet::touches(std::size_t limit, double distance) const noexcept {
   const Contact& c = limits_[limit];
   return std::any_of(cut_.begin(), cut_.end(), [&](const FacePair& t) {
     if (t.a != c.feature_a.index || t.b != c.feature_b.index || !(fixed_[t.part].part == c.part)) return false;
-    const FeaturePair at =
-        walk_to_minimum(*held_, *fixed_[t.part].surface, pose_in(t.part), c.feature_a, c.feature_b, {}, 0);
-    return at.distance <= distance;
+    // The triangles as they are: one that has collapsed in welding has no edges to walk over.
+    Simplex a = corners(*held_, c.feature_a);
+    const Pose X_BA = pose_in(t.part);
+    for (Vec3& p : a.p) p = X_BA * p;
+    const Simplex b = corners(*fixed_[t.part].surface, c.feature_b);
+    return closest_points(a, b).squared_distance <= distance * distance;
   });
 }
 

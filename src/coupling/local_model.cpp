@@ -68,7 +68,8 @@ bool LocalModel::set_rows(const ContactPlanes& planes, const Vec3& center_W) noe
     mu_[i] = plane.mu;
     if (!(plane.mu > 0)) continue;
     rubs_ = true;
-    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = along(tangent(plane.normal, k));
+    const Tangents tangents(plane.normal);
+    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = along(tangents.direction[k]);
   }
   return true;
 }

@@ -74,7 +74,8 @@ void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric,
     ContactForce& out = forces.items[static_cast<std::size_t>(forces.count++)];
     out = {c.part, center_W + c.r, c.n, c.gap, stiffness_ * f.normal, c.feature_a, c.feature_b};
     out.mu = rubs_ ? friction.mu(i) : 0;
-    for (int k = 0; k < 2 && out.mu > 0; ++k) out.friction += stiffness_ * f.tangential[k] * tangent(c.n, k);
+    const Tangents tangents(c.n);
+    for (int k = 0; k < 2 && out.mu > 0; ++k) out.friction += stiffness_ * f.tangential[k] * tangents.direction[k];
     take(i);
   }
   while (planes.count < ContactPlanes::kMax && static_cast<std::size_t>(planes.count) < n)

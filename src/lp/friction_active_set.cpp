@@ -23,6 +23,8 @@ constexpr double kGive = 1e-7;
 constexpr double kFar = 1e3;
 /// Slip directions stand when they turn by less (rad).
 constexpr double kTurn = 1e-8;
+/// While they turn by less (rad) it is right already what is violated.
+constexpr double kTurnsLittle = 0.1;
 /// Forces below this part of the wanted motion matter in proportion for whether a direction stands.
 constexpr double kMatters = 1e-2;
 /// Of contacts beyond their cones those within this share of the worst slide in one round.
@@ -37,7 +39,10 @@ double length(double a, double b) noexcept {
 
 }  // namespace
 
-FrictionActiveSet::FrictionActiveSet(int capacity) : inside_(static_cast<std::size_t>(capacity)) {
+FrictionActiveSet::FrictionActiveSet(int capacity)
+    : pricing_(pricing()),
+      bounds_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)),
+      outside_(bounds_.size()) {
   touching_.reserve(static_cast<std::size_t>(capacity));
 }
 
@@ -58,7 +63,7 @@ bool FrictionActiveSet::add(int row) noexcept {
   m.length = m.n.norm();
   m.normal = m.tangential[0] = m.tangential[1] = m.slip[0] = m.slip[1] = 0;
   m.flips = 0;
-  inside_[static_cast<std::size_t>(row)] = 1;
+  set_outside(row, false);
   m.slides = true;
   if (m.mu > 0) {
     m.t[0] = problem_->tangents[row].row[0];
@@ -75,7 +80,7 @@ bool FrictionActiveSet::add(int row) noexcept {
 }
 
 void FrictionActiveSet::remove(int position) noexcept {
-  inside_[static_cast<std::size_t>(members_[static_cast<std::size_t>(position)].row)] = 0;
+  set_outside(members_[static_cast<std::size_t>(position)].row, true);
   std::copy(members_.begin() + position + 1, members_.begin() + count_, members_.begin() + position);
   --count_;
 }
@@ -85,7 +90,11 @@ void FrictionActiveSet::set_problem(const Vec6& from) noexcept {
   scale_ = problem_->wanted.norm();
   slip_ = kSmall * scale_;
   count_ = 0;
-  std::fill_n(inside_.begin(), problem_->normals.rows(), std::uint8_t{0});
+  const int rows = problem_->normals.rows(), blocks = (rows + kRowLanes - 1) / kRowLanes;
+  for (int i = 0; i < blocks * kRowLanes; ++i) {
+    bounds_[static_cast<std::size_t>(i / kRowLanes)].v[i % kRowLanes] = i < rows ? problem_->bounds[i] : 0;
+    outside_[static_cast<std::size_t>(i / kRowLanes)].v[i % kRowLanes] = i < rows ? 1 : 0;
+  }
 }
 
 void FrictionActiveSet::begin(const Vec6& from) noexcept {
@@ -102,33 +111,41 @@ void FrictionActiveSet::begin(const Vec6& from) noexcept {
   for (std::size_t k = 0; k < taken; ++k) add(touching_[k * touching_.size() / taken]);
 }
 
+void FrictionActiveSet::push_product(double factor, const Vec6& a, const Vec6& b) noexcept {
+  const auto k = static_cast<std::size_t>(products_++);
+  for (int i = 0; i < 6; ++i) {
+    left_[k].v[i] = factor * a[i];
+    right_[k].v[i] = b[i];
+  }
+}
+
 bool FrictionActiveSet::step() noexcept {
-  double h[6][6] = {};
   Vec6 r = problem_->wanted;
-  for (int i = 0; i < 6; ++i) h[i][i] = 1;
-  const auto add_product = [&h](const Vec6& a, const Vec6& b) {
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) h[i][j] += a[i] * b[j];
-  };
+  const double stiff = 1 / give_;
+  products_ = 0;
   for (int k = 0; k < count_; ++k) {
     const Member& m = members_[static_cast<std::size_t>(k)];
-    const double stiff = 1 / give_, push = m.normal + m.bound * stiff;
+    const double push = m.normal + m.bound * stiff;
     if (m.slides) {
       r += push * m.column;
-      add_product(stiff * m.column, m.n);
+      push_product(stiff, m.column, m.n);
       // As z turns the slip, friction turns with it.
       const double far = length(m.slip[0], m.slip[1]);
       if (m.mu > 0 && far > slip_ && m.normal > 0) {
         const Vec6 across = m.direction[0] * m.t[1] - m.direction[1] * m.t[0];
-        add_product((m.mu * m.normal / far) * across, across);
+        push_product(m.mu * m.normal / far, across, across);
       }
     } else {
       r += push * m.n + m.tangential[0] * m.t[0] + m.tangential[1] * m.t[1];
-      add_product(stiff * m.n, m.n);
-      add_product(stiff * m.t[0], m.t[0]);
-      add_product(stiff * m.t[1], m.t[1]);
+      push_product(stiff, m.n, m.n);
+      for (const Vec6& t : m.t) push_product(stiff, t, t);
     }
   }
+  PaddedVec6 sum[6];
+  pricing_.sum_products(left_.data(), right_.data(), products_, sum);
+  double h[6][6];
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) h[i][j] = sum[i].v[j] + (i == j ? 1 : 0);
   SmallLu lu;
   if (!lu.factor(h, 6)) return false;
   lu.solve(r.data());
@@ -221,17 +238,10 @@ FrictionActiveSet::Change FrictionActiveSet::slide() noexcept {
 }
 
 bool FrictionActiveSet::add_most_violated() noexcept {
-  int most = -1;
-  double worst = slip_;
-  for (int i = 0; i < problem_->normals.rows(); ++i) {
-    if (inside_[static_cast<std::size_t>(i)] != 0) continue;
-    const double by = problem_->bounds[i] - problem_->normals.row(i).dot(z_);
-    if (by > worst) {
-      worst = by;
-      most = i;
-    }
-  }
-  return most >= 0 && add(most);
+  const LowRankMatrix& rows = problem_->normals;
+  const RowChoice worst = pricing_.most_violated(rows.blocks(), bounds_.data(), outside_.data(),
+                                                 (rows.rows() + kRowLanes - 1) / kRowLanes, z_.data());
+  return worst.row >= 0 && worst.value > slip_ && add(worst.row);
 }
 
 bool FrictionActiveSet::solve(const FrictionProblem& problem, const Vec6& from) noexcept {
@@ -268,8 +278,8 @@ bool FrictionActiveSet::run(bool first) noexcept {
     if (stuck == Change::some) continue;
     const Change slid = slide();
     if (slid == Change::failed) return false;
-    if (slid == Change::some || turn_ > kTurn || error_ > 0.1 * slip_) continue;
-    if (!add_most_violated()) return true;
+    if (slid == Change::some || turn_ > kTurnsLittle || add_most_violated()) continue;
+    if (turn_ <= kTurn && error_ <= 0.1 * slip_) return true;
   }
   return false;
 }

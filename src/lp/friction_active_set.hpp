@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "lp/coulomb_residual.hpp"
+#include "lp/pricing.hpp"
 
 namespace tegotae {
 
@@ -61,12 +61,21 @@ class FrictionActiveSet {
   Change stick_or_turn() noexcept;
   Change slide() noexcept;
   bool add_most_violated() noexcept;
+  void set_outside(int row, bool outside) noexcept {
+    outside_[static_cast<std::size_t>(row / kRowLanes)].v[row % kRowLanes] = outside ? 1 : 0;
+  }
+  /// Adds factor a bᵀ to the system of the round.
+  void push_product(double factor, const Vec6& a, const Vec6& b) noexcept;
 
+  const Pricing& pricing_;
   const FrictionProblem* problem_ = nullptr;
   std::array<Member, kMaxMembers> members_;
   int count_ = 0;
-  std::vector<std::uint8_t> inside_;  ///< of each row
-  std::vector<int> touching_;         ///< rows
+  std::array<PaddedVec6, 3 * kMaxMembers> left_{}, right_{};  ///< of each product in the system of the round
+  int products_ = 0;
+  std::vector<LaneBlock> bounds_;   ///< of the rows
+  std::vector<LaneBlock> outside_;  ///< 1 for rows that are no member, or 0
+  std::vector<int> touching_;       ///< rows
   Vec6 z_ = Vec6::Zero();
   double scale_ = 0;  ///< |wanted|
   double give_ = 0;   ///< of a contact, m per m

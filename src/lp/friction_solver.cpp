@@ -58,15 +58,30 @@ bool FrictionSolver::take_active_set(const FrictionProblem& problem, FrictionMet
   return true;
 }
 
+void FrictionSolver::estimate_sliding(const FrictionProblem& problem, const QpResult& qp) noexcept {
+  estimate_.clear();
+  for (int k = 0; k < qp.multipliers.count; ++k) {
+    FrictionForce f;
+    f.row = qp.multipliers.index[static_cast<std::size_t>(k)];
+    f.normal = qp.multipliers.value[static_cast<std::size_t>(k)];
+    estimate_.push_back(f);
+    const double most = problem.mu[f.row] * f.normal;
+    if (!(most > 0)) continue;
+    const TangentRows& t = problem.tangents[f.row];
+    const double s0 = t.row[0].dot(qp.z), s1 = t.row[1].dot(qp.z), slip = std::sqrt(s0 * s0 + s1 * s1);
+    if (!(slip > 0)) continue;
+    estimate_.back().tangential[0] = -most * s0 / slip;
+    estimate_.back().tangential[1] = -most * s1 / slip;
+  }
+}
+
 bool FrictionSolver::shift(const FrictionProblem& problem) noexcept {
   // Where a contact slides by s, the convex neighbor opens its gap by mu s. With bounds that are lower by that of the
   // last answer the next opens less: its fixed point is the law (Acary, Cadoux, Lemaréchal, Malick, ZAMM 2011, after De
   // Saxcé's bipotential). Which contacts stick, slide and where to is right long before the numbers are.
   std::copy_n(problem.bounds, problem.normals.rows(), shifted_.begin());
-  FrictionProblem neighbor = problem;
-  neighbor.bounds = shifted_.data();
   for (const double tolerance : kShifts) {
-    const bool solved = cone_.solve(neighbor, tolerance);
+    const bool solved = cone_.solve(shifted_.data(), tolerance, estimate_);
     result_.iterations += cone_.changes();
     if (!solved) return false;
     estimate_.clear();
@@ -86,7 +101,7 @@ void FrictionSolver::relax(const FrictionProblem& problem) noexcept {
   result_.method = FrictionMethod::relaxed;
   result_.z.setZero();
   result_.forces.clear();
-  const bool solved = cone_.solve(problem);
+  const bool solved = cone_.solve(problem.bounds, RelaxedCone::kFine, estimate_);
   result_.iterations += cone_.changes();
   // Standing still is always allowed.
   if (solved) {
@@ -103,6 +118,10 @@ const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
     result_.status = LpStatus::optimal;
     result_.iterations = 0;
     if (refine(problem, Vec6::Zero(), guess)) return result_;
+    // What held the part a moment ago was reached from the frictionless motion; its neighborhood is looked at first.
+    cone_.set_problem(problem);
+    estimate_.assign(guess.begin(), guess.end());
+    if (shift(problem)) return result_;
   }
   const QpResult& qp = frictionless_.solve(problem.normals, problem.bounds, problem.wanted);
   take_frictionless(qp);
@@ -114,7 +133,10 @@ const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
   const bool ended = active_set_.solve(problem, from);
   result_.iterations += active_set_.rounds();
   if (ended && take_active_set(problem, FrictionMethod::sliding)) return result_;
-  if (!shift(problem)) relax(problem);
+  cone_.set_problem(problem);
+  estimate_sliding(problem, qp);
+  // After a guess the convex neighbors have been tried already.
+  if (!(guess.empty() && shift(problem))) relax(problem);
   return result_;
 }
 

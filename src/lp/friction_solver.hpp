@@ -34,7 +34,7 @@ class FrictionSolver {
  public:
   /// For at most `capacity` rows.
   explicit FrictionSolver(int capacity);
-  /// `guess`: forces that hold the body where it is, if they are known; taken when they can be made to obey the law.
+  /// `guess`: forces that hold the body where it is, if they are known; the law is looked for near them first.
   const FrictionResult& solve(const FrictionProblem& problem, const std::vector<FrictionForce>& guess = {}) noexcept;
 
  private:
@@ -42,7 +42,9 @@ class FrictionSolver {
   /// Takes what the active set ended at, if it obeys the law.
   bool take_active_set(const FrictionProblem& problem, FrictionMethod method) noexcept;
   bool refine(const FrictionProblem& problem, const Vec6& from, const std::vector<FrictionForce>& forces) noexcept;
-  /// From the convex neighbor on towards the law; false when it does not come there.
+  /// Sets estimate_ to the frictionless forces, each with the friction of its slip.
+  void estimate_sliding(const FrictionProblem& problem, const QpResult& qp) noexcept;
+  /// From the convex neighbor, whose forces are near estimate_, on towards the law; false when it does not come there.
   bool shift(const FrictionProblem& problem) noexcept;
   void relax(const FrictionProblem& problem) noexcept;
 

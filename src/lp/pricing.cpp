@@ -161,6 +161,53 @@ TEGOTAE_INLINE RowChoice largest_pivot_of(const LaneBlock* step, const LaneBlock
   return maximum.choice();
 }
 
+template <int kBytes>
+TEGOTAE_INLINE RowChoice most_violated_cone_of(const RowBlock* g, const RowBlock* t0, const RowBlock* t1,
+                                               const LaneBlock* d, int blocks, const double* w, double least) {
+  using W = Wide<kBytes>;
+  using D = typename W::D;
+  const D zero = {};
+  RowChoice choice{-1, least};
+  for (int b = 0; b < blocks; ++b) {
+    double normal[kRowLanes], square[kRowLanes], beyond[kRowLanes];
+    for (int p = 0; p < W::kParts; ++p) {
+      const int lane = p * W::kCount;
+      D n, s0, s1, di;
+      dot<kBytes>(n, g[b], lane, w);
+      dot<kBytes>(s0, t0[b], lane, w);
+      dot<kBytes>(s1, t1[b], lane, w);
+      load<kBytes>(di, d[b].v + lane);
+      const D by = di - n, slip = s0 * s0 + s1 * s1, room = choice.value - by;
+      const D over = slip - room * (room > zero ? room : -room);
+      std::memcpy(normal + lane, &by, kBytes);
+      std::memcpy(square + lane, &slip, kBytes);
+      std::memcpy(beyond + lane, &over, kBytes);
+    }
+    // Few rows are worth a square root.
+    for (int i = 0; i < kRowLanes; ++i) {
+      if (!(beyond[i] > 0)) continue;
+      const double by = normal[i] + std::sqrt(square[i]);
+      if (by > choice.value) choice = {b * kRowLanes + i, by};
+    }
+  }
+  return choice;
+}
+
+template <int kBytes>
+TEGOTAE_INLINE void sum_products_of(const PaddedVec6* a, const PaddedVec6* b, int n, PaddedVec6* h) {
+  using W = Wide<kBytes>;
+  for (int p = 0; p < W::kParts; ++p) {
+    const int lane = p * W::kCount;
+    if (lane >= 6) break;
+    typename W::D sum[6] = {}, column;
+    for (int k = 0; k < n; ++k) {
+      load<kBytes>(column, b[k].v + lane);
+      for (int i = 0; i < 6; ++i) sum[i] += a[k].v[i] * column;
+    }
+    for (int i = 0; i < 6; ++i) std::memcpy(h[i].v + lane, &sum[i], kBytes);
+  }
+}
+
 #define TEGOTAE_PRICING(name, isa, bytes)                                                                          \
   isa void inverse_norms_##name(const RowBlock* g, int blocks, LaneBlock* inverse_norm) {                          \
     inverse_norms_of(g, blocks, inverse_norm);                                                                     \
@@ -176,7 +223,15 @@ TEGOTAE_INLINE RowChoice largest_pivot_of(const LaneBlock* step, const LaneBlock
   isa RowChoice largest_pivot_##name(const LaneBlock* step, const LaneBlock* pivot, int blocks, double bound) {    \
     return largest_pivot_of<bytes>(step, pivot, blocks, bound);                                                    \
   }                                                                                                                \
-  constexpr Pricing kPricing_##name = {inverse_norms_##name, most_violated_##name, steps_##name, largest_pivot_##name};
+  isa RowChoice most_violated_cone_##name(const RowBlock* g, const RowBlock* t0, const RowBlock* t1,               \
+                                          const LaneBlock* d, int blocks, const double* w, double least) {         \
+    return most_violated_cone_of<bytes>(g, t0, t1, d, blocks, w, least);                                           \
+  }                                                                                                                \
+  isa void sum_products_##name(const PaddedVec6* a, const PaddedVec6* b, int n, PaddedVec6* h) {                   \
+    sum_products_of<bytes>(a, b, n, h);                                                                            \
+  }                                                                                                                \
+  constexpr Pricing kPricing_##name = {inverse_norms_##name, most_violated_##name,      steps_##name,              \
+                                       largest_pivot_##name, most_violated_cone_##name, sum_products_##name};
 
 TEGOTAE_PRICING(baseline, , 16)
 #ifdef __x86_64__

@@ -10,6 +10,11 @@ struct RowChoice {
   double value = 0;
 };
 
+/// Six numbers, and two zeros.
+struct alignas(64) PaddedVec6 {
+  double v[kRowLanes];
+};
+
 /// Passes over all rows, in wide instructions chosen at run time. No sum crosses rows and ties go to the lowest row, so
 /// every CPU gives the same bits. `blocks` counts blocks of kRowLanes rows; rows of scale 0 are never chosen.
 struct Pricing {
@@ -24,6 +29,11 @@ struct Pricing {
                   double min_pivot, double slack, LaneBlock* step, LaneBlock* pivot);
   /// The row with the largest pivot among those with step <= bound.
   RowChoice (*largest_pivot)(const LaneBlock* step, const LaneBlock* pivot, int blocks, double bound);
+  /// The row with the largest d_i - g_i·w + |(t0_i·w, t1_i·w)| above `least`. Rows with d = -inf are never chosen.
+  RowChoice (*most_violated_cone)(const RowBlock* g, const RowBlock* t0, const RowBlock* t1, const LaneBlock* d,
+                                  int blocks, const double* w, double least);
+  /// h = Σ_k a_k b_kᵀ, six rows; added in the order of k.
+  void (*sum_products)(const PaddedVec6* a, const PaddedVec6* b, int n, PaddedVec6* h);
 };
 
 enum class InstructionSet { baseline, avx2, avx512 };

@@ -14,57 +14,42 @@ constexpr double kDependent = 1e-9;
 /// Far above the 2 to 60 changes that solves take.
 constexpr int kMaxChanges = 300;
 
-LaneBlock product(const RowBlock& rows, const Vec6& z) noexcept {
-  LaneBlock out{};
-  for (int k = 0; k < 6; ++k)
-    for (int lane = 0; lane < kRowLanes; ++lane) out.v[lane] += rows.g[k][lane] * z[k];
-  return out;
-}
-
 }  // namespace
 
 RelaxedCone::RelaxedCone(int capacity)
-    : friction_{LowRankMatrix(capacity), LowRankMatrix(capacity)},
-      bounds_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)) {}
+    : pricing_(pricing()),
+      friction_{LowRankMatrix(capacity), LowRankMatrix(capacity)},
+      lanes_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)) {}
 
 void RelaxedCone::set_problem(const FrictionProblem& problem) noexcept {
   problem_ = &problem;
-  const int rows = problem.normals.rows();
-  for (int k = 0; k < 2; ++k) {
-    friction_[k].clear();
-    for (int i = 0; i < rows; ++i)
+  for (LowRankMatrix& rows : friction_) rows.clear();
+  for (int i = 0; i < problem.normals.rows(); ++i)
+    for (int k = 0; k < 2; ++k)
       friction_[k].push_row(problem.mu[i] > 0 ? Vec6(problem.mu[i] * problem.tangents[i].row[k]) : Vec6::Zero());
-  }
-  for (int i = 0; i < rows; ++i) bounds_[static_cast<std::size_t>(i / kRowLanes)].v[i % kRowLanes] = problem.bounds[i];
+}
+
+void RelaxedCone::set_bounds(const double* bounds) noexcept {
+  bounds_ = bounds;
+  const int rows = problem_->normals.rows(), blocks = (rows + kRowLanes - 1) / kRowLanes;
+  for (int i = 0; i < blocks * kRowLanes; ++i)
+    lanes_[static_cast<std::size_t>(i / kRowLanes)].v[i % kRowLanes] =
+        i < rows ? bounds[i] : -std::numeric_limits<double>::infinity();
 }
 
 bool RelaxedCone::most_violated(double tolerance, Row& out) noexcept {
-  const int rows = problem_->normals.rows();
-  double worst = tolerance;
-  int found = -1;
-  for (int begin = 0; begin < rows; begin += kRowLanes) {
-    const int at = begin / kRowLanes;
-    const LaneBlock n = product(problem_->normals.blocks()[at], z_), t0 = product(friction_[0].blocks()[at], z_),
-                    t1 = product(friction_[1].blocks()[at], z_);
-    const LaneBlock& bound = bounds_[static_cast<std::size_t>(at)];
-    LaneBlock by;
-    for (int lane = 0; lane < kRowLanes; ++lane)
-      by.v[lane] = bound.v[lane] - n.v[lane] + std::sqrt(t0.v[lane] * t0.v[lane] + t1.v[lane] * t1.v[lane]);
-    for (int lane = 0; lane < std::min(kRowLanes, rows - begin); ++lane)
-      if (by.v[lane] > worst) {
-        worst = by.v[lane];
-        found = begin + lane;
-      }
-  }
-  if (found < 0) return false;
-  make_row(found, out);
+  const int blocks = (problem_->normals.rows() + kRowLanes - 1) / kRowLanes;
+  const RowChoice worst =
+      pricing_.most_violated_cone(problem_->normals.blocks(), friction_[0].blocks(), friction_[1].blocks(),
+                                  lanes_.data(), blocks, z_.data(), tolerance);
+  if (worst.row < 0) return false;
+  make_row(worst.row, out);
   return out.length > 0;
 }
 
 void RelaxedCone::make_row(int contact, Row& out) const noexcept {
   const FrictionProblem& p = *problem_;
   out.contact = contact;
-  out.unit = p.normals.row(contact);
   out.direction[0] = out.direction[1] = 0;
   if (p.mu[contact] > 0) {
     const TangentRows& t = p.tangents[contact];
@@ -73,12 +58,43 @@ void RelaxedCone::make_row(int contact, Row& out) const noexcept {
       out.direction[0] = s0 / slip;
       out.direction[1] = s1 / slip;
     }
-    out.unit -= p.mu[contact] * (out.direction[0] * t.row[0] + out.direction[1] * t.row[1]);
   }
-  out.length = out.unit.norm();
-  if (!(out.length > 0)) return;
-  out.unit /= out.length;
-  out.target = p.bounds[contact] / out.length - out.unit.dot(p.wanted);
+  complete(out);
+}
+
+void RelaxedCone::complete(Row& row) const noexcept {
+  const FrictionProblem& p = *problem_;
+  row.unit = p.normals.row(row.contact);
+  if (p.mu[row.contact] > 0)
+    for (int k = 0; k < 2; ++k) row.unit -= p.mu[row.contact] * row.direction[k] * p.tangents[row.contact].row[k];
+  row.length = row.unit.norm();
+  if (!(row.length > 0)) return;
+  row.unit /= row.length;
+  row.target = bounds_[row.contact] / row.length - row.unit.dot(p.wanted);
+}
+
+void RelaxedCone::start_from(const std::vector<FrictionForce>& forces) noexcept {
+  for (const FrictionForce& f : forces) {
+    const double most = problem_->mu[f.row] * f.normal;
+    if (size_ == 6) break;
+    Row row;
+    row.contact = f.row;
+    // N z - μ d·T z >= b holds wherever the cone's limit does for every d of length at most 1; of a contact that sticks
+    // the one plane with d = -τ / (μ ν) has its whole force.
+    if (most > 0) {
+      const double size = std::sqrt(f.tangential[0] * f.tangential[0] + f.tangential[1] * f.tangential[1]);
+      for (int k = 0; k < 2; ++k) row.direction[k] = -f.tangential[k] / std::max(most, size);
+    }
+    complete(row);
+    if (row.length > 0 && span_.append(row.unit, kDependent)) rows_[size_++] = row;
+  }
+  // The method may start from any rows whose own problem has them all pushing.
+  for (;;) {
+    solve_active();
+    const double* least = std::min_element(lambda_, lambda_ + size_);
+    if (size_ == 0 || *least >= 0) return;
+    drop(static_cast<int>(least - lambda_));
+  }
 }
 
 void RelaxedCone::drop(int position) noexcept {
@@ -127,12 +143,13 @@ bool RelaxedCone::take(const Row& row) noexcept {
   }
 }
 
-bool RelaxedCone::solve(const FrictionProblem& problem, double tolerance) noexcept {
-  set_problem(problem);
+bool RelaxedCone::solve(const double* bounds, double tolerance, const std::vector<FrictionForce>& start) noexcept {
+  set_bounds(bounds);
   span_.clear();
   size_ = changes_ = 0;
-  z_ = problem.wanted;
-  const double scale = problem.wanted.norm();
+  z_ = problem_->wanted;
+  const double scale = problem_->wanted.norm();
+  start_from(start);
   Row row;
   while (most_violated(tolerance * scale, row)) {
     if (take(row)) continue;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "lp/coulomb_residual.hpp"
+#include "lp/pricing.hpp"
 #include "lp/span_basis.hpp"
 
 namespace tegotae {
@@ -16,8 +17,11 @@ class RelaxedCone {
   explicit RelaxedCone(int capacity);
 
   static constexpr double kFine = 1e-10;
-  /// Limits hold to `tolerance` of the wanted motion. False when precision is lost, which leaves standing still.
-  bool solve(const FrictionProblem& problem, double tolerance = kFine) noexcept;
+  /// Takes the problem, which must live until the last solve of it.
+  void set_problem(const FrictionProblem& problem) noexcept;
+  /// Limits hold to `tolerance` of the wanted motion, with the problem's bounds or others (one for each row). False
+  /// when precision is lost, which leaves standing still. `start`: forces that are near those of the answer, or none.
+  bool solve(const double* bounds, double tolerance, const std::vector<FrictionForce>& start = {}) noexcept;
 
   // Of the last solve that succeeded:
   const Vec6& z() const noexcept { return z_; }
@@ -34,18 +38,24 @@ class RelaxedCone {
     int contact = 0;
   };
 
-  void set_problem(const FrictionProblem& problem) noexcept;
+  /// Takes rows of contacts with force, those whose multipliers do not come out negative together.
+  void start_from(const std::vector<FrictionForce>& forces) noexcept;
   /// The row that z_ violates most, by more than `tolerance`.
   bool most_violated(double tolerance, Row& out) noexcept;
   void make_row(int contact, Row& out) const noexcept;
+  /// Sets the rest of a row whose contact and direction are set.
+  void complete(Row& row) const noexcept;
+  void set_bounds(const double* bounds) noexcept;
   /// Raises the row's multiplier until it holds; false when it cannot.
   bool take(const Row& row) noexcept;
   void drop(int position) noexcept;
   void solve_active() noexcept;
 
+  const Pricing& pricing_;
   const FrictionProblem* problem_ = nullptr;
-  LowRankMatrix friction_[2];      ///< tangents times μ
-  std::vector<LaneBlock> bounds_;  ///< b
+  const double* bounds_ = nullptr;
+  LowRankMatrix friction_[2];     ///< tangents times μ
+  std::vector<LaneBlock> lanes_;  ///< the bounds
   SpanBasis span_;
   Row rows_[6];
   double lambda_[6] = {};

@@ -6,13 +6,16 @@
 
 namespace tegotae {
 
-/// The tangent number `k` (0 or 1) that friction problems take for the unit normal `n`.
-inline Vec3 tangent(const Vec3& n, int k) noexcept {
-  // Of two axes the one that is far from the normal.
-  constexpr double kFar = 0.6;
-  const Vec3 other = std::abs(n.x()) < kFar ? Vec3::UnitX() : Vec3::UnitY();
-  const Vec3 first = n.cross(other).normalized();
-  return k == 0 ? first : Vec3(n.cross(first));
-}
+/// The two tangents that friction problems take for a unit normal.
+struct Tangents {
+  explicit Tangents(const Vec3& n) noexcept {
+    // Of two axes the one that is far from the normal.
+    constexpr double kFar = 0.6;
+    direction[0] = n.cross(std::abs(n.x()) < kFar ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    direction[1] = n.cross(direction[0]);
+  }
+
+  Vec3 direction[2];
+};
 
 }  // namespace tegotae

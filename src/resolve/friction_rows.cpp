@@ -24,7 +24,8 @@ bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metr
     mu_[i] = c.age == kOneShotAge || c.part.index >= mu_of_part_.size() ? 0 : mu_of_part_[c.part.index];
     if (!(mu_[i] > 0)) continue;
     found = true;
-    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = metric.row(c, tangent(c.n, k));
+    const Tangents tangents(c.n);
+    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = metric.row(c, tangents.direction[k]);
   }
   return found;
 }

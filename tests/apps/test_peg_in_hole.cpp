@@ -83,3 +83,25 @@ TEST_CASE("the peg goes in, and the same run gives the same recording byte for b
     CHECK(recording.compare(0, beginning.size(), beginning) == 0);
   }
 }
+
+TEST_CASE("a scene in which nothing rubs gives the recording of one without friction, byte for byte", "[programs]") {
+  const TempFolder folder;
+  for (const char* file : {"hole_20.obj", "peg_0.99.obj", "insert_0.99.csv"})
+    std::filesystem::copy_file(std::string(TEGOTAE_MODELS_DIR "/") + file, folder / file);
+  const std::string scene = read_text(TEGOTAE_MODELS_DIR "/peg_in_hole_0.99.toml");
+  const auto recording = [&](const std::string& name, const std::string& friction) {
+    folder.write(name + ".toml", scene + "\n" + friction);
+    // As far as the peg has hit the rim, slid, gone in and jammed.
+    const Output run = run_program("tegotae", "run --fast --json " + (folder / (name + ".toml")) +
+                                                  " --seconds 3.6 --record " + (folder / (name + ".csv")));
+    CHECK(run.code == 0);
+    CHECK(summary_of(run).at("contacts_max").get<int>() >= 2);
+    return read_text(folder / (name + ".csv"));
+  };
+  const std::string pair = "\n[[friction.pair]]\nparts = [\"peg\", \"hole\"]\nmu = ";
+  const std::string without = recording("without", "");
+  CHECK(std::count(without.begin(), without.end(), '\n') > 3500);
+  CHECK(recording("zero", "[friction]\nmu = 0\n") == without);
+  CHECK(recording("zero_pair", "[friction]\nmu = 0.5\n" + pair + "0\n") == without);
+  CHECK(recording("rubs", "[friction]\nmu = 0\n" + pair + "0.2\n") != without);
+}

@@ -315,6 +315,67 @@ TEST_CASE("on a face, where there is one answer, a slow method finds the same", 
   CHECK(same >= 0.98 * compared);
 }
 
+TEST_CASE("the convex neighbor has one answer, wherever the search for it starts", "[friction]") {
+  Random u(31);
+  RelaxedCone cone(FrictionCase::kMax);
+  FrictionCase c;
+  for (int i = 0; i < 300; ++i) {
+    const Vec6 wanted = random_case(u, static_cast<Kind>(i % 4), 4 + i % 60, 0.1 + 0.1 * (i % 6), c);
+    const FrictionProblem p = c.problem(wanted);
+    cone.set_problem(p);
+    REQUIRE(cone.solve(p.bounds, RelaxedCone::kFine));
+    const Vec6 z = cone.z();
+    std::vector<FrictionForce> right, wrong;
+    cone.forces(right);
+    for (int k = 0; k < 8; ++k) {
+      const double nu = std::abs(u.normal()), angle = u.uniform(0, 2 * M_PI), t = u.uniform(0, 1.2) * p.mu[0] * nu;
+      wrong.push_back({static_cast<int>(u.uniform(0, c.size())), nu, {t * std::cos(angle), t * std::sin(angle)}, true});
+    }
+    for (const auto& start : {right, wrong}) {
+      REQUIRE(cone.solve(p.bounds, RelaxedCone::kFine, start));
+      // Limits that hold to 1e-10 leave the nearest motion open to the root of that.
+      CHECK((cone.z() - z).norm() < 1e-4 * wanted.norm());
+      for (int k = 0; k < c.size(); ++k) {
+        const TangentRows& t = p.tangents[k];
+        const double slip = std::hypot(t.row[0].dot(cone.z()), t.row[1].dot(cone.z()));
+        CHECK(p.normals.row(k).dot(cone.z()) - p.mu[k] * slip >= p.bounds[k] - 1e-7 * wanted.norm());
+      }
+    }
+  }
+}
+
+TEST_CASE("from a guess, good or bad, comes nothing that breaks the law", "[friction]") {
+  Random u(32);
+  FrictionSolver solver(FrictionCase::kMax);
+  FrictionCase c;
+  std::vector<FrictionForce> last;
+  int exact = 0, count = 0, repeated = 0, with_forces = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Vec6 wanted = random_case(u, static_cast<Kind>(i % 4), 4 + i % 60, 0.1 + 0.1 * (i % 6), c);
+    const FrictionProblem p = c.problem(wanted);
+    // The forces of another problem.
+    std::vector<FrictionForce> guess;
+    for (const FrictionForce& f : last)
+      if (f.row < c.size()) guess.push_back(f);
+    const FrictionResult& r = solver.solve(p, guess);
+    REQUIRE(r.status == LpStatus::optimal);
+    ++count;
+    exact += r.exact;
+    if (r.exact) CHECK(law_error(p, r.z, r.forces).worst() < 1e-6 * wanted.norm());
+    last = r.forces;
+    if (!r.exact || last.empty()) continue;
+    // Its own forces lead back to it, unless others hold the part too: a guess begins with all contacts sticking.
+    ++with_forces;
+    const Vec6 z = r.z;
+    const FrictionResult& again = solver.solve(p, last);
+    repeated += again.exact && (again.z - z).norm() < 1e-6 * wanted.norm();
+  }
+  std::cout << exact << " of " << count << " exact from a bad guess, " << repeated << " of " << with_forces
+            << " the same from their own forces\n";
+  CHECK(exact >= 0.9 * count);
+  CHECK(repeated >= 0.9 * with_forces);
+}
+
 TEST_CASE("without friction the answer is that of the least distance, bit for bit", "[friction]") {
   Random u(8);
   FrictionSolver solver(FrictionCase::kMax);

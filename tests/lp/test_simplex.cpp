@@ -307,3 +307,59 @@ TEST_CASE("Every instruction set gives the bits of a plain loop", "[lp]") {
     }
   }
 }
+
+TEST_CASE("passes for friction give the same bits at every width", "[simplex]") {
+  Random random(12);
+  for (int n : {1, 7, 8, 9, 64, 203}) {
+    LowRankMatrix g(n), t0(n), t1(n);
+    std::vector<LaneBlock> d((static_cast<std::size_t>(n) + kRowLanes - 1) / kRowLanes);
+    for (LaneBlock& block : d) std::fill_n(block.v, kRowLanes, -std::numeric_limits<double>::infinity());
+    std::vector<PaddedVec6> a(static_cast<std::size_t>(n)), b(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      g.push_row(random.vec6());
+      t0.push_row(random.vec6());
+      t1.push_row(random.vec6());
+      d[k / kRowLanes].v[k % kRowLanes] = random.uniform(-5, 1);
+      for (int c = 0; c < kRowLanes; ++c) {
+        a[k].v[c] = c < 6 ? random.uniform(-1, 1) : 0;
+        b[k].v[c] = c < 6 ? random.uniform(-1, 1) : 0;
+      }
+    }
+    const Vec6 w = random.vec6();
+    RowChoice worst{-1, 0.5};
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double by =
+          d[k / kRowLanes].v[k % kRowLanes] - g.row(i).dot(w) + std::hypot(t0.row(i).dot(w), t1.row(i).dot(w));
+      if (by > worst.value) worst = {i, by};
+    }
+    Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+    for (std::size_t k = 0; k < a.size(); ++k)
+      sum += Eigen::Map<const Vec6>(a[k].v) * Eigen::Map<const Vec6>(b[k].v).transpose();
+    RowChoice first;
+    PaddedVec6 products[6], first_products[6];
+    for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+      const Pricing* passes = pricing(set);
+      if (!passes) continue;
+      const RowChoice c = passes->most_violated_cone(g.blocks(), t0.blocks(), t1.blocks(), d.data(),
+                                                     static_cast<int>(d.size()), w.data(), 0.5);
+      CHECK(c.row == worst.row);
+      CHECK(c.value == Approx(worst.value));
+      passes->sum_products(a.data(), b.data(), n, products);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) CHECK(products[i].v[j] == Approx(sum(i, j)).margin(1e-12));
+      if (set == InstructionSet::baseline) {
+        first = c;
+        std::copy_n(products, 6, first_products);
+      }
+      CHECK(std::memcmp(&c.value, &first.value, sizeof c.value) == 0);
+      for (int i = 0; i < 6; ++i) CHECK(std::memcmp(products[i].v, first_products[i].v, 6 * sizeof(double)) == 0);
+      // None is beyond the worst.
+      CHECK(passes
+                ->most_violated_cone(g.blocks(), t0.blocks(), t1.blocks(), d.data(), static_cast<int>(d.size()),
+                                     w.data(), c.value)
+                .row == -1);
+    }
+  }
+}
