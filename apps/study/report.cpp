@@ -19,7 +19,7 @@ namespace {
 using apps::format;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRows = 10000;  // of a page that is to open; the table has all
+constexpr std::size_t kMaxRows = 10000;  // of a page that is to open; the table has all
 constexpr double kDegrees = 57.29577951;
 
 /// Counts by a text of each case, in the order of the texts.
@@ -171,7 +171,7 @@ Json cases_table(const Source& s) {
     head.push_back(name);
   if (!s.tries()) head.push_back("replay");
   Json rows = Json::array();
-  for (std::size_t i = 0; i < std::min(kMostRows, s.results.size()); ++i) rows.push_back(case_row(s, s.results[i]));
+  for (std::size_t i = 0; i < std::min(kMaxRows, s.results.size()); ++i) rows.push_back(case_row(s, s.results[i]));
   return {{"head", head}, {"rows", rows}};
 }
 
@@ -224,7 +224,7 @@ Json report(const Source& s) {
   tables.push_back(group_table(s, "route", s.by_route()));
   if (!blockers(s.results).empty()) tables.push_back(blocker_table(s));
   const std::string more =
-      s.results.size() > kMostRows ? format("The first %zu; cases.csv has all.", kMostRows) : std::string();
+      s.results.size() > kMaxRows ? format("The first %zu; cases.csv has all.", kMaxRows) : std::string();
   const std::string name = std::filesystem::path(s.tries() ? s.study.scenes.front() : s.study.path).filename().string();
   return {
       {"title",

@@ -32,7 +32,7 @@ constexpr double kLegEnd = 1e-3, kLegEndAngle = 0.1;
 // Of the held part's radius: the way between two looks at its clearance.
 constexpr double kLookStep = 0.01;
 // Of a part's radius: how far its faces may go.
-constexpr double kMostInward = 0.05;
+constexpr double kMaxInward = 0.05;
 constexpr std::uint64_t kStepSalt = 0x9e3779b9;  // so that the tasks of an order draw other numbers
 
 /// Does the tasks of a route one after the other.
@@ -179,7 +179,7 @@ bool change_scene(const Case& c, Scene& scene) {
     const Value* inward = c.find("inward " + part.name);
     if (inward == nullptr || inward->number == 0) continue;
     const double radius = bounding_sphere(*part.mesh).radius;
-    if (std::abs(inward->number) > kMostInward * radius)
+    if (std::abs(inward->number) > kMaxInward * radius)
       throw Error(part.name + ": its faces cannot go inward by " + review::length_text(inward->number) +
                   ": it is only " + review::length_text(2 * radius) + " large");
     part.mesh = std::make_shared<TriangleMesh>(inward_offset(Surface(part.mesh), inward->number));

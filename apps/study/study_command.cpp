@@ -27,7 +27,7 @@ using apps::format;
 // Of `run`, for each processor: few enough that starting them costs nothing, many enough that none waits long at the
 // end.
 constexpr int kShardsPerProcessor = 8;
-constexpr std::size_t kMostNamed = 10;  // missing cases
+constexpr std::size_t kMaxNamed = 10;  // missing cases
 
 /// A study, its scenes, and where its results are.
 struct Opened {
@@ -83,10 +83,10 @@ int merge(const Opened& s) {
   const std::vector<int> left = missing(rows, cases);
   if (!left.empty()) {
     std::string list;
-    for (std::size_t i = 0; i < std::min(kMostNamed, left.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMaxNamed, left.size()); ++i)
       list += (i == 0 ? "" : ", ") + std::to_string(left[i]);
     std::cerr << "tegotae: " << shard_folder(s.out) << format(": %zu of %d cases are missing: ", left.size(), cases)
-              << list << (left.size() > kMostNamed ? " ..." : "") << "\n";
+              << list << (left.size() > kMaxNamed ? " ..." : "") << "\n";
     return apps::kRunFailed;
   }
   rows.erase(rows.lower_bound(cases), rows.end());  // of more repeats than now

@@ -16,7 +16,7 @@ constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// A facet is of the nearest rise where its own one lies within so many spreads.
 constexpr double kSameSpread = 2;
 /// Squares are of angles: facets nearer to the axis than this (of the size) do not count more.
-constexpr double kLeastSpeed2 = 1e-4;
+constexpr double kMinSpeed2 = 1e-4;
 /// Of a normal distribution, 30 % are within 1 / 2.6 of the deviation.
 constexpr double kQuantile = 0.3, kOfQuantile = 2.6;
 
@@ -140,7 +140,7 @@ bool AxisFamily::refit() {
     const Facet& f = facets_[i];
     const double rise = of_rise_[i] == kAny ? 0 : rises_[static_cast<std::size_t>(of_rise_[i])];
     of_.push_back(i);
-    weight_.push_back(f.area / std::max(axis_.velocity(f.center).squaredNorm(), kLeastSpeed2));
+    weight_.push_back(f.area / std::max(axis_.velocity(f.center).squaredNorm(), kMinSpeed2));
     rise_of_.push_back(rise);
   }
   if (of_.size() < 8) return false;
