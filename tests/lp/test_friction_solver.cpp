@@ -222,7 +222,8 @@ TEST_CASE("a flat ring spins at the friction of its whole face", "[friction]") {
 }
 
 TEST_CASE("a loaded screw holds itself from tan(lead) cos(flank) on, and turns at its torques", "[friction]") {
-  for (const auto& [pitch, d2] : {std::pair(2e-3, 14.701e-3), {2.5e-3, 18.376e-3}}) {
+  for (const auto& thread : {std::pair(2e-3, 14.701e-3), {2.5e-3, 18.376e-3}}) {
+    const double pitch = thread.first, d2 = thread.second;
     const double lambda = std::atan(pitch / (M_PI * d2));
     const double flank = std::atan(std::tan(30 * kDegree) * std::cos(lambda));
     const double critical = std::tan(lambda) * std::cos(flank);
