@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 // Below this the cross product of two edges of unit length has no direction worth trusting.
-constexpr double kParallel = 1e-9;
+constexpr double kMinCrossProduct = 1e-9;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ AxisLimit least_limiting_axis(const std::array<Vec3, 3>& a, const std::array<Vec
   double best_end = -1e300;
   const auto consider = [&](const Vec3& axis) {
     const double length = axis.norm();
-    if (!(length > kParallel)) return;
+    if (!(length > kMinCrossProduct)) return;
     for (const double sign : {1.0, -1.0}) {
       const Vec3 n = (sign / length) * axis;
       const double side_b = std::max({n.dot(b[0]), n.dot(b[1]), n.dot(b[2])});

@@ -13,13 +13,13 @@ constexpr double kSmallestFill = 1e-9;
 /// Smallest trusted ratio of the inertia's eigenvalues; slimmer than any part, and still invertible without loss.
 constexpr double kSmallestInertiaRatio = 1e-9;
 
-struct Box {
+struct BoundingBox {
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();
 };
 
-Box box_of(const TriangleMesh& mesh) {
+BoundingBox box_of(const TriangleMesh& mesh) {
   if (mesh.vertices.empty()) return {};
-  Box box{mesh.vertices[0], mesh.vertices[0]};
+  BoundingBox box{mesh.vertices[0], mesh.vertices[0]};
   for (const Vec3& p : mesh.vertices) {
     box.min = box.min.cwiseMin(p);
     box.max = box.max.cwiseMax(p);
@@ -27,7 +27,7 @@ Box box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-MassProperties solid_box(const TriangleMesh& mesh, const Box& box, double density) {
+MassProperties solid_box(const TriangleMesh& mesh, const BoundingBox& box, double density) {
   constexpr double kThinnest = 0.01;  // of the largest side
   Vec3 size = box.max - box.min;
   size = size.cwiseMax(Vec3::Constant(kThinnest * size.maxCoeff()));
@@ -52,7 +52,7 @@ MassProperties solid_box(const TriangleMesh& mesh, const Box& box, double densit
 }  // namespace
 
 MassProperties mass_properties(const TriangleMesh& mesh, bool closed, double density) {
-  const Box box = box_of(mesh);
+  const BoundingBox box = box_of(mesh);
   if (!closed) return solid_box(mesh, box, density);
 
   // Sum over the tetrahedra from the box's center, which keeps the terms small: with corners 0, a, b, c and

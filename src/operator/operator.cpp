@@ -13,8 +13,6 @@
 namespace tegotae {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
-
 // How often the hand compares what it means to do with what it feels, s; reflexes through the spinal cord take 30
 // to 50.
 constexpr double kFeelPeriod = 0.05;

@@ -3,11 +3,7 @@
 #include <cmath>
 
 namespace tegotae {
-namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
-
-}  // namespace
+namespace {}  // namespace
 
 Tremor::Tremor(double position_rms, double rotation_rms, std::mt19937_64& rng)
     : position_amplitude_(position_rms * std::sqrt(2.0 / kSines)),

@@ -7,6 +7,8 @@
 
 namespace tegotae {
 
+inline constexpr double kTwoPi = 6.283185307179586;
+
 /// Physiological tremor: in each of six coordinates a sum of sines with frequencies spread over 8 to 12 Hz and random
 /// phases. Stationary, and all its power is in the band.
 class Tremor {

@@ -30,3 +30,11 @@ quietly cmake --build "$build/use" --target meshes_from_memory
 if readelf -d "$build/use/meshes_from_memory" | grep NEEDED | grep -E 'assimp|TK[A-Z]|zstd|libz[.]|pugixml|minizip|toml'; then
   fail "the program loads the above"
 fi
+
+# The demo, as .ci/setup.sh configures it, is to be there in minutes on a machine that has nothing.
+quietly cmake -S "$root" -B "$build/demo" -DCMAKE_BUILD_TYPE=Release -DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF \
+  -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF -DTEGOTAE_FEW_UNITS=ON \
+  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "${absent[@]}"
+sources=$(grep -c '"file":' "$build/demo/compile_commands.json")
+echo "the demo compiles $sources sources"
+[ "$sources" -le 100 ] || fail "more than 100: join small folders by TEGOTAE_FEW_UNITS in CMakeLists.txt"
