@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/output_file.hpp"
+#include "shared/csv_cell.hpp"
 #include "tegotae/core/error.hpp"
 #include "web/page.hpp"
 
@@ -70,21 +71,16 @@ Json to_json(const std::vector<Claim>& claims) {
   return j;
 }
 
-/// As RFC 4180 has it: a cell with a comma stands between quotes.
-std::string quoted(const std::string& cell) {
-  return cell.find(',') == std::string::npos ? cell : '"' + cell + '"';
-}
-
 std::string csv_text(const Csv& csv) {
   std::string text;
   const auto line = [&](const auto& cells, const auto& word) {
     for (std::size_t i = 0; i < cells.size(); ++i) text += (i ? "," : "") + word(cells[i]);
     text += "\n";
   };
-  line(csv.head, quoted);
+  line(csv.head, apps::csv_cell);
   for (const auto& row : csv.rows)
     line(row, [](const Json& v) {
-      return v.is_string()         ? quoted(v.get<std::string>())
+      return v.is_string()         ? apps::csv_cell(v.get<std::string>())
              : v.is_number_float() ? short_text(v.get<double>())
                                    : v.dump();
     });

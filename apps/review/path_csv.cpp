@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "review/path_exports.hpp"
+#include "shared/csv_cell.hpp"
 
 namespace tegotae::review {
 namespace {
@@ -20,13 +21,6 @@ void add(std::string& text, const Pose& X) {
   for (const double x : {X.q.w(), X.q.x(), X.q.y(), X.q.z()}) add(text, x);
 }
 
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 }  // namespace
 
 std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, const Scan& scan,
@@ -42,7 +36,7 @@ std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, c
       text += ",inf,";
     } else {
       add(text, s.clearances.front().distance);
-      text += ',' + quoted(scene.parts[s.clearances.front().part].name);
+      text += ',' + apps::csv_cell(scene.parts[s.clearances.front().part].name);
     }
     add(text, row.wrench.force.norm());
     add(text, row.wrench.torque.norm());

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "core/output_file.hpp"
+#include "shared/csv_cell.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::study {
@@ -24,22 +25,6 @@ const char* const kColumns =
 constexpr std::size_t kResultCells = 17;
 constexpr int kWriteShare = 9;  // times as long as a write took, nothing is written after it
 const char* const kEnding = ".partial";
-
-std::string quoted(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : name) {
-    const bool control = static_cast<unsigned char>(c) < 0x20;  // a row is a line
-    out += c == '"' ? std::string("\"\"") : std::string(1, control ? ' ' : c);
-  }
-  return out + '"';
-}
-
-/// Quoted where it has to be.
-std::string cell(const std::string& text) {
-  const bool plain = std::none_of(text.begin(), text.end(),
-                                  [](char c) { return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20; });
-  return plain ? text : quoted(text);
-}
 
 /// The cells of a line; none where its quotes are not those of a table.
 std::vector<std::string> cells(const std::string& line) {
@@ -75,7 +60,7 @@ bool read_number(const std::string& text, Number& value) {
 
 std::string header(const TableLayout& layout) {
   std::string text = layout.number;
-  for (const std::string& name : layout.parameters) text += ',' + cell(name);
+  for (const std::string& name : layout.parameters) text += ',' + apps::csv_cell(name);
   return text + ',' + kColumns;
 }
 
@@ -124,14 +109,14 @@ void replace_shared(const std::string& path, const std::string& text) {
 
 std::string row_text(const Result& r) {
   std::string text = std::to_string(r.number);
-  for (const std::string& parameter : r.parameters) text += ',' + cell(parameter);
-  text += ',' + cell(r.who) + ',' + cell(r.route);
+  for (const std::string& parameter : r.parameters) text += ',' + apps::csv_cell(parameter);
+  text += ',' + apps::csv_cell(r.who) + ',' + apps::csv_cell(r.route);
   for (const double x : {r.offset, r.tilt}) text += ',' + digits(x);
   text += r.reached ? ",1" : ",0";
   for (const double x : {r.time, r.depth, r.force, r.torque, r.stuck}) text += ',' + digits(x);
   text += ',' + std::to_string(r.intersecting);
   for (const double x : r.place_W) text += ',' + digits(x);
-  return text + ',' + quoted(r.blocked_by) + ',' + digits(r.clearance) + ',' + quoted(r.why);
+  return text + ',' + apps::csv_quoted(r.blocked_by) + ',' + digits(r.clearance) + ',' + apps::csv_quoted(r.why);
 }
 
 std::string table_text(const TableLayout& layout, const std::map<int, Result>& rows) {

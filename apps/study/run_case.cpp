@@ -194,7 +194,6 @@ struct Attempt {
   const Case& c;
   const std::atomic<bool>& stop;
   std::size_t step;
-  std::uint64_t salt;  // of the task's random numbers
 };
 
 /// Adds how one task went; false when it was stopped.
@@ -205,7 +204,7 @@ bool run_task(const Task& task, const Attempt& a, const RecordTo& record_to, Res
   const OperatorProfile& who =
       named != nullptr ? operator_profile(named->text) : people[(n / task.routes.size()) % people.size()];
   std::seed_seq seeds{static_cast<std::uint32_t>(a.study.seed), static_cast<std::uint32_t>(a.study.seed >> 32),
-                      static_cast<std::uint32_t>(a.c.number + a.salt)};
+                      static_cast<std::uint32_t>(a.c.number + a.step * kStepSalt)};
   std::mt19937_64 rng(seeds);
   Result one;
   one.who = who.name;
@@ -265,7 +264,7 @@ std::optional<Result> run_case(const Study& study, Tasks& tasks, const Case& c, 
   result.clearance = INFINITY;
   std::size_t step = 0;
   for (const std::shared_ptr<const Task>& task : tasks.of(c)) {
-    const Attempt attempt{study, c, stop, step, step * kStepSalt};
+    const Attempt attempt{study, c, stop, step};
     if (!run_task(*task, attempt, record_to, result)) return std::nullopt;
     if (!result.reached) break;  // what is behind it stays where it is
     ++step;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/name_list.hpp"
 #include "loop/scene_parts.hpp"
 #include "scene_file/scene_text.hpp"
 #include "shared/format.hpp"
@@ -55,18 +56,10 @@ void add_scene(const SceneFile& file, Hash& hash) {
   hash.add(file.script.pose(file.script.end()));
 }
 
-std::vector<std::string> part_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Part& part : scene.parts) names.push_back(part.name);
-  return names;
-}
-
 void check_name(const std::string& name, const SceneFile& file) {
   const std::vector<std::string> names = part_names(file.scene);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  std::string list;
-  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-  throw Error(file.path + ": has no part " + name + ", which the study names (there are " + list + ")");
+  throw Error(file.path + ": has no part " + name + ", which the study names (there are " + name_list(names) + ")");
 }
 
 }  // namespace

@@ -26,6 +26,12 @@ SceneParts::SceneParts(const Scene& scene) : held(&held_part(scene)) {
   }
 }
 
+std::vector<std::string> part_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Part& part : scene.parts) names.push_back(part.name);
+  return names;
+}
+
 std::vector<std::string> notes_of(const Scene& scene) {
   std::vector<std::string> notes;
   std::set<const TriangleMesh*> seen;

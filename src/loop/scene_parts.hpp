@@ -26,6 +26,9 @@ struct SceneParts {
   explicit SceneParts(const Scene& scene);
 };
 
+/// Names of all parts, in their order.
+std::vector<std::string> part_names(const Scene& scene);
+
 /// What of a scene's meshes is not as their files say, "MESH: what", once for each mesh.
 std::vector<std::string> notes_of(const Scene& scene);
 

@@ -98,6 +98,7 @@ class CellFront {
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
   void start_motion(const Pose& X, const Displacement& d);
+  Sweep sweep_by(std::uint32_t part, const Displacement& d) const;
   const Sweep& sweep_of(std::uint32_t part);
   double allowed(std::uint32_t slot);
   void collect_due();

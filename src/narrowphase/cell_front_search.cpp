@@ -28,13 +28,18 @@ constexpr double kAheadRetry = 0.25;
 
 }  // namespace
 
+/// A's motion by `d` (world) from where it is, as `part` sees it.
+Sweep CellFront::sweep_by(std::uint32_t part, const Displacement& d) const {
+  const FixedPart& B = fixed_[part];
+  const Quat q_BW = B.pose.q.conjugate();
+  return Sweep(B.pose.inverse() * X_, {q_BW * d.dp, q_BW * d.dr}, center_, *B.tree, a_->radius() + offset_a_.norm(),
+               clearance_);
+}
+
 const Sweep& CellFront::sweep_of(std::uint32_t part) {
   if (stamped_[part] != call_) {
     stamped_[part] = call_;
-    const FixedPart& B = fixed_[part];
-    const Quat q_BW = B.pose.q.conjugate();
-    sweeps_[part] = Sweep(B.pose.inverse() * X_, {q_BW * d_.dp, q_BW * d_.dr}, center_, *B.tree,
-                          a_->radius() + offset_a_.norm(), clearance_);
+    sweeps_[part] = sweep_by(part, d_);
   }
   return sweeps_[part];
 }
@@ -99,10 +104,7 @@ bool CellFront::foresees() const {
 const Sweep& CellFront::foreseen(std::uint32_t part) {
   if (foreseen_stamped_[part] != foresights_) {
     foreseen_stamped_[part] = foresights_;
-    const FixedPart& B = fixed_[part];
-    const Quat q_BW = B.pose.q.conjugate();
-    foreseen_[part] = Sweep(B.pose.inverse() * X_, {q_BW * foresight_.dp, q_BW * foresight_.dr}, center_, *B.tree,
-                            a_->radius() + offset_a_.norm(), clearance_);
+    foreseen_[part] = sweep_by(part, foresight_);
   }
   return foreseen_[part];
 }
@@ -138,23 +140,19 @@ void CellFront::shorten_foresight(const Node& node) {
 /// The share of the motion `d` after which two faces that meet on it have met.
 double CellFront::free_until(std::uint32_t part, std::uint32_t face_a, std::uint32_t face_b,
                              const Displacement& d) const {
-  const FixedPart& B = fixed_[part];
-  const Pose X_BA = B.pose.inverse() * X_;
-  const Quat q_BW = B.pose.q.conjugate();
+  const PatchTree& tree = *fixed_[part].tree;
   std::array<Vec3, 3> a, b;
   double reach = 0;
   for (int k = 0; k < 3; ++k) {
     a[k] = a_->corner(face_a, k) - center_;
-    b[k] = B.tree->corner(face_b, k) - B.tree->origin();
+    b[k] = tree.corner(face_b, k) - tree.origin();
     reach = std::max(reach, a[k].norm());
   }
   double free = 0, met = 1;
   for (int i = 0; i < kHalvings; ++i) {
     const double s = 0.5 * (free + met);
-    const Sweep sweep(X_BA, {q_BW * (s * d.dp), q_BW * (s * d.dr)}, center_, *B.tree, a_->radius() + offset_a_.norm(),
-                      clearance_);
     Vec3 n = Vec3::UnitX();
-    if (separate_triangles(a, b, sweep, reach, n)) {
+    if (separate_triangles(a, b, sweep_by(part, s * d), reach, n)) {
       free = s;
     } else {
       met = s;

@@ -12,6 +12,7 @@
 #include "import/file_check.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/held_weight.hpp"
+#include "loop/scene_parts.hpp"
 #include "scene_file/scene_friction.hpp"
 #include "scene_file/toml_table.hpp"
 #include "tegotae/core/error.hpp"
@@ -82,12 +83,6 @@ std::optional<Color> read_color(const TomlTable& t) {
     color[i] = given[i];
   }
   return color;
-}
-
-std::vector<std::string> part_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Part& part : scene.parts) names.push_back(part.name);
-  return names;
 }
 
 void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene,
