@@ -56,8 +56,8 @@ Seen compare(const std::shared_ptr<const TriangleMesh>& a, const std::shared_ptr
 
 TEST_CASE("distances of bodies at random poses are those of all pairs of triangles", "[feature]") {
   std::mt19937 rng(GENERATE(1, 2, 3));
-  const auto a = shared(random_star_body(rng, 60, 0.01)), b = shared(random_convex_body(rng, 40, 0.012));
-  const Seen seen = compare(a, b, 150, [&](int) {
+  const auto a = shared(random_star_body(rng, 30, 0.01)), b = shared(random_convex_body(rng, 24, 0.012));
+  const Seen seen = compare(a, b, 60, [&](int) {
     return Pose{rotation(random_vector(rng, 3)), random_vector(rng, 0.02)};
   });
   CHECK(seen.apart > 7);
@@ -66,14 +66,14 @@ TEST_CASE("distances of bodies at random poses are those of all pairs of triangl
 
 TEST_CASE("distances along a path that comes near, touches and leaves", "[feature]") {
   std::mt19937 rng(7);
-  const auto a = shared(random_star_body(rng, 80, 0.01)), b = shared(random_star_body(rng, 80, 0.01));
-  const Seen seen = compare(a, b, 300, [](int i) {
-    const double s = 0.02 * i;
+  const auto a = shared(random_star_body(rng, 30, 0.01)), b = shared(random_star_body(rng, 30, 0.01));
+  const Seen seen = compare(a, b, 100, [](int i) {
+    const double s = 0.06 * i;
     return Pose{rotation({0.3 * s, 0.2 * std::sin(s), s}),
                 {0.016 + 0.006 * std::sin(1.7 * s), 0.001 * std::cos(3 * s), 0}};
   });
-  CHECK(seen.apart > 50);
-  CHECK(seen.crossing > 25);
+  CHECK(seen.apart > 30);
+  CHECK(seen.crossing > 8);
 }
 
 TEST_CASE("distances in a tight fit, where many triangles are equally near", "[feature]") {
@@ -83,18 +83,18 @@ TEST_CASE("distances in a tight fit, where many triangles are equally near", "[f
                                                                              {{0.01, 0.03, 0.01}, {-0.01002, 0, 0}},
                                                                              {{0.01, 0.01, 0.01}, {0, 0.01002, 0}},
                                                                              {{0.01, 0.01, 0.01}, {0, -0.01002, 0}}}) {
-    const TriangleMesh one = shapes::box(size, {3, 3, 3});
+    const TriangleMesh one = shapes::box(size, {2, 2, 2});
     const auto base = static_cast<std::uint32_t>(frame.vertices.size());
     for (const Vec3& v : one.vertices) frame.vertices.emplace_back(v + at);
     for (const auto& t : one.triangles) frame.triangles.push_back({base + t[0], base + t[1], base + t[2]});
   }
-  const auto a = shared(shapes::box({0.01, 0.01, 0.012}, {3, 3, 3})), b = shared(frame);
-  const Seen seen = compare(a, b, 150, [](int i) {
-    const double s = 0.1 * i;
+  const auto a = shared(shapes::box({0.01, 0.01, 0.012}, {2, 2, 2})), b = shared(frame);
+  const Seen seen = compare(a, b, 50, [](int i) {
+    const double s = 0.3 * i;
     return Pose{rotation({0, 0, 1e-3 * std::sin(2 * s)}), {2e-6 * s * std::sin(s), 1e-5 * std::cos(1.3 * s), 1e-4 * s}};
   });
-  CHECK(seen.apart > 50);
-  CHECK(seen.crossing > 3);
+  CHECK(seen.apart > 20);
+  CHECK(seen.crossing > 1);
 }
 
 TEST_CASE("triangles without area have distances too", "[feature]") {

@@ -70,7 +70,9 @@ def write_study(folder, cases):
 def environment():
     """With HyperShell's programs on the path, and all that it writes in the study's folder."""
     path = os.environ.get("PATH", "")
-    return dict(os.environ, PATH=path + os.pathsep + PYTHON_PROGRAMS, HYPERSHELL_LOGGING_LEVEL="error")
+    # Where SHELL is not set, GNU parallel runs each job by the program that called it, here Python, and reports success.
+    shell = os.environ.get("SHELL") or "/bin/sh"
+    return dict(os.environ, PATH=path + os.pathsep + PYTHON_PROGRAMS, SHELL=shell, HYPERSHELL_LOGGING_LEVEL="error")
 
 
 def program(name):
