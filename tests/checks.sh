@@ -64,7 +64,7 @@ check_format() {
 # What reads files, walks over meshes by index, or shares memory; the fuzz targets of the same tree do the rest.
 asan_quick=(core mesh gltf 3mf flat_files assembly isolated_load step device record recording patch feature servo scene_file)
 check_asan() {
-  local select=(--label-exclude '^(long|browser)$') targets=()
+  local select=(--label-exclude '^(nightly|long|browser)$') targets=()
   needs_clang || return 0
   if $quick; then
     select+=(-R "^($(IFS='|'; echo "${asan_quick[*]}"))\$")

@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs the tests: `bash tests/run.sh [--quick] [--repeat N] [CTEST ARGUMENT...]`.
-# With --quick the tests labeled `long` and `browser` are left out. With --repeat a test labeled `realtime`, which looks at
+# Installs what is missing, builds, and runs the tests:
+# `bash tests/run.sh [--quick|--nightly] [--repeat N] [CTEST ARGUMENT...]`.
+# Tests labeled `nightly` take minutes to hours each and run with --nightly only; with --quick the tests labeled `long` and
+# `browser` are left out too. With --repeat a test labeled `realtime`, which looks at
 # real processes and real time, is asked up to N times until it passes, and the end says which were; every other test is
 # run once, for it can only fail for a reason.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-left_out=none
+left_out=nightly
 setup=(--browser)
 repeat=1
 while :; do
   case ${1:-} in
-    --quick) left_out='long|browser'; setup=(); shift ;;
+    --quick) left_out='nightly|long|browser'; setup=(); shift ;;
+    --nightly) left_out=none; shift ;;
     --repeat) repeat=$2; shift 2 ;;
     *) break ;;
   esac
