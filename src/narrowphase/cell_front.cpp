@@ -45,21 +45,22 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       reach_(0),
       fixed_(std::move(fixed)),
       capacity_(capacity),
-      nodes_(2 * std::size_t{capacity} + 2),
-      slots_(capacity),
-      items_(capacity),
-      listed_(capacity),
-      anchors_(capacity),
-      expiry_(capacity),
-      clear_until_(capacity),
       root_(fixed_.size(), kNobody),
       asked_(fixed_.size(), 0),
       sweeps_(fixed_.size()),
       stamped_(fixed_.size(), 0),
       foreseen_(fixed_.size()),
-      foreseen_stamped_(fixed_.size(), 0),
-      unsorted_(capacity),
-      due_(capacity) {
+      foreseen_stamped_(fixed_.size(), 0) {
+  // Pages are not touched before they are used: a part of a million triangles has room for 1.6 GB of cells.
+  nodes_.reserve(2 * std::size_t{capacity} + 2);
+  slots_.reserve(capacity);
+  items_.reserve(capacity);
+  listed_.reserve(capacity);
+  anchors_.reserve(capacity);
+  expiry_.reserve(capacity);
+  clear_until_.reserve(capacity);
+  unsorted_.reserve(capacity);
+  due_.reserve(capacity);
   for (const Vec3& v : a_->mesh().vertices) reach_ = std::max(reach_, (v - center_).norm());
   stack_.reserve(capacity);
   freed_.reserve(capacity);
@@ -67,7 +68,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 }
 
 std::size_t CellFront::bytes() const {
-  return nodes_.size() * sizeof(Node) + slots_.size() * (sizeof(Slot) + sizeof(CellItems) + sizeof(CellAnchor) +
+  return nodes_.capacity() * sizeof(Node) + capacity_ * (sizeof(Slot) + sizeof(CellItems) + sizeof(CellAnchor) +
                                                          sizeof(CellCorridor) + 2 * sizeof(double) + 2 * sizeof(Due));
 }
 
@@ -75,7 +76,7 @@ void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
   ++now_;
   for (const std::uint32_t part : near) {
     asked_[part] = now_;
-    if (root_[part] != kNobody || count_ == capacity_) continue;
+    if (root_[part] != kNobody || count() == capacity_) continue;
     const std::uint32_t id = allocate();
     if (id == kNobody) continue;
     root_[part] = id;
@@ -99,7 +100,7 @@ CertifyReport CellFront::prove_ahead(const Pose& X, const Displacement& d, const
 }
 
 bool CellFront::crowded() const {
-  return count_ > kCrowded * capacity_;
+  return count() > kCrowded * capacity_;
 }
 
 CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const WorkLimit& limit) noexcept {
@@ -165,12 +166,12 @@ double CellFront::allowed(std::uint32_t slot) {
 }
 
 void CellFront::collect_due() {
-  due_count_ = 0;
+  unsorted_.clear();
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
   std::array<std::uint32_t, kGrades + 1> first{};
   int asked = 0;
   bool late = false;
-  for (std::uint32_t slot = 0; slot < count_; ++slot) {
+  for (std::uint32_t slot = 0; slot < count(); ++slot) {
     if (!(expiry_[slot] < bound)) continue;
     const std::uint32_t id = slots_[slot].node;
     if (asked_[nodes_[id].part] != now_) continue;
@@ -179,17 +180,18 @@ void CellFront::collect_due() {
     const double share = late ? straight : std::max(straight, allowed(slot));
     if (share == 1) continue;
     nodes_[id].due = call_;
-    unsorted_[due_count_++] = {id, share};
+    unsorted_.push_back({id, share});
     ++first[grade(share) + 1];
   }
   // By halvings of the share: those that allow least come first. Where the part touches something they find it, and
   // where time runs out before all have been looked at, the others allow more.
   for (int k = 0; k < kGrades; ++k) first[k + 1] += first[k];
-  for (std::size_t i = 0; i < due_count_; ++i) due_[first[grade(unsorted_[i].share)]++] = unsorted_[i];
+  due_.resize(unsorted_.size());
+  for (const Due& due : unsorted_) due_[first[grade(due.share)]++] = due;
 }
 
 void CellFront::settle_due() {
-  const auto begin = due_.begin(), end = begin + static_cast<std::ptrdiff_t>(due_count_);
+  const auto begin = due_.begin(), end = due_.end();
   const auto first = begin + std::min<std::ptrdiff_t>(kFirst, end - begin);
   int looked = 0;
   for (auto it = begin; it != end; ++it) {

@@ -54,15 +54,15 @@ class CellFront {
   /// Calls f(part, a, a_is_face, b, b_is_face) for every cell: nodes of the trees, or faces.
   template <typename F>
   void for_each_cell(F f) const {
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const Node& n = nodes_[slots_[i].node];
+    for (const Slot& slot : slots_) {
+      const Node& n = nodes_[slot.node];
       f(n.part, n.a, n.face_a, n.b, n.face_b);
     }
   }
 
   /// So many cells that none should be spent on what may never come.
   bool crowded() const;
-  int cells() const { return static_cast<int>(count_); }
+  int cells() const { return static_cast<int>(count()); }
   std::size_t bytes() const;
 
  private:
@@ -113,6 +113,7 @@ class CellFront {
   void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
              const CellAnchor& anchor, double expiry, double clear_until);
   void leave(std::uint32_t slot);
+  std::uint32_t count() const { return static_cast<std::uint32_t>(slots_.size()); }
   std::uint32_t allocate();
   void release(std::uint32_t child);
   void raise();
@@ -143,14 +144,13 @@ class CellFront {
   double clearance_ = 0;
 
   std::vector<Node> nodes_;
-  std::uint32_t nodes_used_ = 0, free_nodes_ = kNobody;
+  std::uint32_t free_nodes_ = kNobody;
   std::vector<Slot> slots_;
   std::vector<CellItems> items_;      ///< of each slot
   std::vector<CellCorridor> listed_;  ///< of each slot: that of items_
   std::vector<CellAnchor> anchors_;   ///< of each slot
   std::vector<double> expiry_;        ///< of each slot: travel up to which its cell needs no look
   std::vector<double> clear_until_;   ///< of each slot: the same of what no plane stands for alone
-  std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
   std::uint64_t now_ = 1;
@@ -178,7 +178,6 @@ class CellFront {
   CellCorridor found_corridor_;
   std::array<Vec3, 3> face_;  ///< scratch: corners of the face that hull() made
   std::vector<Due> unsorted_, due_;
-  std::size_t due_count_ = 0;
   std::vector<std::uint32_t> stack_, freed_;
   std::vector<FacePair> blocking_;
   std::uint32_t cursor_ = 0;

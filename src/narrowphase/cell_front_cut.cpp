@@ -30,9 +30,10 @@ std::uint32_t CellFront::allocate() {
     free_nodes_ = nodes_[id].child;
     return id;
   }
-  if (nodes_used_ + 2 > nodes_.size()) return kNobody;
-  nodes_used_ += 2;
-  return nodes_used_ - 2;
+  const std::size_t id = nodes_.size();
+  if (id + 2 > nodes_.capacity()) return kNobody;
+  nodes_.resize(id + 2);
+  return static_cast<std::uint32_t>(id);
 }
 
 void CellFront::release(std::uint32_t child) {
@@ -42,26 +43,33 @@ void CellFront::release(std::uint32_t child) {
 
 void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
                       const CellAnchor& anchor, double expiry, double clear_until) {
-  nodes_[id].slot = count_;
-  slots_[count_] = inherited;
-  slots_[count_].node = id;
-  items_[count_] = items;
-  listed_[count_] = listed;
-  anchors_[count_] = anchor;
-  clear_until_[count_] = clear_until;
-  expiry_[count_++] = expiry;
+  nodes_[id].slot = count();
+  slots_.push_back(inherited);
+  slots_.back().node = id;
+  items_.push_back(items);
+  listed_.push_back(listed);
+  anchors_.push_back(anchor);
+  clear_until_.push_back(clear_until);
+  expiry_.push_back(expiry);
 }
 
 void CellFront::leave(std::uint32_t slot) {
-  const std::uint32_t last = --count_;
-  if (slot == last) return;
-  slots_[slot] = slots_[last];
-  items_[slot] = items_[last];
-  listed_[slot] = listed_[last];
-  anchors_[slot] = anchors_[last];
-  expiry_[slot] = expiry_[last];
-  clear_until_[slot] = clear_until_[last];
-  nodes_[slots_[slot].node].slot = slot;
+  const std::uint32_t last = count() - 1;
+  if (slot != last) {
+    slots_[slot] = slots_[last];
+    items_[slot] = items_[last];
+    listed_[slot] = listed_[last];
+    anchors_[slot] = anchors_[last];
+    expiry_[slot] = expiry_[last];
+    clear_until_[slot] = clear_until_[last];
+    nodes_[slots_[slot].node].slot = slot;
+  }
+  slots_.pop_back();
+  items_.pop_back();
+  listed_.pop_back();
+  anchors_.pop_back();
+  expiry_.pop_back();
+  clear_until_.pop_back();
 }
 
 bool CellFront::split(std::uint32_t id) {
@@ -70,7 +78,7 @@ bool CellFront::split(std::uint32_t id) {
   const PatchNode& whole = of_a ? a_->nodes()[p.a] : fixed_[p.part].tree->nodes()[p.b];
   const PatchTree& tree = of_a ? *a_ : *fixed_[p.part].tree;
   const std::uint32_t children = whole.leaf() ? whole.count : 2;
-  if (count_ + children > capacity_) return false;
+  if (count() + children > capacity_) return false;
   const std::uint32_t child = allocate();
   if (child == kNobody) return false;
   // What was known of the whole holds for its parts.
@@ -108,7 +116,7 @@ void CellFront::raise() {
   const int most = kMinRaises + report_.searches / kSearchesPerRaise;
   int tries = 0;
   for (int looks = std::min<int>(kMaxLooks, cells()); looks > 0 && tries < most; --looks) {
-    if (++cursor_ >= count_) cursor_ = 0;
+    if (++cursor_ >= count()) cursor_ = 0;
     const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
     if (parent == kNobody || nodes_[parent].child != id || !may_raise(parent)) continue;
     if (out_of_work(true)) return;
