@@ -76,7 +76,7 @@ int run_review(const ReviewOptions& o) {
   };
   Recording recording = read_recording(o.recording);
   SceneOptions how;
-  how.progress = [&](std::size_t done, std::size_t total) { progress("reading meshes of part", done, total); };
+  how.progress = [&](std::size_t done, std::size_t total) { progress("reading mesh files", done, total); };
   SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
   std::vector<std::string> inputs = scene.files;
   inputs.insert(inputs.end(), {o.recording, recording_info_path(o.recording)});

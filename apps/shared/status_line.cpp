@@ -31,7 +31,7 @@ void StatusLine::show(const std::string& what, std::size_t done, std::size_t tot
 
 SceneFile load_with_progress(const std::string& path, SceneOptions options) {
   StatusLine status;
-  options.progress = [&](std::size_t done, std::size_t total) { status.show("reading meshes of part", done, total); };
+  options.progress = [&](std::size_t done, std::size_t total) { status.show("reading mesh files", done, total); };
   return load_scene(path, options);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/parallel_for.hpp"
 #include "loop/initial_separation.hpp"
 #include "loop/scene_parts.hpp"
 #include "narrowphase/fcl_motion_check.hpp"
@@ -23,12 +24,38 @@ constexpr double kMaxShift = 3;
 // Of the tick's budget, what a look at a pair that was not free at the start may take.
 constexpr double kLookShare = 0.25;
 
+/// What a scene's meshes are turned into, each of them once, on all processors.
+struct MeshStructures {
+  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
+  std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees;
+
+  MeshStructures(const std::vector<Part>& parts, bool with_trees) {
+    std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+    for (const Part& p : parts)
+      if (surfaces.emplace(p.mesh.get(), nullptr).second) meshes.push_back(p.mesh);
+    // The longest jobs first.
+    std::stable_sort(meshes.begin(), meshes.end(),
+                     [](const auto& p, const auto& q) { return p->triangles.size() > q->triangles.size(); });
+    for (const auto& mesh : meshes)
+      if (with_trees) trees[mesh.get()];
+    const auto n = static_cast<int>(meshes.size());
+    const auto make = [&](int i) {
+      const auto& mesh = meshes[static_cast<std::size_t>(i % n)];
+      if (with_trees && i < n)
+        trees.at(mesh.get()) = cached_patch_tree(mesh);
+      else
+        surfaces.at(mesh.get()) = std::make_shared<Surface>(mesh);
+    };
+    parallel_for(with_trees ? 2 * n : n, 0, make, {});
+  }
+};
+
 /// Meshes and poses of the fixed parts, and of what stands in for some of them.
 struct FixedParts {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;
   std::vector<Pose> poses;
   std::vector<FixedSurface> surfaces;
-  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> known;
+  std::map<const TriangleMesh*, std::shared_ptr<const Surface>>& known;
 
   void add(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& pose, PartId id) {
     auto& surface = known[mesh.get()];
@@ -55,11 +82,9 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   const SceneParts parts(scene);
   box_ = bounding_box(*parts.held->mesh);
   // Held here so that whoever needs a hierarchy while the scene is built finds it made.
-  std::vector<std::shared_ptr<const PatchTree>> trees;
-  if (settings.narrowphase != NarrowPhase::fcl)
-    for (const Part& p : scene.parts) trees.push_back(cached_patch_tree(p.mesh));
+  MeshStructures made(scene.parts, settings.narrowphase != NarrowPhase::fcl);
   start = InitialContacts(scene, settings);
-  FixedParts fixed;
+  FixedParts fixed{{}, {}, {}, made.surfaces};
   for (std::size_t i = 0; i < parts.fixed.size(); ++i) {
     const Part& p = *parts.fixed[i];
     fixed.add(p.mesh, p.pose, parts.fixed_id[i]);
@@ -71,7 +96,7 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   radius = radius_about(*parts.held->mesh, mass.center);
   reach = *settings.l_min + 2 * kReachShare * radius;
   check = make_check(*parts.held, fixed, settings, mass.center, radius);
-  contacts = std::make_unique<ContactSet>(std::make_shared<Surface>(parts.held->mesh), std::move(fixed.surfaces),
+  contacts = std::make_unique<ContactSet>(made.surfaces.at(parts.held->mesh.get()), std::move(fixed.surfaces),
                                           mass.center, kMaxLimits);
   X = initial_separation(*this, mass, parts.held->pose, kMaxShift * (settings.touch_tolerance + 2 * kGapFloor));
   double shift = 0;

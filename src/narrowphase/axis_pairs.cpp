@@ -6,6 +6,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "core/parallel_for.hpp"
 #include "curve/axis_search.hpp"
 
 namespace tegotae {
@@ -62,6 +63,13 @@ std::shared_ptr<const ProfileTree> profile_about(const std::shared_ptr<const Pat
                     [&] { return ProfileTree(*tree, ScrewFrame::of(axis, rise)); });
 }
 
+/// Two profiles of so many triangles take longer to build than a thread takes to begin.
+constexpr std::size_t kWorthThreads = 10000;
+
+bool worth_threads(const PatchTree& a, const PatchTree& b) {
+  return std::min(a.order().size(), b.order().size()) >= kWorthThreads;
+}
+
 bool mate(const ScrewAxis& a, const ScrewAxis& b) {
   return std::abs(a.rise - b.rise) <= kSameRise * std::min(std::abs(a.rise), std::abs(b.rise));
 }
@@ -102,7 +110,14 @@ const std::vector<AxisPair>* AxisPairing::with(const std::shared_ptr<const Patch
   });
   for (const Candidate& c : candidates) {
     if (fixed.pairs.size() == kMaxAxisPairs) break;
-    AxisPair pair{profile_about(known_->held, *c.a, c.b->rise), profile_about(b, *c.b, c.b->rise)};
+    AxisPair pair;
+    const auto make = [&](int side) {
+      if (side == 0)
+        pair.a = profile_about(known_->held, *c.a, c.b->rise);
+      else
+        pair.b = profile_about(b, *c.b, c.b->rise);
+    };
+    parallel_for(2, worth_threads(*known_->held, *b) ? 2 : 1, make, {});
     if (pair.a->boxes() > 0 && pair.b->boxes() > 0) fixed.pairs.push_back(std::move(pair));
   }
   return &fixed.pairs;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "loop/contact_loop.hpp"
 #include "loop/held_weight.hpp"
 #include "loop/scene_parts.hpp"
+#include "scene_file/mesh_files.hpp"
 #include "scene_file/scene_friction.hpp"
 #include "scene_file/toml_table.hpp"
 #include "tegotae/core/error.hpp"
@@ -88,13 +88,12 @@ std::optional<Color> read_color(const TomlTable& t) {
 void read_parts(const TomlTable& top, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene,
                 std::vector<std::string>& files) {
   const double default_unit = read_unit(top, "m");
-  std::map<std::pair<std::string, double>, std::shared_ptr<const TriangleMesh>> meshes;
+  MeshFiles meshes;
   std::set<std::string> names;
   std::string held;
   const std::vector<TomlTable> tables = top.tables(
       "part", {"name", "mesh", "unit", "held", "position", "orientation", "rpy_deg", "path", "color", "mass"});
   for (const TomlTable& t : tables) {
-    if (options.progress) options.progress(scene.parts.size(), tables.size());
     Part part;
     part.name = t.text("name");
     if (!names.insert(part.name).second) t.fail("name", "another part is named " + part.name);
@@ -107,10 +106,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     part.color = read_color(t);
     if (t.has("mass")) part.mass = t.positive("mass", 0);
     const double unit = t.has("unit") ? read_unit(t, "m") : default_unit;
-    const std::string file = file_under(t, "mesh", folder, files);
-    auto& mesh = meshes[{file, unit}];
-    if (!mesh) about(t, "mesh", [&] { mesh = std::make_shared<TriangleMesh>(options.load(file, unit)); });
-    part.mesh = mesh;
+    meshes.add(scene.parts.size(), t, file_under(t, "mesh", folder, files), unit);
     scene.parts.push_back(std::move(part));
   }
   if (scene.parts.empty()) top.fail("part", "the scene has no [[part]]");
@@ -118,6 +114,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     top.fail("part", "no part is named " + options.hold + " (there are " + name_list(part_names(scene)) + ")");
   if (held.empty() && options.held_needed)
     top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME");
+  meshes.read(options, scene.parts);
 }
 
 std::string one_of(const TomlTable& t, const char* key, const std::string& otherwise,

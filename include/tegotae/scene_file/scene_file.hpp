@@ -32,9 +32,9 @@ using MeshLoader = std::function<TriangleMesh(const std::string& path, double un
 struct SceneOptions {
   std::string hold;         ///< name of the part to hold, instead of the file's; empty: the file's
   bool held_needed = true;  ///< false: a file that holds no part is read too
-  /// Called before each mesh is read: how many are, of how many.
+  /// Called before the first mesh file is read and after each: how many are, of how many. One call at a time.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  MeshLoader load = load_mesh;  ///< reads the meshes
+  MeshLoader load = load_mesh;  ///< reads the meshes; called in several threads at once
 };
 
 /// Reads a scene file (TOML, see docs/scene-file.md) and the meshes it names; parts with the same file and unit share
