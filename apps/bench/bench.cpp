@@ -54,7 +54,7 @@ FrictionFigures measure_friction(const BenchScene& scene, double mu, int rounds)
   return f;
 }
 
-SceneFigures measure_scene(const std::string& name, const BenchOptions& options, const apps::StatusLine& progress) {
+SceneFigures measure_scene(const std::string& name, const BenchOptions& options, apps::StatusLine& progress) {
   const int jams = options.quick ? kQuickJams : kJams;
   progress.say(name + ": building");
   BenchScene scene = make_scene(name, jams);
@@ -114,7 +114,7 @@ int run_bench(const BenchOptions& options) {
   Results results;
   bool free = true;
   {
-    const apps::StatusLine progress;
+    apps::StatusLine progress;
     for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) {
       results.rows.push_back(measure_scene(name, options, progress));
       const SceneFigures& row = results.rows.back();

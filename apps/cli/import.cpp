@@ -6,9 +6,11 @@
 #include <functional>
 #include <iostream>
 
+#include "cli/open_scene.hpp"
 #include "cli/scene_writer.hpp"
 #include "cli/watched_child.hpp"
 #include "core/name_list.hpp"
+#include "shared/format.hpp"
 #include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -25,6 +27,30 @@ void require_part(const Assembly& assembly, const ImportOptions& options) {
   std::vector<std::string> names;
   for (const AssemblyPart& part : parts) names.push_back(part.name);
   throw Error(options.file + ": no part is named " + options.hold + " (there are " + name_list(names) + ")");
+}
+
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + ' ' + (n == 1 ? one : many);
+}
+
+/// What was made, and what to do with it. The size shows a wrong unit at once.
+std::string result_text(const Assembly& assembly, const std::string& scene, bool hold_one) {
+  std::size_t triangles = 0;
+  Eigen::AlignedBox3d box;
+  for (const AssemblyPart& part : assembly.parts) {
+    const TriangleMesh& mesh = *assembly.shapes[part.shape];
+    triangles += mesh.triangles.size();
+    for (const Vec3& p : mesh.vertices) box.extend(part.pose * p);
+  }
+  const Vec3 mm = 1e3 * box.sizes();
+  std::string text = scene + ": " + counted(assembly.parts.size(), "part", "parts") + ", " +
+                     counted(assembly.shapes.size(), "mesh", "meshes") + ", " +
+                     counted(triangles, "triangle", "triangles") +
+                     format(", %.4g x %.4g x %.4g mm\n", mm.x(), mm.y(), mm.z());
+  text += "look at it and take parts with `tegotae view " + scene + "`\n";
+  if (hold_one)
+    text += "no part is held: `tegotae run " + scene + " --hold NAME` takes one, or give it held = true in the file\n";
+  return text;
 }
 
 int import_here(const ImportOptions& options, const std::function<void(const std::string&)>& at) {
@@ -45,14 +71,7 @@ int import_here(const ImportOptions& options, const std::function<void(const std
   }
   for (const std::string& note : assembly.notes) std::cerr << "tegotae: note: " << note << "\n";
   if (options.quiet) return kDone;
-  std::size_t triangles = 0;
-  for (const AssemblyPart& part : assembly.parts) triangles += assembly.shapes[part.shape]->triangles.size();
-  std::cout << scene.string() << ": " << assembly.parts.size() << " part" << (assembly.parts.size() == 1 ? "" : "s")
-            << ", " << assembly.shapes.size() << " mesh" << (assembly.shapes.size() == 1 ? "" : "es") << ", "
-            << triangles << " triangles\n";
-  if (options.hold.empty())
-    std::cout << "no part is held yet: run it with `tegotae run " << scene.string()
-              << " --hold NAME`, or give a part held = true\n";
+  std::cout << result_text(assembly, scene.string(), options.hold.empty());
   return kDone;
 }
 
@@ -66,14 +85,11 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
       ->type_name("DIR");
   import->add_option("--hold", options.hold, "Name of the part to hold")->type_name("NAME");
   import->add_flag("--split", options.assembly.split, "Make a part of every connected piece of a surface");
-  import
-      ->add_option("--unit", options.assembly.unit, "Unit of a file that does not tell it: m (default), cm, mm, um, in")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
-      ->type_name("UNIT");
+  add_unit_option(*import, options);
   add_length_option(*import, "--chord", options.assembly.chord,
                     "STEP: how far facets may be from curved faces that mate (5um)");
   add_length_option(*import, "--coarse-chord", options.assembly.coarse_chord,
-                    "STEP: how far they may be from other curved faces (50um)");
+                    "STEP: how far they may be from other curved faces (50um; less in a small part alone in its file)");
   import->add_option("--seconds", options.seconds, "How long reading, or the facets of one part, may take (600)")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("S");

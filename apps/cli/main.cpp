@@ -1,5 +1,4 @@
 // tegotae: runs scenes, imports assemblies, looks at part files, measures itself.
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -7,13 +6,14 @@
 #include "bench/scenes.hpp"
 #include "cli/check.hpp"
 #include "cli/import.hpp"
+#include "cli/run_command.hpp"
 #include "cli/view_command.hpp"
 #include "experiments/experiments.hpp"
 #include "plan/plan_command.hpp"
 #include "review/review_command.hpp"
 #include "review/script_report.hpp"
+#include "shared/guarded_main.hpp"
 #include "shared/length_option.hpp"
-#include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "study/study_command.hpp"
 #include "study/try_command.hpp"
@@ -24,7 +24,13 @@ using namespace tegotae;
 using namespace tegotae::apps;
 
 namespace {
-constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+
+/// All of them can take long.
+void add_progress(CLI::App& command) {
+  const auto commands = command.get_subcommands([](CLI::App*) { return true; });
+  for (CLI::App* c : commands) add_progress(*c);
+  if (commands.empty()) add_progress_option(command);
+}
 
 }  // namespace
 
@@ -32,22 +38,8 @@ int main(int argc, char** argv) {
   CLI::App app("Haptic rendering of rigid parts that never pass through each other.", "tegotae");
   app.require_subcommand(1);
 
-  RunOptions options;
-  std::string scene;
-  CLI::App* run = app.add_subcommand("run", "Run a scene: its pen, servo and contact loop");
-  run->add_option("SCENE", scene, "Scene file (TOML)")->required();
-  std::string hold;
-  run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
-  std::string script;
-  run->add_option("--script", script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
-  add_run_options(*run, options);
-  run->add_option("--seconds", options.seconds, "How long to run (default: to the end of the script)")
-      ->check([](const std::string& text) -> std::string {
-        double value = 0;  // CLI::PositiveNumber lets nan pass
-        if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kLongestRun) return "";
-        return "must be a positive number, at most a million";
-      })
-      ->type_name("S");
+  RunCommand run_options;
+  CLI::App* run = add_run(app, run_options);
 
   std::string recording, recorded_scene, html;
   PageOptions replay_page;
@@ -123,13 +115,15 @@ int main(int argc, char** argv) {
       ->type_name("N");
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 
+  add_progress(app);
+
   return guarded_main(app, argc, argv, [&] {
     set_hierarchy_cache(default_cache_folder());
     const MeshLoader load = [trusted](const std::string& mesh, double unit) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };
     check_options.load = load;
-    options.review = view_options.run.review = review::script_report;
+    run_options.run.review = view_options.run.review = review::script_report;
     if (check->parsed()) return check_files(check_options);
     if (view->parsed()) return view_file(view_options, load);
     if (measure->parsed()) return bench::run_bench(bench_options);
@@ -140,13 +134,6 @@ int main(int argc, char** argv) {
     if (study->parsed()) return study::run_study(study_options);
     if (plan->parsed()) return plan::run_plan(plan_options);
     if (import->parsed()) return import_file(import_options);
-    const SceneOptions how{hold, true, {}, load};
-    SceneFile loaded = options.json ? load_scene(scene, how) : load_with_progress(scene, how);
-    print_notes(loaded.scene);
-    if (!script.empty()) {
-      loaded.script = read_script(script);
-      loaded.files.push_back(script);
-    }
-    return run_and_report(std::move(loaded), options, scene);
+    return run_scene(run_options, load);
   });
 }

@@ -3,16 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "cli/import.hpp"
+#include "cli/open_scene.hpp"
 #include "shared/run_options.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::apps {
 
 struct ViewOptions {
-  std::string file;
-  std::string hold;  ///< name of the part to hold; empty: the scene's, or the smallest
-  ImportOptions import;
+  OpenOptions open;
   RunOptions run;
 };
 

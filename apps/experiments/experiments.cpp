@@ -59,7 +59,7 @@ int run(const Options& options) {
     Outcome outcome;
     unexplained_lag_ticks() = 0;
     {
-      const apps::StatusLine status;
+      apps::StatusLine status;
       outcome = e.run({options, status});
     }
     const auto unexplained = static_cast<double>(unexplained_lag_ticks());

@@ -11,7 +11,7 @@ namespace tegotae::experiments {
 /// What an experiment needs to do its work.
 struct Work {
   const Options& options;
-  const apps::StatusLine& status;
+  apps::StatusLine& status;
 
   /// The number of seeds: what the user said, or `full`, or `quick` for a quick look.
   int seeds(int full, int quick) const { return options.seeds > 0 ? options.seeds : options.quick ? quick : full; }

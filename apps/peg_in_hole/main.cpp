@@ -4,6 +4,7 @@
 
 #include "peg_in_hole/peg_scene.hpp"
 #include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
 
 using namespace tegotae;
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("R");
   add_run_options(app, options);
+  add_progress_option(app);
   app.add_option("--scene-out", folder,
                  "Keep the scene, its meshes and its script in a folder (with --record: FILE.scene)")
       ->type_name("DIR");
@@ -31,6 +33,6 @@ int main(int argc, char** argv) {
         std::filesystem::is_directory(std::filesystem::absolute(options.record).parent_path()))
       folder = options.record + ".scene";
     const SceneFile file = folder.empty() ? make_peg_scene(ratio) : load_scene(write_peg_scene(ratio, folder));
-    return run_and_report(file, options, "peg in hole, " + ratio_text(ratio), -kStartHeight);
+    return run_and_report(file, options, "peg in hole, " + ratio_text(ratio));
   });
 }

@@ -1,8 +1,13 @@
 #include "shared/progress_line.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+
+#include "shared/format.hpp"
+#include "shared/status_line.hpp"
 
 namespace tegotae::apps {
 
@@ -11,13 +16,14 @@ namespace {
 constexpr std::chrono::milliseconds kPeriod(100);
 }  // namespace
 
-ProgressLine::ProgressLine(const RunProgress& progress, double depth_offset, bool show)
-    : progress_(progress), depth_offset_(depth_offset) {
-  if (!show) return;
-  thread_ = std::thread([this] {
+ProgressLine::ProgressLine(const RunProgress& progress, bool show)
+    : progress_(progress), terminal_(show && isatty(STDOUT_FILENO) != 0) {
+  if (!terminal_ && !progress_in_pipes()) return;
+  const auto period = terminal_ ? std::chrono::milliseconds(kPeriod) : std::chrono::milliseconds(kPipePeriod);
+  thread_ = std::thread([this, period] {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!wake_.wait_for(lock, kPeriod, [this] { return ended_; })) print();
-    std::fputs("\r\033[K", stdout);
+    while (!wake_.wait_for(lock, period, [this] { return ended_; })) print();
+    if (terminal_) std::fputs("\r\033[K", stdout);
     std::fflush(stdout);
   });
 }
@@ -33,21 +39,24 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::print() const {
-  if (const double checked = progress_.checked.load(); checked >= 0) {
-    std::printf("\r\033[Kasking FCL about the poses: %.0f %%", 100 * checked);
-    std::fflush(stdout);
-    return;
-  }
+  FILE* const to = terminal_ ? stdout : stderr;
+  std::fprintf(to, terminal_ ? "\r\033[K%s" : "%s\n", text().c_str());
+  std::fflush(to);
+}
+
+std::string ProgressLine::text() const {
+  if (const double checked = progress_.checked.load(); checked >= 0)
+    return format("asking FCL about the poses: %.0f %%", 100 * checked);
   const double duration = progress_.duration.load();
-  std::printf("\r\033[K%5.1f ", progress_.t.load());
-  if (std::isfinite(duration)) std::printf("/ %.1f ", duration);
-  std::printf("s   depth %6.1f mm   %3d contacts   %5.2f N", 1e3 * (progress_.depth.load() + depth_offset_),
-              progress_.contacts.load(), progress_.force.load());
+  std::string text = format("%5.1f ", progress_.t.load());
+  if (std::isfinite(duration)) text += format("/ %.1f ", duration);
+  text += format("s   depth %6.1f mm   %3d contacts   %5.2f N", 1e3 * progress_.depth.load(), progress_.contacts.load(),
+                 progress_.force.load());
   const LagReason lag = progress_.lag_reason.load();
-  if (lag != LagReason::none && lag != LagReason::contact) std::printf("   held back: %s", to_string(lag));
-  if (progress_.held.load()) std::printf("   held fast in its fit");
-  if (!progress_.device.load()) std::printf("   no device, waiting");
-  std::fflush(stdout);
+  if (lag != LagReason::none && lag != LagReason::contact) text += std::string("   held back: ") + to_string(lag);
+  if (progress_.held.load()) text += "   held fast in its fit";
+  if (!progress_.device.load()) text += "   no device, waiting";
+  return text;
 }
 
 }  // namespace tegotae::apps

@@ -58,7 +58,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   page.no_browser->needs(view);
 }
 
-int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset) {
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal) {
   if (!options.resolver.empty()) file.scene.contact.resolver = resolver_kind(options.resolver);
   RunProgress progress;
   RunSettings settings;
@@ -84,8 +84,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
 
   RunSummary summary;
   {
-    const bool show = !options.json && !options.view && isatty(STDOUT_FILENO) != 0;
-    ProgressLine line(progress, depth_offset, show);
+    ProgressLine line(progress, !options.json && !options.view);
     summary = options.view
                   ? view::run_viewed(
                         file, settings, page_address(options.page), interrupted,
@@ -93,7 +92,6 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
                         options.review)
                   : run_session(file, settings);
   }
-  summary.depth_m += depth_offset;
   const Blocker blocker =
       watch.find(file.scene);  // of a run that was looked at nobody knows: its scene may have changed
   if (options.json)

@@ -52,7 +52,7 @@ bool announce_page(const view::Server& server, const PageOptions& options, bool 
 void add_run_options(CLI::App& app, RunOptions& options);
 
 /// Runs the scene with a progress line (on a terminal) and Ctrl-C ending the run with its recording kept, and reports.
-/// `goal` says in a few words what the run is to do; `depth_offset` (m) is added to the depth.
-int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal, double depth_offset = 0);
+/// `goal` says in a few words what the run is to do.
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal);
 
 }  // namespace tegotae::apps

@@ -31,9 +31,10 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   const bool overlap = c.kind == ClashKind::overlap;
   std::string text = format("  %-12s ", overlap ? "overlapping" : "touching") + scene.parts[pair.part].name;
   text += !c.depth ? ", open surfaces cross" : c.gap > 0 ? ", gap " + length(c.gap) : ", depth " + length(*c.depth);
-  if (pair.state == InitialContactState::filtered) return text + "; SUSPENDED: nothing keeps the two apart\n";
+  if (pair.state == InitialContactState::filtered)
+    return text + "; SUSPENDED: until they have come free, nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; in contact with it taken " + length(pair.relief) + " smaller\n";
+    return text + "; until they have come free, contact is felt " + length(pair.relief) + " inside its surface\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
@@ -70,8 +71,8 @@ std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
   for (const InitialContact& pair : summary.start.pairs) {
     if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
     text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
-            " where its pen went " + length(h.pen) + "; there is no room, even with that part taken " +
-            length(pair.relief) + " smaller\n";
+            " where its pen went " + length(h.pen) + "; it does not fit, even with contact felt " +
+            length(pair.relief) + " inside that part's surface\n";
   }
   return text;
 }

@@ -6,9 +6,24 @@
 
 #include "tegotae/scene_file/scene_file.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace tegotae::apps {
 
-/// A line on stderr that tells how far something has come, on a terminal only. Gone when the object is.
+/// Adds --progress to a command: what is under way is also written into pipes (say_progress_in_pipes).
+void add_progress_option(CLI::App& command);
+
+/// Lets this process report what is under way also where stderr is no terminal: a line at most every two seconds.
+/// Call it before there are other threads.
+void say_progress_in_pipes();
+/// Whether it does.
+bool progress_in_pipes();
+constexpr std::chrono::seconds kPipePeriod(2);
+
+/// A line on stderr that tells how far something has come: on a terminal, where it is gone when the object is, and
+/// after say_progress_in_pipes().
 class StatusLine {
  public:
   StatusLine();
@@ -16,12 +31,14 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// Shows `what` at once.
-  void say(const std::string& what) const;
+  /// Shows `what`, on a terminal at once.
+  void say(const std::string& what);
   /// `done` of `total` (0: not known); shown ten times a second at most.
   void show(const std::string& what, std::size_t done, std::size_t total);
 
  private:
+  void write(const std::string& what);
+
   const bool terminal_;
   std::string last_what_;
   std::chrono::steady_clock::time_point next_;

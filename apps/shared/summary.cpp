@@ -85,7 +85,9 @@ std::string json_line(const RunSummary& s, const SceneFile& file, const Blocker&
 
 std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file, const std::string& goal,
                          const Blocker& blocker, bool interrupted) {
-  const std::string verdict = s.completed               ? "done"
+  const bool intersects = s.penetrating > 0 && file.scene.contact.resolver != ResolverKind::penalty;
+  const std::string verdict = intersects                ? "FAILED: poses intersect another part"
+                              : s.completed             ? "done"
                               : !options.device.empty() ? "ended"
                               : interrupted             ? "interrupted"
                               : options.seconds > 0     ? "cut short"

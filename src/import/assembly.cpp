@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
+#include "import/file_check.hpp"
 #include "import/part_file.hpp"
 #include "import/read_parts.hpp"
 #include "import/reading.hpp"
 #include "import/utf8.hpp"
 #include "mesh/components.hpp"
+#include "tegotae/core/error.hpp"
 #include "tegotae/import/load.hpp"
 
 namespace tegotae {
@@ -107,14 +110,49 @@ void name_parts(Assembly& assembly) {
   }
 }
 
+/// 3MF has its unit, or the one that the format says; glTF says m, and many programs write something else.
+bool says_its_unit(const std::string& path) {
+  return is_step(path) || lower_extension(path) == ".3mf";
+}
+
+void check_unit(const std::string& path, const AssemblyOptions& options) {
+  if (!options.unit) return;
+  unit_length(*options.unit);
+  if (says_its_unit(path)) throw Error(path + ": the file says its unit itself; give none");
+}
+
+/// Diagonal of the box around all parts, m.
+double diagonal(const Assembly& assembly) {
+  Eigen::AlignedBox3d box;
+  for (const AssemblyPart& part : assembly.parts)
+    for (const Vec3& p : assembly.shapes[part.shape]->vertices) box.extend(part.pose * p);
+  return box.diagonal().norm();
+}
+
+/// A mock-up that a hand moves parts of is less than this across, m.
+constexpr double kPlausible = 20;
+
+/// Asks for the unit where a file is absurdly large without one.
+void require_plausible(const std::string& path, const Assembly& assembly, const AssemblyOptions& options) {
+  if (options.unit || says_its_unit(path)) return;
+  const double size = diagonal(assembly);
+  if (size <= kPlausible) return;
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      ": %.4g m across if its lengths are in m; give their unit: --unit mm makes it %.4g mm, --unit m keeps it", size,
+      size);
+  throw Error(path + text);
+}
+
 }  // namespace
 
 Assembly read_assembly(const std::string& path, const AssemblyOptions& options) {
-  unit_length(options.unit);
   for (const double chord : {options.chord, options.coarse_chord}) {
     if (!(chord > 0) || !std::isfinite(chord)) throw Error(path + ": the chord error must be a positive length");
   }
   return reading(path, [&] {
+    check_unit(path, options);
     Assembly assembly = is_step(path)        ? read_step(path, options)
                         : is_part_file(path) ? read_tree(path, options)
                                              : read_flat(path, options);
@@ -124,6 +162,7 @@ Assembly read_assembly(const std::string& path, const AssemblyOptions& options) 
     name_parts(assembly);
     for (std::string& note : assembly.notes) note = printable(note);
     if (assembly.parts.empty()) throw Error(path + ": no parts with triangles");
+    require_plausible(path, assembly, options);
     return assembly;
   });
 }

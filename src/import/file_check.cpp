@@ -1,6 +1,7 @@
 #include "import/file_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -47,6 +48,13 @@ std::string lower_extension(const std::string& path) {
   std::string e = std::filesystem::path(path).extension().string();
   std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return e;
+}
+
+bool is_file_of_parts(const std::string& path) {
+  static constexpr std::array<const char*, 9> kEndings = {".stl", ".obj", ".ply", ".off", ".gltf",
+                                                          ".glb", ".3mf", ".stp", ".step"};
+  const std::string ending = lower_extension(path);
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
 std::string read_mesh_bytes(const std::string& path) {

@@ -17,5 +17,7 @@ std::string read_bytes(const std::string& path);
 
 /// The extension of `path` with its dot, in small letters.
 std::string lower_extension(const std::string& path);
+/// Whether a file holds parts and is no scene, by the end of its name.
+bool is_file_of_parts(const std::string& path);
 
 }  // namespace tegotae

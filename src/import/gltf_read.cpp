@@ -7,6 +7,7 @@
 
 #include "import/file_check.hpp"
 #include "import/gltf_data.hpp"
+#include "import/made_up_name.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -32,6 +33,13 @@ std::optional<Color> color_of(const cgltf_material* material) {
 
 std::string text_of(const char* name) {
   return name == nullptr ? "" : name;
+}
+
+/// The node's; where a program made that up, the mesh's.
+std::string name_of(const cgltf_node& node) {
+  const std::string own = text_of(node.name), mesh = text_of(node.mesh->name);
+  const auto said = [](const std::string& name) { return !is_made_up(name, {"node", "object", "mesh", "group"}); };
+  return said(own) || (!said(mesh) && !own.empty()) ? own : mesh;
 }
 
 class GltfReader {
@@ -62,7 +70,7 @@ class GltfReader {
 
   void add_parts(const cgltf_node& node, const Matrix34& X, const std::vector<std::string>& groups) {
     PartFile::Placed part;
-    part.name = node.name != nullptr ? node.name : text_of(node.mesh->name);
+    part.name = name_of(node);
     part.path = groups;
     part.mesh = mesh_of(node);
     const cgltf_primitive* largest = nullptr;

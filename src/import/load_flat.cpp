@@ -54,12 +54,12 @@ void append_groups(const aiScene& scene, const aiNode& node, const Matrix34& par
 /// One part; or, split, one for every piece, called like the group of its first face.
 Assembly read_pieces(const std::string& path, const aiScene& scene, const AssemblyOptions& options) {
   Assembly assembly;
-  assembly.unit = options.unit;
+  assembly.unit = options.unit.value_or("m");
   const std::string stem = std::filesystem::path(path).stem().string();
   TriangleMesh mesh;
   mesh.name = path;
   std::vector<Group> groups;
-  append_groups(scene, *scene.mRootNode, Matrix34::Identity(), unit_length(options.unit), mesh, groups);
+  append_groups(scene, *scene.mRootNode, Matrix34::Identity(), unit_length(assembly.unit), mesh, groups);
   const TriangleMesh welded = usable(std::move(mesh), path, stem);
   std::vector<std::uint32_t> first_face = {0};
   std::vector<TriangleMesh> pieces;

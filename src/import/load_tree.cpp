@@ -38,6 +38,7 @@ class TreeReader {
       : path_(path), file_(std::move(file)), options_(options), known_(file_.meshes.size()) {}
 
   Assembly read() {
+    if (options_.unit) file_.unit = *options_.unit;
     assembly_.unit = file_.unit;
     assembly_.notes = std::move(file_.notes);
     for (const PartFile::Placed& part : file_.parts) add(part);

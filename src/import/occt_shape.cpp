@@ -90,14 +90,14 @@ class Joiner {
     return out;
   }
 
-  std::size_t missing() const { return missing_; }
+  std::vector<std::size_t> missing() const { return missing_; }
 
  private:
   void add(const TopoDS_Face& face, std::uint32_t number) {
     TopLoc_Location location;
     const Handle(Poly_Triangulation)& mesh = BRep_Tool::Triangulation(face, location);
     if (mesh.IsNull() || mesh->NbTriangles() == 0) {
-      ++missing_;
+      missing_.push_back(number);
       return;
     }
     const auto base = static_cast<std::uint32_t>(nodes_.size());
@@ -161,7 +161,7 @@ class Joiner {
   std::vector<std::uint32_t> face_of_;
   TopTools_DataMapOfShapeInteger edges_, vertices_;  // same place in space, whatever the orientation
   std::vector<std::vector<std::uint32_t>> lines_;
-  std::size_t missing_ = 0;
+  std::vector<std::size_t> missing_;
 };
 
 }  // namespace
@@ -231,7 +231,7 @@ void tessellate(const TopoDS_Shape& shape, double chord) {
   BRepMesh_IncrementalMesh(shape, settings);
 }
 
-TessellatedShape joined(const std::vector<TopoDS_Face>& faces, std::size_t& missing) {
+TessellatedShape joined(const std::vector<TopoDS_Face>& faces, std::vector<std::size_t>& missing) {
   Joiner joiner;
   TessellatedShape out = joiner.join(faces);
   missing = joiner.missing();

@@ -21,7 +21,7 @@ CadFace describe(const TopoDS_Face& face);
 /// triangles, and their edges, keep them.
 void tessellate(const TopoDS_Shape& shape, double chord);
 /// The triangles of tessellated faces as one mesh, with common nodes where the faces share edges. `missing` becomes the
-/// number of faces without triangles.
-TessellatedShape joined(const std::vector<TopoDS_Face>& faces, std::size_t& missing);
+/// indices of the faces without triangles.
+TessellatedShape joined(const std::vector<TopoDS_Face>& faces, std::vector<std::size_t>& missing);
 
 }  // namespace tegotae

@@ -22,9 +22,12 @@
 #include <cstdio>
 #include <gp_Quaternion.hxx>
 #include <map>
-#include <set>
+#include <optional>
 #include <sstream>
 
+#include "import/face_notes.hpp"
+#include "import/made_up_name.hpp"
+#include "import/mating_notes.hpp"
 #include "import/occt_check.hpp"
 #include "import/occt_shape.hpp"
 #include "import/occt_triangles.hpp"
@@ -57,13 +60,6 @@ std::string name_of(const TDF_Label& label) {
   return bytes;
 }
 
-/// Whether a name was made by a program for an instance that nobody named.
-bool is_made_up(const std::string& name) {
-  if (name.empty() || name.rfind("=>", 0) == 0) return true;
-  const std::size_t digits = name.rfind("NAUO", 0) == 0 ? 4 : 0;
-  return name.find_first_not_of("0123456789", digits) == std::string::npos;
-}
-
 /// Keeps OpenCASCADE from printing for as long as it lives.
 class Quiet {
  public:
@@ -88,6 +84,9 @@ double rounding_margin(const std::vector<Vec3>& exact, const std::vector<Vec3>& 
   const double largest = far ? 0.5 * box.sizes().maxCoeff() : box.max().cwiseMax(-box.min()).maxCoeff();
   return std::ldexp(largest, -23);
 }
+
+// Facets of a part that nothing mates with in its file are so many times smaller than the part: 50 um for 200 mm.
+constexpr double kChordsAcross = 4000;
 
 class StepReader {
  public:
@@ -126,6 +125,7 @@ class StepReader {
     std::vector<bool> fine;
     std::optional<Color> color;
     bool tessellated = false;
+    double coarse = 0;  // m, chord of the faces that are not fine
   };
 
   void open() {
@@ -150,6 +150,7 @@ class StepReader {
                                          : reader.ChangeReader().ReadStream(path_.c_str(), text) == IFSelect_RetDone;
     if (!done) throw Error(path_ + ": damaged: not a readable STEP file");
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
+    face_names_.emplace(session);
     const bool has_colors = check_entities(path_, session);
     reader.SetColorMode(has_colors);
     if (!has_colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
@@ -164,7 +165,7 @@ class StepReader {
            std::optional<Color> color) {
     if (const auto own = color_of(use)) color = own;
     std::string name = name_of(use);
-    if (is_made_up(name)) name = name_of(what);
+    if (name.rfind("=>", 0) == 0 || is_made_up(name, {"nauo"})) name = name_of(what);
     if (!XCAFDoc_ShapeTool::IsAssembly(what)) {
       add_leaf(what, name, where, groups, color);
       return;
@@ -227,47 +228,42 @@ class StepReader {
     return largest == areas.end() || shape.IsNull() ? std::nullopt : std::optional<Color>(largest->first);
   }
 
-  /// Finds the faces that get the fine tessellation: those that mate, or all of a part alone in its file.
+  /// Finds the faces that get the fine tessellation: those that mate. Of a part alone in its file nobody knows what it
+  /// will meet: fits are round as a rule, and facets of cylinders and cones are cheap.
   void pair_faces() {
     std::vector<std::vector<CadFace>> faces;
+    const bool alone = assembly_.parts.size() == 1;
     for (Leaf& leaf : leaves_) {
       for (const TopoDS_Face& face : leaf.faces) leaf.cad.push_back(describe(face));
-      leaf.fine.assign(leaf.faces.size(), assembly_.parts.size() == 1);
+      for (const CadFace& face : leaf.cad)
+        leaf.fine.push_back(alone && (face.kind == FaceKind::cylinder || face.kind == FaceKind::cone));
+      leaf.coarse = std::max(options_.chord, options_.coarse_chord);
+      if (alone) leaf.coarse = std::clamp(size_of(leaf) / kChordsAcross, options_.chord, leaf.coarse);
       faces.push_back(leaf.cad);
     }
-    std::set<std::string> told;
+    MatingNotes mating;
     for (const FacePairing& pair : mating_faces(faces, assembly_.parts)) {
       const AssemblyPart &a = assembly_.parts[pair.part_a], &b = assembly_.parts[pair.part_b];
       leaves_[a.shape].fine[pair.face_a] = true;
       leaves_[b.shape].fine[pair.face_b] = true;
-      const FaceKind kind = leaves_[a.shape].cad[pair.face_a].kind;
-      if (kind != FaceKind::cylinder) told.insert('"' + a.name + "\" and \"" + b.name + "\": " + names(kind));
+      mating.add(a, b, leaves_[a.shape].cad[pair.face_a].kind);
     }
-    for (const std::string& pair : told)
-      assembly_.notes.push_back(pair + " that may mate; facets reach up to the chord error into a clearance");
-  }
-
-  static std::string names(FaceKind kind) {
-    switch (kind) {
-      case FaceKind::cone:
-        return "cones";
-      case FaceKind::sphere:
-        return "spheres";
-      case FaceKind::torus:
-        return "tori";
-      default:
-        return "free-form faces";
-    }
+    mating.tell(options_.chord, assembly_.notes);
   }
 
   /// Name and size: facets by the million come from a unit that is not the part's.
   static std::string described(const Leaf& leaf) {
+    char size[32];
+    std::snprintf(size, sizeof size, "%.3g m", size_of(leaf));
+    return '"' + printable(leaf.name) + "\" (" + size + " across)";
+  }
+
+  /// m, diagonal of the box around its faces.
+  static double size_of(const Leaf& leaf) {
     Eigen::AlignedBox3d box;
     for (const CadFace& face : leaf.cad)
       if (!face.box.isEmpty()) box.extend(face.box);
-    char size[32];
-    std::snprintf(size, sizeof size, "%.3g m", box.isEmpty() ? 0.0 : box.diagonal().norm());
-    return '"' + printable(leaf.name) + "\" (" + size + " across)";
+    return box.isEmpty() ? 0.0 : box.diagonal().norm();
   }
 
   void make_shape(std::size_t i) {
@@ -275,12 +271,15 @@ class StepReader {
     // Fine faces first: what is finer than asked for is kept, and its edges with it.
     for (std::size_t f = 0; f < leaf.faces.size(); ++f)
       if (leaf.fine[f]) tessellate(leaf.faces[f], options_.chord);
-    tessellate(leaf.shape, std::max(options_.chord, options_.coarse_chord));
-    std::size_t missing = 0;
+    tessellate(leaf.shape, leaf.coarse);
+    std::vector<std::size_t> missing;
     TessellatedShape shape = joined(leaf.faces, missing);
     const std::string self = '"' + leaf.name + '"';
-    if (missing > 0)
-      assembly_.notes.push_back(self + ": " + std::to_string(missing) + " faces could not be tessellated");
+    if (!missing.empty())
+      assembly_.notes.push_back(self + ": no triangles could be made of " +
+                                face_names_->text(missing, leaf.faces, leaf.cad) +
+                                ": the part has a hole there; export it anew, or as a mesh");
+    const std::vector<std::size_t> open = faces_with_free_edges(shape);
     const TriangleMesh plain = triangles_.in(leaf.shape);
     leaf.tessellated = triangles_.any_in(leaf.shape);
     if (!shape.mesh.triangles.empty())
@@ -288,7 +287,11 @@ class StepReader {
     append(plain, Matrix34::Identity(), 1, shape.mesh);
     if (!shape.mesh.triangles.empty()) {
       shape.mesh.name = leaf.name;
-      if (!report(shape.mesh).closed) assembly_.notes.push_back(self + ": its surface is not closed");
+      if (!open.empty())
+        assembly_.notes.push_back(self + ": not closed at " + face_names_->text(open, leaf.faces, leaf.cad) +
+                                  ": its inside is not known; if it is to be a solid, sew it in the CAD program");
+      else if (!report(shape.mesh).closed)
+        assembly_.notes.push_back(self + ": its triangles are not closed: its inside is not known");
     }
     assembly_.shapes.push_back(std::make_shared<const TriangleMesh>(std::move(shape.mesh)));
     leaf.shape.Nullify();
@@ -334,7 +337,8 @@ class StepReader {
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
   TransferredTriangles triangles_;
-  std::vector<std::string> unread_;  // kinds of tessellated shapes
+  std::optional<FaceNames> face_names_;  // since the file is open
+  std::vector<std::string> unread_;      // kinds of tessellated shapes
   Assembly assembly_;
 };
 

@@ -243,7 +243,8 @@ void bind_meshes(nb::module_& m) {
           "notes", [](const PlacedAssembly& a) { return a.notes; }, "What is not as the file says, a line each.");
   m.def(
       "read_assembly",
-      [](const std::filesystem::path& path, const std::string& unit, bool split, double chord, double coarse_chord) {
+      [](const std::filesystem::path& path, const std::optional<std::string>& unit, bool split, double chord,
+         double coarse_chord) {
         const nb::gil_scoped_release others_go_on;
         AssemblyOptions how;
         how.unit = unit;
@@ -252,7 +253,7 @@ void bind_meshes(nb::module_& m) {
         how.coarse_chord = coarse_chord;
         return placed(read_assembly(path.string(), how));
       },
-      nb::arg("path"), nb::arg("unit") = "mm", nb::kw_only(), nb::arg("split") = false,
+      nb::arg("path"), nb::arg("unit") = nb::none(), nb::kw_only(), nb::arg("split") = false,
       nb::arg("chord") = AssemblyOptions().chord, nb::arg("coarse_chord") = AssemblyOptions().coarse_chord,
       R"(Reads STEP, glTF/GLB or 3MF with its tree, or another mesh file as one part.
 
@@ -261,12 +262,14 @@ The file is parsed in this process. Other Python threads go on meanwhile.
 Parameters
 ----------
 path : str or os.PathLike
-unit : str
-    Of files that do not tell theirs (STL, OBJ, PLY, OFF).
+unit : str, optional
+    "m", "cm", "mm", "um" or "in": of the lengths of a file that does not say it (STL, OBJ, PLY, OFF), or that says m and
+    is wrong (glTF). None: m, and a file that is more than 20 m across is refused, for it is most often in mm.
 split : bool
     Every connected piece of a surface is a part.
 chord, coarse_chord : float
-    m: how far a facet of a STEP file may be from a face with a counterpart nearby, and from any other curved face.
+    m: how far a facet of a STEP file may be from a face with a counterpart nearby, and from any other curved face (less
+    of a small part that is alone in its file).
 
 Returns
 -------

@@ -113,7 +113,8 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
   if (held.empty() && !options.hold.empty())
     top.fail("part", "no part is named " + options.hold + " (there are " + name_list(part_names(scene)) + ")");
   if (held.empty() && options.held_needed)
-    top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME");
+    top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME (there are " +
+                         name_list(part_names(scene)) + ")");
   meshes.read(options, scene.parts);
 }
 
@@ -212,8 +213,7 @@ StylusScript rest(const Scene& scene) {
 
 /// A part file would be "not valid TOML" in its second line.
 void check_is_no_part(const std::string& path) {
-  static const std::set<std::string> parts = {".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".3mf", ".stp", ".step"};
-  if (parts.count(lower_extension(path)) == 0 || !std::filesystem::exists(path)) return;
+  if (!is_file_of_parts(path) || !std::filesystem::exists(path)) return;
   throw Error(ErrorKind::file,
               path + ": is a file of parts, not a scene; `tegotae import " + path + " -o FOLDER` makes a scene of it",
               {path, 0, {}, {}});

@@ -40,16 +40,19 @@ TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
   const Output o = run_program("tegotae", "import " + file + " --unit mm --split -o " + (folder / "out"));
   INFO(o.err);
   REQUIRE(o.code == 0);
-  CHECK(o.out.find("2 parts, 2 meshes, 8 triangles") != std::string::npos);
+  CHECK(o.out.find("2 parts, 2 meshes, 8 triangles, 50 x 10 x 10 mm") != std::string::npos);
+  CHECK(o.out.find("tegotae view " + (folder / "out/scene.toml")) != std::string::npos);
   CHECK(o.out.find("--hold NAME") != std::string::npos);
   const SceneFile scene = load_scene(folder / "out/scene.toml", {"a/b", true, {}});
   REQUIRE(scene.scene.parts.size() == 2);
   CHECK(scene.scene.parts[1].name == "a/b_2");
   CHECK((scene.scene.parts[1].pose * report(*scene.scene.parts[1].mesh).box_max - Vec3(0.05, 0.01, 0.01)).norm() <
         1e-8);
-  CHECK(run_program("tegotae", "run --fast --hold a/b_2 " + (folder / "out/scene.toml")).code == 0);
+  const Output rest = run_program("tegotae", "run --fast --hold a/b_2 " + (folder / "out/scene.toml"));
+  CHECK(rest.code == 0);
+  CHECK(rest.err.find("the scene has no script, so nothing moves a/b_2: --view") != std::string::npos);
   check_refused(run_program("tegotae", "run --fast " + (folder / "out/scene.toml")),
-                {"no part is held", "--hold NAME"});
+                {"no part is held", "--hold NAME", "(there are a/b, a/b_2)"});
   check_refused(run_program("tegotae", "run --fast --hold c " + (folder / "out/scene.toml")), {"no part is named c"});
   const Output check = run_program("tegotae", "check " + (folder / "out/scene.toml"));
   CHECK(check.code == 0);
@@ -63,13 +66,36 @@ TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
   check_refused(run_program("tegotae", "import " + file + " -o " + (folder / "plain")), {"plain"});
 }
 
+TEST_CASE("a file of parts runs with a script, and otherwise says the command that shows it", "[import]") {
+  const TempFolder folder;
+  folder.write("pin.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string file = folder / "pin.obj";
+  folder.write("up.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.2,0,0,0.01,1,0,0,0\n");
+  const std::string script = " --script " + (folder / "up.csv");
+  check_refused(run_program("tegotae", "run --fast " + file), {"has no script", "`tegotae view " + file + "`"});
+  check_refused(run_program("tegotae", "run --fast " + file + script), {"pin.obj: 52", "m across", "--unit mm"});
+  const Output o = run_program("tegotae", "run --fast --unit mm " + file + script);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK(o.out.find("In the hand is pin") != std::string::npos);
+  CHECK(o.out.find("pin.obj: done") != std::string::npos);
+  CHECK(o.out.find("depth        10.0 mm") != std::string::npos);
+  check_refused(run_program("tegotae", "run --fast --unit mm --record " + (folder / "r.csv") + " " + file + script),
+                {"a recording names its scene", "tegotae import"});
+  check_refused(run_program("tegotae", "run --fast --unit mm --hold nut " + file + script), {"no part is named nut"});
+  // Nothing stays beside the file.
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) files += entry.is_regular_file();
+  CHECK(files == 2);
+}
+
 TEST_CASE("control characters in names become spaces, so that the scene can be read", "[import]") {
   const TempFolder folder;
   folder.write("two.obj",
                "g a\x01"
                "b\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
                "g c\nv 40 0 0\nv 50 0 0\nv 40 10 0\nv 40 0 10\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n");
-  REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --split -o " + (folder / "out")).code == 0);
+  REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --unit mm --split -o " + (folder / "out")).code == 0);
   CHECK(load_scene(folder / "out/scene.toml", {"a b", true, {}}).scene.parts.size() == 2);
 }
 

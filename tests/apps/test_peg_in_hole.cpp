@@ -53,7 +53,7 @@ TEST_CASE("the peg goes in, and the same run gives the same recording byte for b
     CHECK(program.code == 0);
     const json j = summary_of(program);
     CHECK(j.at("completed") == true);
-    CHECK(j.at("depth_m").get<double>() == Approx(0.04).margin(1e-4));  // the hole's depth
+    CHECK(j.at("depth_m").get<double>() == Approx(0.06).margin(1e-4));  // 20 mm above the hole, 40 mm in it
     CHECK(j.at("contacts_max").get<int>() >= 2);
     CHECK(j.at("penetrating") == 0);
     const std::string recording = read_text(folder / "program.csv");

@@ -106,6 +106,20 @@ TEST_CASE("a run in free space follows the pen", "[programs]") {
   CHECK(std::count(text.begin(), text.end(), '\n') >= 1101);
 }
 
+TEST_CASE("--progress says into a pipe how far a run is, and what is short says nothing", "[programs]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const std::string run = "run --progress --seconds ";
+  const Output o = run_program("tegotae", run + "2.5 " + (folder / "scene.toml"));
+  INFO(o.err);
+  CHECK(o.code == 0);
+  CHECK(o.err.find("s   depth ") != std::string::npos);
+  CHECK(o.err.find('\033') == std::string::npos);
+  CHECK(o.out.find("s   depth ") == std::string::npos);
+  const Output brief = run_program("tegotae", run + "0.2 --fast " + (folder / "scene.toml"));
+  CHECK(brief.err.find("s   depth ") == std::string::npos);
+}
+
 TEST_CASE("a run cut short by --seconds is done but not completed", "[programs]") {
   const TempFolder folder;
   write_small_scene(folder);

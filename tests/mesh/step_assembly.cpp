@@ -10,6 +10,8 @@
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRep_Builder.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -20,6 +22,10 @@
 #include <StepData_StepModel.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -172,6 +178,32 @@ void write_step_assembly(const std::string& path, const StepSizes& s, const std:
   shapes->UpdateAssemblies();
 
   write(document, path, unit);
+}
+
+void write_step_housing(const std::string& path, double size) {
+  const Handle(TDocStd_Document) document = new_document("MM", "AP214IS");
+  const gp_Pnt corner(-size / 2, -size / 2, -size / 2);
+  TopoDS_Shape body = BRepPrimAPI_MakeBox(corner, size, size, size).Shape();
+  body = cut(body, BRepPrimAPI_MakeSphere(0.4 * size).Shape());
+  body = cut(body, cylinder(0, -size, 0.1 * size, 2 * size));
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->AddShape(body, false);
+  write(document, path, "MM");
+}
+
+void write_step_open_solid(const std::string& path) {
+  const Handle(TDocStd_Document) document = new_document("MM", "AP214IS");
+  BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  BRepPrimAPI_MakeBox box(40, 30, 10);
+  const TopoDS_Face top = box.TopFace();
+  for (TopExp_Explorer e(box.Shape(), TopAbs_FACE); e.More(); e.Next())
+    if (!e.Current().IsSame(top)) builder.Add(shell, e.Current());
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->AddShape(solid, false);
+  write(document, path, "MM");
 }
 
 }  // namespace tegotae::test

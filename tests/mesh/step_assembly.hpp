@@ -32,4 +32,11 @@ void write_step_assembly(const std::string& path, const StepSizes& sizes, const 
 /// Writes a plate of `rows` times `rows` round holes, pitch 10 mm, diameter 5 mm, 2 mm thick, in mm.
 void write_step_perforated(const std::string& path, int rows);
 
+/// Writes a cube of edge `size` with a spherical cavity of 0.4 `size` in its middle and a round hole along z of radius
+/// 0.05 `size` through it, in mm.
+void write_step_housing(const std::string& path, double size);
+
+/// Writes a solid box without its top face, in mm: what no CAD program should write.
+void write_step_open_solid(const std::string& path);
+
 }  // namespace tegotae::test

@@ -253,3 +253,31 @@ TEST_CASE("binary PLY reads back as the floats that were written", "[assembly]")
   CHECK(worst < 0.1 * std::ldexp(1.0, -23));  // under 0.1 m
   CHECK_THROWS_WITH(write_ply(knot, folder / "none/knot.ply", 1), Catch::Contains("cannot be written"));
 }
+
+TEST_CASE("a file that is absurdly large in meters is refused until its unit is given", "[assembly]") {
+  const TempFolder folder;
+  const Vec3 size(743, 10, 10);
+  write_ply(shapes::box(size), folder / "engine.ply", 1);
+  const auto message = [](const std::string& path, const AssemblyOptions& options) -> std::string {
+    try {
+      read_assembly(path, options);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "read";
+  };
+  const std::string asked = message(folder / "engine.ply", {});
+  CHECK(asked.find("engine.ply: 743.1 m across") != std::string::npos);
+  CHECK(asked.find("--unit mm") != std::string::npos);
+  AssemblyOptions given;
+  for (const auto& [unit, meter] : {std::pair("mm", 1e-3), std::pair("m", 1.0), std::pair("in", 0.0254)}) {
+    given.unit = unit;
+    const Assembly a = read_assembly(folder / "engine.ply", given);
+    const MeshReport r = report(*a.shapes.at(0));
+    CHECK((r.box_max - r.box_min - meter * size).norm() < 1e-6 * meter * size.norm());
+    CHECK(a.unit == unit);
+  }
+  // A part of 21 mm whose file says nothing is one of 21 m, one of 19 m may be.
+  write_ply(shapes::box({19, 1, 1}), folder / "wing.ply", 1);
+  CHECK(message(folder / "wing.ply", {}) == "read");
+}

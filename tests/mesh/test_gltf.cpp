@@ -341,3 +341,28 @@ TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
     CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));
   }
 }
+
+TEST_CASE("glTF: another unit scales meshes and places; names that a program made up give way to the mesh's",
+          "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  const std::size_t mesh = doc.mesh(doc.tetrahedron());  // "tip"
+  doc.j["meshes"].push_back(doc.j["meshes"][mesh]);
+  doc.j["meshes"].back()["name"] = "Mesh_7";
+  doc.node({{"mesh", mesh}, {"name", "Node_12"}});
+  doc.node({{"mesh", mesh}, {"name", "Kolben"}, {"translation", {3, 0, 0}}});
+  doc.node({{"mesh", mesh + 1}, {"name", "Object 4"}, {"translation", {6, 0, 0}}});
+  doc.node({{"mesh", mesh}, {"name", ""}, {"translation", {700, 0, 0}}});
+  const std::string file = doc.save(folder);
+  CHECK(test::refusal(file).find("701 m across") != std::string::npos);
+  AssemblyOptions millimeters;
+  millimeters.unit = "mm";
+  const Assembly a = read_assembly(file, millimeters);
+  REQUIRE(a.parts.size() == 4);
+  CHECK(a.parts[0].name == "tip");
+  CHECK(a.parts[1].name == "Kolben");
+  CHECK(a.parts[2].name == "Object 4");
+  CHECK(a.parts[3].name == "tip_2");
+  CHECK((a.parts[1].pose.p - Vec3(3e-3, 0, 0)).norm() < 1e-12);
+  CHECK((report(*a.shapes[a.parts[1].shape]).box_max - Vec3(1e-3, 1e-3, 1e-3)).norm() < 1e-9);
+}

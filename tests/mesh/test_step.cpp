@@ -181,6 +181,51 @@ TEST_CASE("faces that mate are tessellated finer than others", "[step]") {
   CHECK(finer.facets > 2 * window.facets);
 }
 
+TEST_CASE("facets of a part alone in its file follow its size, but for cylinders", "[step]") {
+  const TempFolder folder;
+  // mm: edge, and how far the facets of its cavity, a sphere, may be from it: edge sqrt(3) / 4000, 5 to 50 um.
+  for (const auto& [size, chord] : {std::pair(5.0, 5e-3), std::pair(60.0, 26e-3), std::pair(400.0, 50e-3)}) {
+    INFO(size);
+    write_step_housing(folder / "housing.step", size);
+    const Assembly a = read_assembly(folder / "housing.step");
+    REQUIRE(a.shapes.size() == 1);
+    const TriangleMesh& mesh = *a.shapes[0];
+    CHECK(report(mesh).closed);
+    const double radius = 0.4 * size;
+    double deepest = 0;  // of a facet's middle inside the sphere, mm
+    for (const auto& t : mesh.triangles) {
+      const Vec3 p[] = {1e3 * mesh.vertices[t[0]], 1e3 * mesh.vertices[t[1]], 1e3 * mesh.vertices[t[2]]};
+      if (std::any_of(std::begin(p), std::end(p), [&](const Vec3& q) { return std::abs(q.norm() - radius) > 1e-3; }))
+        continue;
+      deepest = std::max(deepest, radius - ((p[0] + p[1] + p[2]) / 3).norm());
+    }
+    CHECK(deepest <= 1.1 * chord);
+    if (size > 50) CHECK(deepest > 0.3 * chord);  // the facets of a small one are bound by their angle
+    const Radii hole = radii(mesh, 0, 49 * size / 1000, 51 * size / 1000);
+    CHECK(hole.nearest >= 0.05e-3 * size - 1e-15);
+    CHECK(hole.farthest <= 0.05e-3 * size + 5e-6 + 1e-8);
+    // The sphere's area by that of an equilateral facet whose middle is `chord` deep, threefold.
+    const double facet = 3 * std::sqrt(3) / 4 * 2 * radius * chord;
+    CHECK(static_cast<double>(mesh.triangles.size()) < 3 * 4 * M_PI * radius * radius / facet + 2000);
+  }
+}
+
+TEST_CASE("a solid of a STEP file that is not closed is told with the face", "[step]") {
+  const TempFolder folder;
+  write_step_open_solid(folder / "open.step");
+  const Assembly a = read_assembly(folder / "open.step");
+  REQUIRE(a.notes.size() == 1);
+  INFO(a.notes[0]);
+  CHECK(a.notes[0].find("not closed at face #") != std::string::npos);
+  CHECK(a.notes[0].find("(a plane around (") != std::string::npos);
+  CHECK(a.notes[0].find(" and 3 more:") != std::string::npos);  // the four sides, not the bottom
+  // The number is that of an entity of the file which is a face.
+  const std::string number = a.notes[0].substr(a.notes[0].find('#'), a.notes[0].find(" (a") - a.notes[0].find('#'));
+  const std::string text = read_text(folder / "open.step");
+  const std::size_t at = text.find("\n" + number + " = ADVANCED_FACE");
+  CHECK(at != std::string::npos);
+}
+
 TEST_CASE("a plane face of many round holes takes time in proportion to its holes", "[step]") {
   const TempFolder folder;
   const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };  // of this process's threads

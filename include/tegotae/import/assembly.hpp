@@ -33,9 +33,11 @@ struct Assembly {
 
 /// How a file becomes an assembly.
 struct AssemblyOptions {
-  std::string unit = "m";       ///< of files that do not tell theirs (STL, OBJ, PLY, OFF)
+  /// Unit of the lengths of a file that does not say it (STL, OBJ, PLY, OFF), or that says m and is wrong (glTF).
+  /// None: m, and a file that is more than 20 m across is refused, for it is most often in mm.
+  std::optional<std::string> unit;
   double chord = 5e-6;          ///< m: how far a facet of a STEP file's mating face may be from the face
-  double coarse_chord = 50e-6;  ///< m: the same for curved faces without a counterpart nearby
+  double coarse_chord = 50e-6;  ///< m: the same for other curved faces; less in a small part that is alone in its file
   bool split = false;           ///< every connected piece of a surface is a part
   /// Called now and then: what is done, and how many of how many are done (of 0: not known).
   std::function<void(const char* what, std::size_t done, std::size_t total)> progress;
@@ -48,8 +50,8 @@ struct AssemblyOptions {
 /// of its box, so that files of floats keep its digits. A STEP file's round holes are tessellated from outside and its
 /// round shafts from inside, so that no facet reaches into a clearance between them.
 ///
-/// Throws Error with the file and the reason when it cannot be used, also for STEP when the library was built without
-/// OpenCASCADE (see reads_step).
+/// Throws Error with the file and the reason when it cannot be used: also for STEP when the library was built without
+/// OpenCASCADE (see reads_step), and for a unit that is given for STEP or 3MF, which say theirs.
 Assembly read_assembly(const std::string& path, const AssemblyOptions& options = {});
 
 /// Whether the library was built with OpenCASCADE.

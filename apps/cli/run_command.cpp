@@ -1,0 +1,69 @@
+#include "cli/run_command.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include "import/file_check.hpp"
+#include "tegotae/core/error.hpp"
+
+namespace tegotae::apps {
+namespace {
+
+constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+
+/// What a run of a file of parts cannot be, before its parts are read.
+void check_parts(const RunCommand& options) {
+  const std::string& file = options.open.file;
+  if (options.script.empty() && options.run.device.empty() && !options.run.view)
+    throw Error(file + ": a file of parts has no script, so nothing would move: `tegotae view " + file +
+                "` takes the mouse; or give --script FILE or --device shm:NAME");
+  if (!options.run.record.empty())
+    throw Error(file + ": a recording names its scene, and a file of parts has none: first `tegotae import " + file +
+                " -o FOLDER`, then run FOLDER/scene.toml");
+}
+
+/// A run in which nothing moves says so.
+void note_rest(const RunCommand& options, const SceneFile& file) {
+  const bool led = !options.run.device.empty() || options.run.view;
+  if (led || file.script.end() > file.script.begin()) return;
+  const auto& parts = file.scene.parts;
+  const auto held = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.held; });
+  if (held == parts.end()) return;
+  std::cerr << "tegotae: note: the scene has no script, so nothing moves " << held->name
+            << ": --view takes the mouse, --device shm:NAME a pen, --script FILE a script\n";
+}
+
+}  // namespace
+
+CLI::App* add_run(CLI::App& app, RunCommand& options) {
+  CLI::App* run = app.add_subcommand("run", "Run a scene: its pen, servo and contact loop");
+  run->add_option("SCENE", options.open.file, "Scene file (TOML); or STEP, glTF, 3MF, STL, OBJ, PLY, OFF")->required();
+  run->add_option("--hold", options.open.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
+  run->add_option("--script", options.script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
+  add_unit_option(*run, options.open.import);
+  add_run_options(*run, options.run);
+  run->add_option("--seconds", options.run.seconds, "How long to run (default: to the end of the script)")
+      ->check([](const std::string& text) -> std::string {
+        double value = 0;  // CLI::PositiveNumber lets nan pass
+        if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kLongestRun) return "";
+        return "must be a positive number, at most a million";
+      })
+      ->type_name("S");
+  return run;
+}
+
+int run_scene(const RunCommand& options, const MeshLoader& load) {
+  if (is_file_of_parts(options.open.file)) check_parts(options);
+  OpenOptions open = options.open;
+  open.quiet = options.run.json;
+  return with_scene(open, load, [&](SceneFile file) {
+    if (!options.script.empty()) {
+      file.script = read_script(options.script);
+      file.files.push_back(options.script);
+    }
+    note_rest(options, file);
+    return run_and_report(std::move(file), options.run, options.open.file);
+  });
+}
+
+}  // namespace tegotae::apps
