@@ -41,16 +41,8 @@ int main(int argc, char** argv) {
   RunCommand run_options;
   CLI::App* run = add_run(app, run_options);
 
-  std::string recording, recorded_scene, html;
-  PageOptions replay_page;
-  CLI::App* replay = app.add_subcommand("replay", "Serve a page that shows a recording, until Ctrl-C");
-  replay->add_option("RECORDING", recording, "What --record wrote")->required();
-  replay->add_option("SCENE", recorded_scene, "Its scene file (the one that the recording names)");
-  auto* file =
-      replay->add_option("--html", html, "Write the page to a file that needs no server, then exit")->type_name("FILE");
-  const PageOptionNames page = add_page_options(*replay, replay_page);
-  page.address->excludes(file);
-  page.no_browser->excludes(file);
+  ReplayOptions replay_options;
+  CLI::App* replay = add_replay(app, replay_options);
 
   ViewOptions view_options;
   CLI::App* view = add_view(app, view_options);
@@ -127,7 +119,7 @@ int main(int argc, char** argv) {
     if (check->parsed()) return check_files(check_options);
     if (view->parsed()) return view_file(view_options, load);
     if (measure->parsed()) return bench::run_bench(bench_options);
-    if (replay->parsed()) return show_recording(recording, recorded_scene, html, replay_page);
+    if (replay->parsed()) return show_recording(replay_options);
     if (experiment->parsed()) return experiments::run(trials);
     if (review->parsed()) return review::run_review(review_options);
     if (tries->parsed()) return study::run_tries(try_options);

@@ -2,7 +2,6 @@
 
 #include "import/file_check.hpp"
 #include "review/review_command.hpp"
-#include "view/replay.hpp"
 
 namespace tegotae::apps {
 
@@ -22,7 +21,12 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options) {
 int view_file(const ViewOptions& options, const MeshLoader& load) {
   const std::string& name = options.open.file;
   const std::string ending = lower_extension(name);
-  if (ending == ".csv" || ending == ".mcap") return show_recording(name, "", "", options.run.page);
+  if (ending == ".csv" || ending == ".mcap") {
+    ReplayOptions replay;
+    replay.recording = name;
+    replay.page = options.run.page;
+    return show_recording(replay);
+  }
   OpenOptions open = options.open;
   open.held_needed = false;
   return with_scene(open, load, [&](SceneFile file) {
@@ -31,15 +35,31 @@ int view_file(const ViewOptions& options, const MeshLoader& load) {
   });
 }
 
-int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
-                   const PageOptions& page) {
-  const std::string bundle = view::replay_bundle(recording, scene, html);
-  if (html.empty())
+CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
+  CLI::App* replay = app.add_subcommand("replay", "Serve a page that shows a recording, until Ctrl-C");
+  replay->add_option("RECORDING", options.recording, "What --record wrote")->required();
+  replay->add_option("SCENE", options.scene, "Its scene file (the one that the recording names)");
+  CLI::Option* file =
+      replay->add_option("--html", options.html, "Write the page to a file that needs no server, then exit")
+          ->type_name("FILE");
+  replay->add_option("--frames", options.frames, "That the page gets at most; fewer make a smaller file")
+      ->check(CLI::Range(std::size_t{2}, view::kMaxFrames))
+      ->capture_default_str()
+      ->type_name("N");
+  const PageOptionNames page = add_page_options(*replay, options.page);
+  page.address->excludes(file);
+  page.no_browser->excludes(file);
+  return replay;
+}
+
+int show_recording(const ReplayOptions& options) {
+  const std::string bundle = view::replay_bundle(options.recording, options.scene, options.html, options.frames);
+  if (options.html.empty())
     view::serve_replay(
-        bundle, [&] { return review::recording_report(recording, scene); }, page_address(page), catch_interrupts(),
-        [&](const view::Server& server) { announce_page(server, page); });
+        bundle, [&] { return review::recording_report(options.recording, options.scene); }, page_address(options.page),
+        catch_interrupts(), [&](const view::Server& server) { announce_page(server, options.page); });
   else
-    view::write_replay(bundle, html);
+    view::write_replay(bundle, options.html);
   return kDone;
 }
 

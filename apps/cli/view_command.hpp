@@ -6,6 +6,7 @@
 #include "cli/open_scene.hpp"
 #include "shared/run_options.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
+#include "view/replay.hpp"
 
 namespace tegotae::apps {
 
@@ -21,9 +22,18 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options);
 /// Parts are read by `load`. Returns the exit code; throws Error.
 int view_file(const ViewOptions& options, const MeshLoader& load);
 
-/// Serves a page with a recording until Ctrl-C, or writes it to the file `html`. An empty `scene` is the one that the
-/// recording names. Returns the exit code; throws Error.
-int show_recording(const std::string& recording, const std::string& scene, const std::string& html,
-                   const PageOptions& page);
+struct ReplayOptions {
+  std::string recording;
+  std::string scene;  ///< file; empty: the one that the recording names
+  std::string html;   ///< file to write the page to; empty: it is served
+  std::size_t frames = view::kMaxFrames;
+  PageOptions page;
+};
+
+/// Adds the subcommand `replay`.
+CLI::App* add_replay(CLI::App& app, ReplayOptions& options);
+
+/// Serves a page with a recording until Ctrl-C, or writes it to a file. Returns the exit code; throws Error.
+int show_recording(const ReplayOptions& options);
 
 }  // namespace tegotae::apps

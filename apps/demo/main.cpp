@@ -8,6 +8,7 @@
 #include "models/shapes.hpp"
 #include "peg_in_hole/peg_script.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 #include "tegotae/device/simulated_device.hpp"
 #include "tegotae/session/rig.hpp"
 
@@ -72,7 +73,14 @@ bool run(double ratio) {
 
 }  // namespace
 
-int main() try {
+int main(int argc, char** argv) try {
+  if (argc > 1) {
+    const std::string option = argv[1];
+    if (option == "--version") return std::puts("tegotae " TEGOTAE_VERSION_STRING) < 0;
+    std::fputs("demo: carries a peg into its hole twice, in real time; it takes --help and --version only\n",
+               option == "--help" ? stdout : stderr);
+    return option == "--help" ? 0 : 2;
+  }
   bool in = true;
   for (const double ratio : {0.94, 0.99}) in = run(ratio) && in;
   return in ? 0 : 1;

@@ -297,4 +297,5 @@ def main():
     print("%d pictures" % len(PICTURES))
 
 
-main()
+if __name__ == "__main__":
+    main()

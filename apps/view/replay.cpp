@@ -25,8 +25,6 @@
 namespace tegotae::view {
 namespace {
 
-// Frames that a page gets: more than pixels in a plot, and a file of some megabytes.
-constexpr std::size_t kMaxFrames = 12'000;
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
 /// The frame of a row: recorded values, with the contacts found.
@@ -96,7 +94,8 @@ std::vector<std::string> scene_changes(const RecordingInfo& info) {
   return texts;
 }
 
-std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html) {
+std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html,
+                          std::size_t max_frames) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
@@ -106,7 +105,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   refuse_to_replace(html, inputs);
   Follower follower(file.scene, path, rows.front().x);
   const FrameMaker maker;
-  const std::size_t every = (rows.size() + kMaxFrames - 1) / kMaxFrames;
+  const std::size_t every = (rows.size() + max_frames - 1) / max_frames;
   std::vector<float> frames, pairs, forces;
   std::vector<std::uint32_t> pair_begin, force_begin;
   Frame frame;

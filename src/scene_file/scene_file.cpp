@@ -211,8 +211,13 @@ StylusScript rest(const Scene& scene) {
   return StylusScript({{0, held == scene.parts.end() ? Pose() : held->pose}});
 }
 
-/// A part file would be "not valid TOML" in its second line.
-void check_is_no_part(const std::string& path) {
+/// A part file would be "not valid TOML" in its second line, a recording in its first.
+void check_is_scene(const std::string& path) {
+  const std::string ending = lower_extension(path);
+  if ((ending == ".csv" || ending == ".mcap") && std::filesystem::exists(path))
+    throw Error(ErrorKind::file,
+                path + ": is a recording or a script, not a scene; `tegotae view " + path + "` shows a recording",
+                {path, 0, {}, {}});
   if (!is_file_of_parts(path) || !std::filesystem::exists(path)) return;
   throw Error(ErrorKind::file,
               path + ": is a file of parts, not a scene; `tegotae import " + path + " -o FOLDER` makes a scene of it",
@@ -222,7 +227,7 @@ void check_is_no_part(const std::string& path) {
 }  // namespace
 
 SceneFile load_scene(const std::string& path, const SceneOptions& options) {
-  check_is_no_part(path);  // before all of it is read
+  check_is_scene(path);  // before all of it is read
   std::string text = read_file(path);
   const toml::table parsed = parse_toml(text, path);
   const TomlTable top(parsed, path, "",

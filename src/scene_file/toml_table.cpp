@@ -64,7 +64,10 @@ toml::table parse_toml(const std::string& text, const std::string& path) {
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& e) {
-    throw Error(ErrorKind::file, at(path, e.source()) + ": not valid TOML: " + one_line(std::string(e.description())),
+    const bool is_toml = std::filesystem::path(path).extension() == ".toml";
+    throw Error(ErrorKind::file,
+                at(path, e.source()) + ": not valid TOML: " + one_line(std::string(e.description())) +
+                    (is_toml ? "" : "; is this a scene file?"),
                 {path, static_cast<int>(e.source().begin.line), {}, {}});
   }
 }

@@ -104,8 +104,14 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
        {"tet.obj", "pump.STEP", "pump.stp", "a.glb", "a.gltf", "a.3mf", "a.Stl", "a.ply", "a.off"}) {
     if (part != "tet.obj") folder.write(part, "anything");
     check_refused(run_program("tegotae", "run --fast " + (folder / part)),
-                  {part + ": is a file of parts", "tegotae import"});
+                  {part + ": a file of parts has no script", "`tegotae view "});
+    check_refused(run_program("tegotae", "try " + (folder / part)), {part + ": is a file of parts", "tegotae import"});
   }
+  check_refused(run_program("tegotae", "run --fast " + (folder / "path.csv")),
+                {"path.csv: is a recording or a script, not a scene", "`tegotae view "});
+  folder.write("README.md", "# Parts\nNone.\n");
+  check_refused(run_program("tegotae", "run --fast " + (folder / "README.md")),
+                {"README.md:", "not valid TOML", "is this a scene file?"});
 }
 
 TEST_CASE("bad usage is refused", "[bad_input]") {
@@ -135,7 +141,7 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
 
 TEST_CASE("help and version are no errors", "[bad_input]") {
   for (const std::string program :
-       {"tegotae", "tegotae-device", "peg_in_hole", "tegotae-models", "tegotae-load-mesh"}) {
+       {"demo", "tegotae", "tegotae-device", "peg_in_hole", "tegotae-models", "tegotae-load-mesh"}) {
     for (const std::string flag : {"--help", "--version"}) {
       const Output o = run_program(program, flag);
       CHECK(o.code == 0);

@@ -95,7 +95,8 @@ TEST_CASE("control characters in names become spaces, so that the scene can be r
                "g a\x01"
                "b\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
                "g c\nv 40 0 0\nv 50 0 0\nv 40 10 0\nv 40 0 10\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n");
-  REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --unit mm --split -o " + (folder / "out")).code == 0);
+  REQUIRE(run_program("tegotae", "import " + (folder / "two.obj") + " --unit mm --split -o " + (folder / "out")).code ==
+          0);
   CHECK(load_scene(folder / "out/scene.toml", {"a b", true, {}}).scene.parts.size() == 2);
 }
 

@@ -19,7 +19,9 @@ void check_near(const Eigen::AlignedBox3d& box, const Vec3& lo, const Vec3& hi) 
 
 /// The file read both ways: as parts and as one surface, whose boxes must be the same.
 Assembly read(const std::string& file) {
-  const Assembly a = read_assembly(file);
+  AssemblyOptions options;
+  options.unit = "m";  // also where the parts stand far from each other
+  const Assembly a = read_assembly(file, options);
   Eigen::AlignedBox3d parts;
   for (std::size_t i = 0; i < a.parts.size(); ++i) parts.extend(box_of(a, i));
   const MeshReport whole = report(load_mesh(file));

@@ -168,6 +168,34 @@ def test_review_says_whether_it_goes(tmp_path):
         tegotae.review(record, forces=True)  # CSV has none
 
 
+def test_plan_finds_the_way_in(tmp_path):
+    scene, goal = MODELS + "/peg_in_hole_0.94.toml", pose(z=-0.01)
+    way = tegotae.plan(scene, goal=goal, clearance=1e-4, to=tmp_path)
+    assert way.found and way.summary["task"] == "goal" and (tmp_path / "script.csv").exists()
+    assert way.path.shape == (len(way.t), 4, 4) and np.all(np.diff(way.t) > 0)
+    np.testing.assert_allclose(way.path[-1], goal, atol=1e-6)
+    # The peg's radius is 9.4 mm in a hole of 10: down there its axis is within the play, less what is to be left.
+    deep = way.path[way.path[:, 2, 3] < -0.005]
+    assert len(deep) and np.hypot(deep[:, 0, 3], deep[:, 1, 3]).max() <= 0.6e-3 - 1e-4
+    assert way.clearance >= 1e-4 and np.nanmin(way.distance) >= way.clearance - 1e-9
+    again = tegotae.plan(scene, goal=goal, clearance=1e-4)
+    np.testing.assert_array_equal(again.path, way.path)
+    with pytest.raises(tegotae.Error):
+        tegotae.plan(scene, goal=goal, clearance=1e-3)  # more than the play
+    with pytest.raises(tegotae.Error, match="hole, peg"):
+        tegotae.plan(scene, hold="pig")
+
+
+def test_units_that_nobody_said_are_asked_for(tmp_path):
+    v, t = box(20.0)
+    obj = "".join("v %r %r %r\n" % tuple(map(float, p)) for p in v) + "".join("f %d %d %d\n" % tuple(f + 1) for f in t)
+    (tmp_path / "cube.obj").write_text(obj)
+    with pytest.raises(tegotae.Error, match="69.28 m across.*--unit mm"):
+        tegotae.read_assembly(tmp_path / "cube.obj")
+    part = tegotae.read_assembly(tmp_path / "cube.obj", unit="mm").parts[0]
+    np.testing.assert_allclose(np.abs(part.mesh.vertices), 0.02, rtol=1e-6)
+
+
 def test_contact_forces_sum_to_the_wrench():
     with tegotae.Rig(pegs(), presses()) as rig:
         rig.run(2.5)  # the hand rests: no damper

@@ -4,6 +4,7 @@ Poses are (4, 4) float64 arrays X_WF: from a part's own frame to the world, leng
 """
 
 from ._error import Error
+from ._plan import Plan, plan
 from ._recording import Recording, read_recording
 from ._review import Review, review
 from ._scenes import scene_of
@@ -34,6 +35,7 @@ __all__ = [
     "Error",
     "Mesh",
     "Pen",
+    "Plan",
     "PythonPen",
     "Recording",
     "Report",
@@ -46,6 +48,7 @@ __all__ = [
     "contact_dtype",
     "load_mesh",
     "load_scene",
+    "plan",
     "read_assembly",
     "read_recording",
     "review",
