@@ -33,6 +33,11 @@ std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + ' ' + (n == 1 ? one : many);
 }
 
+/// As people write it.
+std::string number(double x) {
+  return format(x < 1e4 ? "%.4g" : "%.0f", x);
+}
+
 /// What was made, and what to do with it. The size shows a wrong unit at once.
 std::string result_text(const Assembly& assembly, const std::string& scene, bool hold_one) {
   std::size_t triangles = 0;
@@ -45,8 +50,8 @@ std::string result_text(const Assembly& assembly, const std::string& scene, bool
   const Vec3 mm = 1e3 * box.sizes();
   std::string text = scene + ": " + counted(assembly.parts.size(), "part", "parts") + ", " +
                      counted(assembly.shapes.size(), "mesh", "meshes") + ", " +
-                     counted(triangles, "triangle", "triangles") +
-                     format(", %.4g x %.4g x %.4g mm\n", mm.x(), mm.y(), mm.z());
+                     counted(triangles, "triangle", "triangles") + ", " + number(mm.x()) + " x " + number(mm.y()) +
+                     " x " + number(mm.z()) + " mm\n";
   text += "look at it and take parts with `tegotae view " + scene + "`\n";
   if (hold_one)
     text += "no part is held: `tegotae run " + scene + " --hold NAME` takes one, or give it held = true in the file\n";

@@ -62,7 +62,7 @@ int with_scene(const OpenOptions& options, const MeshLoader& load, const std::fu
     path = (folder->path() / "scene.toml").string();
   }
   const SceneOptions how{options.hold, options.held_needed && !of_parts, {}, load};
-  SceneFile file = load_with_progress(path, how);
+  SceneFile file = options.quiet ? load_scene(path, how) : load_with_progress(path, how);
   print_notes(file.scene);
   if (of_parts || !options.held_needed) hold_smallest(file, options.quiet);
   // Parts of an assembly as people have them overlap here and there; what is told at the start names them.

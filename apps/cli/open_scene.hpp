@@ -14,7 +14,7 @@ struct OpenOptions {
   std::string file;
   std::string hold;         ///< name of the part to hold; empty: the scene's
   bool held_needed = true;  ///< of a scene: whether it has to name a held part; else the smallest is held
-  bool quiet = false;       ///< nothing on stdout
+  bool quiet = false;       ///< nothing on stdout, and no line that tells how far it is
   ImportOptions import;     ///< of a file of parts
 };
 

@@ -137,12 +137,10 @@ void require_plausible(const std::string& path, const Assembly& assembly, const 
   if (options.unit || says_its_unit(path)) return;
   const double size = diagonal(assembly);
   if (size <= kPlausible) return;
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      ": %.4g m across if its lengths are in m; give their unit: --unit mm makes it %.4g mm, --unit m keeps it", size,
-      size);
-  throw Error(path + text);
+  char number[32];
+  std::snprintf(number, sizeof number, size < 1e4 ? "%.4g" : "%.0f", size);
+  throw Error(path + ": " + number + " m across if its lengths are in m; give their unit: --unit mm makes it " +
+              number + " mm, --unit m keeps it");
 }
 
 }  // namespace
