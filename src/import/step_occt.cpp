@@ -25,10 +25,10 @@
 #include <optional>
 #include <sstream>
 
-#include "import/face_notes.hpp"
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
 #include "import/occt_check.hpp"
+#include "import/occt_faces.hpp"
 #include "import/occt_shape.hpp"
 #include "import/occt_triangles.hpp"
 #include "import/part_file.hpp"

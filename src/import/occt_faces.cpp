@@ -1,4 +1,4 @@
-#include "import/face_notes.hpp"
+#include "import/occt_faces.hpp"
 
 #include <StepData_StepModel.hxx>
 #include <StepShape_FaceSurface.hxx>
