@@ -35,7 +35,8 @@ void hold_smallest(SceneFile& file, bool quiet) {
   for (Part& part : parts) part.held = part.name == name;
   const auto held = std::find_if(parts.begin(), parts.end(), is_held);
   file.script = StylusScript({{0, held->pose}});
-  (quiet ? std::cerr : std::cout) << "In the hand is " << name << "; take another one with --hold NAME" << std::endl;
+  (quiet ? std::cerr : std::cout) << "In the hand is " << name
+                                  << "; take another one in the page (--view), or with --hold NAME" << std::endl;
 }
 
 }  // namespace
