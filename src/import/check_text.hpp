@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,18 +20,34 @@ constexpr std::string_view kBlank = " \t\r\n";
   throw Error(path + ": " + why);
 }
 
+/// What becomes of the text of a number that no double holds: 0 for the smallest, else infinite.
+inline double beyond_double(std::string_view text) {
+  const bool negative = text.substr(0, 1) == "-";
+  text.remove_prefix(negative ? 1 : 0);
+  const std::size_t exponent = text.find_first_of("eE");
+  const bool small =
+      exponent == text.npos ? text.find_first_of("0.") == 0 : text.substr(exponent + 1, 1).find('-') != text.npos;
+  const double size = small ? 0 : std::numeric_limits<double>::infinity();
+  return negative ? -size : size;
+}
+
 /// Takes the next word of `text`'s first line from it; false when that is no T as a whole (a plus in front may be). A
-/// number too large for a
-/// double is a number, and leaves `value` as it was: coordinates are judged after loading.
+/// number too large for a double is infinite: coordinates are judged after loading.
 template <class T>
 bool take_number(std::string_view& text, T& value) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
-  const std::string_view word = text.substr(0, text.find_first_of(kBlank));
+  std::string_view word = text.substr(0, text.find_first_of(kBlank));
   text.remove_prefix(word.size());
-  const std::size_t plus = word.size() > 1 && word[0] == '+' && word[1] != '-' ? 1 : 0;
-  const auto [end, error] = std::from_chars(word.data() + plus, word.data() + word.size(), value);
-  const bool number = error == std::errc() || (std::is_floating_point_v<T> && error == std::errc::result_out_of_range);
-  return number && end == word.data() + word.size();
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size()) return false;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (error == std::errc::result_out_of_range) {
+      value = beyond_double(word);
+      return true;
+    }
+  }
+  return error == std::errc();
 }
 
 }  // namespace tegotae

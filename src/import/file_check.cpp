@@ -8,30 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <string_view>
 
 #include "import/check_text.hpp"
-#include "import/off_check.hpp"
+#include "import/plain_obj.hpp"
+#include "import/plain_off.hpp"
 #include "import/plain_ply.hpp"
 #include "import/plain_stl.hpp"
 
 namespace tegotae {
-namespace {
-
-/// An OBJ file that stops in the middle of a line: assimp takes a face of two corners for a line, and drops it.
-void check_obj(const std::string& path, std::string_view bytes) {
-  if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return;
-  const std::string_view line = bytes.substr(bytes.find_last_of("\r\n") + 1);
-  if (line.substr(0, 2) != "f " && line.substr(0, 2) != "v ") return;
-  std::size_t words = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    words += std::isspace(static_cast<unsigned char>(line[i])) == 0 && (i == 0 || std::isspace(line[i - 1]) != 0);
-  }
-  if (words < 4) refuse(path, "truncated: the last line is \"" + std::string(line) + '"');
-}
-
-}  // namespace
-
 std::string read_bytes(const std::string& path) {
   std::error_code status;
   if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
@@ -68,19 +52,19 @@ std::string read_mesh_bytes(const std::string& path) {
   return bytes;
 }
 
-std::string plain_mesh_bytes(const std::string& path) {
-  std::string bytes = read_mesh_bytes(path);
+PlainMesh plain_mesh(const std::string& path) {
+  const std::string bytes = read_mesh_bytes(path);
   const std::string extension = lower_extension(path);
-  if (extension == ".stl") return plain_stl(path, bytes);
-  if (extension == ".ply") return plain_ply(path, bytes);
-  if (extension == ".obj") {
-    check_obj(path, bytes);
-  } else if (extension == ".off") {
-    check_off(path, bytes);
-  } else {
+  if (extension == ".stl") return {plain_stl(path, bytes), "stl", {}};
+  if (extension == ".ply") return {plain_ply(path, bytes), "ply", {}};
+  if (extension == ".off") return {plain_off(path, bytes), "ply", {}};
+  if (extension != ".obj")
     refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
-  }
-  return bytes;
+  std::size_t surface_line = 0;
+  PlainMesh mesh{plain_obj(path, bytes, surface_line), "obj", {}};
+  if (surface_line > 0)
+    mesh.notes.push_back("the free-form surfaces from line " + std::to_string(surface_line) + " on are not read");
+  return mesh;
 }
 
 }  // namespace tegotae

@@ -1,13 +1,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tegotae {
 
-/// The bytes of the mesh file `path` (STL, OBJ, PLY, OFF) in the one way of writing that assimp 5.2 reads without fail.
-/// Looked through before for what assimp passes over in silence (indices out of range in OFF and PLY, cut text files)
-/// or chokes on (counts that the file has no room for). Throws Error with the file and the reason.
-std::string plain_mesh_bytes(const std::string& path);
+/// A mesh file in the one way of writing that assimp 5.2 reads without fail.
+struct PlainMesh {
+  std::string bytes, format;       ///< the format: obj, ply or stl
+  std::vector<std::string> notes;  ///< what of the file is not read
+};
+
+/// The mesh file `path` (STL, OBJ, PLY, OFF). Looked through before for what assimp passes over in silence (indices out
+/// of range, cut text files) or chokes on (counts that the file has no room for). Throws Error with the file and the
+/// reason.
+PlainMesh plain_mesh(const std::string& path);
 
 /// All bytes of the file `path`; throws Error when it is empty or STEP.
 std::string read_mesh_bytes(const std::string& path);

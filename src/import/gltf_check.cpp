@@ -1,5 +1,6 @@
 #include "import/gltf_check.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,8 @@ class GltfCheck {
     if (buffer.contains("uri")) {
       const auto uri = buffer["uri"].get<std::string>();
       if (uri.rfind("data:", 0) == 0) {
+        if (uri.substr(0, uri.find(',')).find(";base64") == std::string::npos)
+          refuse("buffer " + std::to_string(i) + " is data in an URI, but not base64, which alone is read");
         there = (uri.size() - std::min(uri.size(), uri.find(',') + 1)) / 4 * 3;
         there += 3;  // without padding
       } else {
@@ -284,6 +287,8 @@ std::uint32_t word(std::string_view bytes, std::size_t at) {
 std::string_view glb_json(const std::string& path, std::string_view bytes, std::string_view& chunk) {
   constexpr std::size_t kHeader = 12, kChunkHeader = 8;
   if (bytes.size() < kHeader || bytes.substr(0, 4) != "glTF") throw Error(path + ": damaged: no glTF binary header");
+  if (word(bytes, 4) != 2)
+    throw Error(path + ": glTF version " + std::to_string(word(bytes, 4)) + " is not read (2.0 is)");
   if (word(bytes, 8) > bytes.size()) throw Error(path + ": truncated: shorter than its header says");
   if (bytes.size() < kHeader + kChunkHeader || bytes.substr(16, 4) != "JSON")
     throw Error(path + ": damaged: it has no JSON chunk");
@@ -299,19 +304,31 @@ std::string_view glb_json(const std::string& path, std::string_view bytes, std::
   return bytes.substr(kHeader + kChunkHeader, length);
 }
 
+/// Numbers like 8.0 become whole numbers, which JSON does not tell apart and some programs write.
+void make_whole(json& value) {
+  constexpr double kExact = 9007199254740992;  // 2^53
+  if (value.is_structured())
+    for (json& inside : value) make_whole(inside);
+  if (!value.is_number_float()) return;
+  const auto x = value.get<double>();
+  if (x != std::floor(x) || std::abs(x) > kExact || (x == 0 && std::signbit(x))) return;
+  value = x < 0 ? json(static_cast<std::int64_t>(x)) : json(static_cast<std::uint64_t>(x));
+}
+
 }  // namespace
 
 CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
   CheckedGltf out;
-  const bool binary = lower_extension(path) == ".glb";
+  const bool binary = lower_extension(path) == ".glb" ? bytes.substr(0, 1) != "{" : bytes.substr(0, 4) == "glTF";
   const std::string_view text = binary ? glb_json(path, bytes, out.chunk) : bytes;
   const auto shallow = [&path](int depth, json::parse_event_t, json&) {
     if (depth > kDeepestJson)
       throw Error(path + ": its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");
     return true;
   };
-  const json top = json::parse(text.begin(), text.end(), shallow, false);
+  json top = json::parse(text.begin(), text.end(), shallow, false);
   if (top.is_discarded() || !top.is_object()) throw Error(path + ": truncated or damaged: not valid JSON");
+  make_whole(top);
   try {
     const auto version = top.at("asset").at("version").get<std::string>();
     if (version.rfind("2.", 0) != 0) throw Error(path + ": glTF version " + version + " is not read (2.0 is)");

@@ -98,29 +98,49 @@ void unpack(const std::string& path, const cgltf_accessor& accessor, std::vector
     throw Error(path + ": damaged: the numbers of an accessor cannot be read");
 }
 
-/// Puts the elements that a sparse accessor changes into `numbers`.
-void change(const std::string& path, const cgltf_accessor& accessor, std::vector<float>& numbers) {
+/// The two parts of a sparse accessor: which elements change, and to what.
+struct Changes {
+  cgltf_accessor indices{}, values{};
+};
+
+Changes changes_of(const cgltf_accessor& accessor) {
   const cgltf_accessor_sparse& sparse = accessor.sparse;
-  cgltf_accessor indices{}, values = accessor;
-  indices.component_type = sparse.indices_component_type;
-  indices.type = cgltf_type_scalar;
-  indices.stride = cgltf_component_size(indices.component_type);
-  indices.offset = sparse.indices_byte_offset;
-  indices.buffer_view = sparse.indices_buffer_view;
-  values.is_sparse = 0;
-  values.stride = cgltf_calc_size(accessor.type, accessor.component_type);
-  values.offset = sparse.values_byte_offset;
-  values.buffer_view = sparse.values_buffer_view;
-  values.count = sparse.count;
-  std::vector<float> changed;
-  unpack(path, values, changed);
-  const std::size_t components = cgltf_num_components(accessor.type);
-  for (std::size_t i = 0; i < sparse.count; ++i) {
-    const std::size_t to = cgltf_accessor_read_index(&indices, i);
+  Changes out;
+  out.values = accessor;
+  out.indices.component_type = sparse.indices_component_type;
+  out.indices.type = cgltf_type_scalar;
+  out.indices.stride = cgltf_component_size(sparse.indices_component_type);
+  out.indices.offset = sparse.indices_byte_offset;
+  out.indices.buffer_view = sparse.indices_buffer_view;
+  out.indices.count = sparse.count;
+  out.values.is_sparse = 0;
+  out.values.stride = cgltf_calc_size(accessor.type, accessor.component_type);
+  out.values.offset = sparse.values_byte_offset;
+  out.values.buffer_view = sparse.values_buffer_view;
+  out.values.count = sparse.count;
+  return out;
+}
+
+/// Calls `each` with the number of an element that a sparse accessor changes and its number among the changes.
+template <class Each>
+void for_changes(const std::string& path, const cgltf_accessor& accessor, const Changes& changes, Each each) {
+  for (std::size_t i = 0; i < changes.indices.count; ++i) {
+    const std::size_t to = cgltf_accessor_read_index(&changes.indices, i);
     if (to >= accessor.count)
       throw Error(path + ": index out of range: a sparse accessor changes an element that it has not");
-    std::copy_n(&changed[i * components], components, &numbers[to * components]);
+    each(to, i);
   }
+}
+
+/// Puts the elements that a sparse accessor changes into `numbers`.
+void change(const std::string& path, const cgltf_accessor& accessor, std::vector<float>& numbers) {
+  const Changes changes = changes_of(accessor);
+  std::vector<float> changed;
+  unpack(path, changes.values, changed);
+  const std::size_t components = cgltf_num_components(accessor.type);
+  for_changes(path, accessor, changes, [&](std::size_t to, std::size_t i) {
+    std::copy_n(&changed[i * components], components, &numbers[to * components]);
+  });
 }
 
 }  // namespace
@@ -142,6 +162,20 @@ std::vector<Vec3> points_of(const std::string& path, const cgltf_accessor& acces
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
   return points;
+}
+
+std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accessor& accessor) {
+  if (accessor.type != cgltf_type_scalar) throw Error(path + ": damaged: indices of a primitive are no scalars");
+  cgltf_accessor dense = accessor;
+  dense.is_sparse = 0;
+  std::vector<std::size_t> indices(accessor.count, 0);
+  if (dense.buffer_view != nullptr)
+    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = cgltf_accessor_read_index(&dense, i);
+  if (!accessor.is_sparse) return indices;
+  const Changes changes = changes_of(accessor);
+  for_changes(path, accessor, changes,
+              [&](std::size_t to, std::size_t i) { indices[to] = cgltf_accessor_read_index(&changes.values, i); });
+  return indices;
 }
 
 }  // namespace tegotae

@@ -26,6 +26,8 @@ GltfData parse_gltf(const std::string& path, const CheckedGltf& checked);
 /// Throws Error when it has another number of components.
 std::vector<double> numbers_of(const std::string& path, const cgltf_accessor& accessor, std::size_t components);
 std::vector<Vec3> points_of(const std::string& path, const cgltf_accessor& accessor);
+/// All whole numbers of an accessor of scalars, sparse or not.
+std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accessor& accessor);
 
 /// Corners of a primitive's triangles and their indices; decodes Draco.
 struct GltfTriangles {
@@ -41,8 +43,9 @@ GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data
 Matrix34 local_map(const cgltf_node& node);
 Matrix34 world_map(const cgltf_node& node);
 
-/// The points of a primitive of `node` in the scene, moved by the node's skin; `points` are those of the mesh.
+/// The points of a primitive of `node` in the scene, moved by the node's skin; `points` are those of the mesh. A
+/// vertex's weights count as shares of their sum; `off` gets the number of vertices whose sum is not about one.
 std::vector<Vec3> skinned(const std::string& path, const cgltf_node& node, const cgltf_primitive& primitive,
-                          const std::vector<Vec3>& points);
+                          const std::vector<Vec3>& points, std::size_t& off);
 
 }  // namespace tegotae

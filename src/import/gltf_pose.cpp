@@ -1,4 +1,6 @@
 // Where the nodes of a glTF file are, and where skins put their vertices.
+#include <cmath>
+
 #include "import/gltf_data.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -42,9 +44,11 @@ Matrix34 world_map(const cgltf_node& node) {
 }
 
 std::vector<Vec3> skinned(const std::string& path, const cgltf_node& node, const cgltf_primitive& primitive,
-                          const std::vector<Vec3>& points) {
+                          const std::vector<Vec3>& points, std::size_t& off) {
+  constexpr double kRounded = 1e-2;  // what weights of bytes may miss one by
   const std::vector<Matrix34> maps = joint_maps(path, *node.skin);
   std::vector<Vec3> moved(points.size(), Vec3::Zero());
+  std::vector<double> sums(points.size(), 0);
   bool has_set = false;
   for (int set = 0;; ++set) {  // sets of four joints each
     const cgltf_accessor* joints = cgltf_find_accessor(&primitive, cgltf_attribute_type_joints, set);
@@ -59,10 +63,16 @@ std::vector<Vec3> skinned(const std::string& path, const cgltf_node& node, const
       if (!(of[i] >= 0 && of[i] < static_cast<double>(maps.size())))
         throw Error(path + ": index out of range: a vertex names a joint that its skin has not");
       const Matrix34& X = maps[static_cast<std::size_t>(of[i])];
+      sums[i / 4] += w[i];
       moved[i / 4] += w[i] * (X.leftCols<3>() * points[i / 4] + X.col(3));
     }
   }
   if (!has_set) throw Error(path + ": damaged: a skinned mesh has no joints and weights");
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (!(sums[i] > 0)) throw Error(path + ": damaged: a vertex of a skinned mesh hangs on no joint");
+    off += std::abs(sums[i] - 1) > kRounded;
+    moved[i] /= sums[i];
+  }
   return moved;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "import/file_check.hpp"
 #include "import/gltf_data.hpp"
@@ -56,16 +57,30 @@ class GltfReader {
       for (std::size_t i = 0; i < data_.nodes_count; ++i)
         if (data_.nodes[i].parent == nullptr) add(data_.nodes[i], Matrix34::Identity(), groups);
     }
+    tell_unread();
     return std::move(file_);
   }
 
  private:
   void add(const cgltf_node& node, const Matrix34& parent, std::vector<std::string>& groups) {
     const Matrix34 X = product(parent, local_map(node));
+    if (node.mesh != nullptr) shown_.insert(&node);
     if (node.mesh != nullptr) add_parts(node, X, groups);
     groups.push_back(text_of(node.name));
     for (std::size_t c = 0; c < node.children_count; ++c) add(*node.children[c], X, groups);
     groups.pop_back();
+  }
+
+  void tell_unread() {
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < data_.nodes_count; ++i)
+      other += data_.nodes[i].mesh != nullptr && shown_.count(&data_.nodes[i]) == 0;
+    if (other > 0)
+      file_.notes.push_back("not in the scene that is read: nodes with meshes, " + std::to_string(other) +
+                            " of them: left out");
+    if (off_weights_ > 0)
+      file_.notes.push_back("the weights of " + std::to_string(off_weights_) +
+                            " vertices on their joints do not add up to one: taken as shares of their sum");
   }
 
   void add_parts(const cgltf_node& node, const Matrix34& X, const std::vector<std::string>& groups) {
@@ -85,7 +100,10 @@ class GltfReader {
     const Matrix34 own = node.skin != nullptr ? Matrix34(Matrix34::Identity()) : X;
     for (const Matrix34& instance : instances_of(node)) {
       part.X = product(own, instance);
-      file_.parts.push_back(part);
+      if (part.X.leftCols<3>().isZero(0))
+        file_.notes.push_back('"' + part.name + "\" is scaled to nothing: left out");  // a way to hide a node
+      else
+        file_.parts.push_back(part);
     }
   }
 
@@ -150,7 +168,8 @@ class GltfReader {
     GltfTriangles plain = triangles_of(path_, primitive);
     for (std::size_t t = 0; t < primitive.targets_count && t < weights.size(); ++t)
       if (weights[t] != 0) morph(primitive.targets[t], weights[t], plain.points);
-    if (node.skin != nullptr && !plain.triangles.empty()) plain.points = skinned(path_, node, primitive, plain.points);
+    if (node.skin != nullptr && !plain.triangles.empty())
+      plain.points = skinned(path_, node, primitive, plain.points, off_weights_);
     return {std::move(plain.points), std::move(plain.triangles)};
   }
 
@@ -168,6 +187,8 @@ class GltfReader {
   const cgltf_data& data_;
   std::map<std::tuple<const cgltf_mesh*, const cgltf_skin*, std::vector<float>>, std::size_t> known_;
   std::map<const cgltf_mesh*, std::vector<std::size_t>> faces_;  // of each primitive
+  std::set<const cgltf_node*> shown_;                            // of those with meshes
+  std::size_t off_weights_ = 0;                                  // vertices whose weights do not add up to one
   PartFile file_;
 };
 

@@ -3,6 +3,7 @@
 #include <draco/mesh/mesh.h>
 
 #include <limits>
+#include <numeric>
 
 #include "import/gltf_data.hpp"
 #include "tegotae/core/error.hpp"
@@ -10,16 +11,18 @@
 namespace tegotae {
 namespace {
 
+/// Of a primitive of so many points; without indices all of them.
 std::vector<std::size_t> indices_of(const std::string& path, const cgltf_primitive& primitive, std::size_t points) {
-  std::vector<std::size_t> indices(primitive.indices == nullptr ? points : primitive.indices->count);
-  if (primitive.indices != nullptr && (primitive.indices->is_sparse || primitive.indices->type != cgltf_type_scalar))
-    throw Error(path + ": damaged: indices of a primitive are sparse or no scalars");
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    indices[i] = primitive.indices == nullptr ? i : cgltf_accessor_read_index(primitive.indices, i);
-    if (indices[i] >= points)
-      throw Error(path + ": index out of range: a primitive names vertex " + std::to_string(indices[i]) + " of " +
-                  std::to_string(points));
+  if (primitive.indices == nullptr) {
+    std::vector<std::size_t> all(points);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
   }
+  std::vector<std::size_t> indices = tegotae::indices_of(path, *primitive.indices);
+  for (const std::size_t i : indices)
+    if (i >= points)
+      throw Error(path + ": index out of range: a primitive names vertex " + std::to_string(i) + " of " +
+                  std::to_string(points));
   return indices;
 }
 
@@ -46,6 +49,23 @@ const cgltf_attribute* position_of(const cgltf_attribute* attributes, std::size_
   for (std::size_t i = 0; i < count; ++i)
     if (attributes[i].type == cgltf_attribute_type_position) return &attributes[i];
   return nullptr;
+}
+
+/// What a component of an accessor is divided by: integers may stand for numbers from -1 or 0 to 1.
+double divisor_of(const cgltf_accessor& accessor) {
+  if (!accessor.normalized) return 1;
+  switch (accessor.component_type) {
+    case cgltf_component_type_r_8:
+      return 127;
+    case cgltf_component_type_r_8u:
+      return 255;
+    case cgltf_component_type_r_16:
+      return 32767;
+    case cgltf_component_type_r_16u:
+      return 65535;
+    default:
+      return 1;
+  }
 }
 
 }  // namespace
@@ -80,11 +100,15 @@ GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data
   const auto id = static_cast<std::uint32_t>(cgltf_accessor_index(&data, position->data));
   const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id);
   if (attribute == nullptr || attribute->num_components() != 3) throw fail("has no positions");
+  // The stream has the bare integers; what they stand for the accessor says.
+  const cgltf_attribute* told = position_of(primitive.attributes, primitive.attributes_count);
+  const double divisor = told == nullptr || attribute->normalized() ? 1 : divisor_of(*told->data);
   GltfTriangles out;
   for (draco::PointIndex i(0); i < mesh->num_points(); ++i) {
     std::array<float, 3> p{};
     if (!attribute->ConvertValue<float, 3>(attribute->mapped_index(i), p.data())) throw fail("has no positions");
     out.points.emplace_back(p[0], p[1], p[2]);
+    if (divisor != 1) out.points.back() = (out.points.back() / divisor).cwiseMax(-1);  // -128 stands for -1 too
   }
   std::vector<std::size_t> indices;
   for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {

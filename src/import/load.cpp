@@ -26,7 +26,7 @@ TriangleMesh import(const std::string& path, double unit) {
     return mesh;
   }
   Assimp::Importer importer;
-  const aiScene& scene = read_scene(importer, path);
+  const aiScene& scene = read_scene(importer, path, mesh.notes);
   append(scene, *scene.mRootNode, Matrix34::Identity(), unit, mesh);
   return mesh;
 }

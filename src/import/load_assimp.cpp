@@ -66,15 +66,15 @@ Matrix34 transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
-const aiScene& read_scene(Assimp::Importer& importer, const std::string& path) {
-  const std::string bytes = plain_mesh_bytes(path);
-  const std::string extension = lower_extension(path);
+const aiScene& read_scene(Assimp::Importer& importer, const std::string& path, std::vector<std::string>& notes) {
+  const PlainMesh plain = plain_mesh(path);
+  notes.insert(notes.end(), plain.notes.begin(), plain.notes.end());
   const aiScene* scene = nullptr;
-  if (extension == ".obj") {                      // the only format that names other files
-    importer.SetIOHandler(new MeshFolder(path));  // which the importer deletes
+  if (plain.format == "obj") {                                 // the only format that names other files
+    importer.SetIOHandler(new MeshFolder(path, plain.bytes));  // which the importer deletes
     scene = importer.ReadFile(path, 0);
   } else {
-    scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str() + 1);
+    scene = importer.ReadFileFromMemory(plain.bytes.data(), plain.bytes.size(), 0, plain.format.c_str());
   }
   if (scene == nullptr) throw Error(path + ": " + importer.GetErrorString());
   require_valid_indices(*scene, path);

@@ -1,13 +1,16 @@
 #include "import/load_files.hpp"
 
+#include <assimp/MemoryIOWrapper.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <system_error>
 
 namespace tegotae {
 
 namespace fs = std::filesystem;
 
-MeshFolder::MeshFolder(const std::string& mesh_file) {
+MeshFolder::MeshFolder(const std::string& mesh_file, std::string_view bytes) : mesh_file_(mesh_file), bytes_(bytes) {
   // The mesh file itself may be a link to somewhere else; what it names lies beside it as it was named.
   std::error_code none;
   folder_ = fs::canonical(fs::absolute(mesh_file, none).parent_path(), none);
@@ -25,7 +28,10 @@ bool MeshFolder::Exists(const char* file) const {
 }
 
 Assimp::IOStream* MeshFolder::Open(const char* file, const char* mode) {
-  return allowed(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  if (!allowed(file)) return nullptr;
+  if (!bytes_.empty() && file == mesh_file_)
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+  return DefaultIOSystem::Open(file, mode);
 }
 
 }  // namespace tegotae

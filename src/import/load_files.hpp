@@ -4,19 +4,23 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace tegotae {
 
 /// The files that assimp may open for one mesh file: regular files in its folder and below. A mesh file names others
-/// (buffers, materials), and one that names a pipe or a device would never stop being read.
+/// (buffers, materials), and one that names a pipe or a device would never stop being read. In the place of the mesh
+/// file itself `bytes` are read, when there are any; they must outlive this.
 class MeshFolder final : public Assimp::DefaultIOSystem {
  public:
-  explicit MeshFolder(const std::string& mesh_file);
+  explicit MeshFolder(const std::string& mesh_file, std::string_view bytes = {});
   bool Exists(const char* file) const override;
   Assimp::IOStream* Open(const char* file, const char* mode) override;
 
  private:
   bool allowed(const char* file) const;
+  const std::string mesh_file_;
+  const std::string_view bytes_;
   std::filesystem::path folder_;
 };
 

@@ -87,7 +87,10 @@ Assembly read_pieces(const std::string& path, const aiScene& scene, const Assemb
 Assembly read_flat(const std::string& path, const AssemblyOptions& options) {
   if (options.progress) options.progress("reading the file", 0, 0);
   Assimp::Importer importer;
-  return read_pieces(path, read_scene(importer, path), options);
+  std::vector<std::string> notes;
+  Assembly assembly = read_pieces(path, read_scene(importer, path, notes), options);
+  assembly.notes = std::move(notes);
+  return assembly;
 }
 
 }  // namespace tegotae

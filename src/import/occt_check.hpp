@@ -2,12 +2,23 @@
 
 #include <XSControl_WorkSession.hxx>
 #include <string>
+#include <vector>
 
 namespace tegotae {
 
 /// Looks through the entities that OpenCASCADE has read, before they become shapes; whether colors can be read too
-/// (OpenCASCADE follows null pointers in damaged ones). Throws Error when one that tells shape or place is damaged, or
-/// scales or mirrors, which OpenCASCADE drops.
+/// (OpenCASCADE follows null pointers in damaged ones). Throws Error when one that shapes or places are made of is
+/// damaged, or scales or mirrors, which OpenCASCADE drops.
 bool check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session);
+
+/// The files of parts that the file `path` names and that are not there. Throws Error when one is not in the file's
+/// folder or below.
+std::vector<std::string> named_files(const std::string& path, const Handle(XSControl_WorkSession) & session);
+
+/// Solids of representations of which OpenCASCADE has made nothing, each "#17 is a BLOCK".
+std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & session);
+
+/// Instances of products that no entity places, a note each.
+std::vector<std::string> unplaced(const Handle(XSControl_WorkSession) & session);
 
 }  // namespace tegotae

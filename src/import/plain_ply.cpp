@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "import/check_text.hpp"
+#include "import/ply_bytes.hpp"
 
 namespace tegotae {
 namespace {
@@ -93,13 +94,16 @@ class Body {
     return number && with_type(type, [&](auto zero) { return fits(value, zero); });
   }
 
-  /// To the next element. False when values are left over on an ASCII file's line, which is an element.
+  /// To the line of the next element, in an ASCII file.
+  void begin_element() {
+    if (encoding_ == Encoding::ascii) at_ = std::min(bytes_.find_first_not_of(kBlank, at_), bytes_.size());
+  }
+
+  /// False when values are left over on an ASCII file's line, which is an element.
   bool end_element() {
     if (encoding_ != Encoding::ascii) return true;
     at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size());
-    if (at_ < bytes_.size() && bytes_[at_] != '\n') return false;
-    at_ = std::min(at_ + 1, bytes_.size());
-    return true;
+    return at_ == bytes_.size() || bytes_[at_] == '\n';
   }
 
   std::size_t left() const { return bytes_.size() - at_; }
@@ -180,13 +184,17 @@ Property read_property(const std::string& path, const Words& line) {
     property.value = scalar_of(line[line.size() - 2]);
     property.name = line.back();
   }
-  if (property.value == Scalar::none || (list && property.length == Scalar::none))
-    refuse(path, "damaged: a property of the header has no known type and name");
+  if (property.value == Scalar::none || (list && property.length == Scalar::none)) {
+    std::string text;
+    for (const std::string& word : line) text += (text.empty() ? "" : " ") + word;
+    refuse(path, "damaged: \"" + text.substr(0, 60) + "\" in its header has no known type and name");
+  }
   return property;
 }
 
 Header read_header(const std::string& path, std::string_view bytes) {
   Header header;
+  if (bytes.substr(0, 3) == "\xef\xbb\xbf") header.size = 3;
   if (next_line(path, bytes, header.size) != Words{"ply"}) refuse(path, "damaged: it does not begin with ply");
   bool has_format = false;
   for (;;) {
@@ -236,13 +244,6 @@ void check_elements(const std::string& path, const Header& header) {
   }
 }
 
-template <class T>
-void put(std::string& bytes, T value) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  bytes.append(raw, sizeof value);
-}
-
 /// Reads the body, and writes what is shape of it.
 class PlyReader {
  public:
@@ -262,26 +263,23 @@ class PlyReader {
       }
       for (std::uint64_t i = 0; i < element.count; ++i) read(element, i);
     }
-    const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices_) +
-                             "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                             std::to_string(faces_) + "\nproperty list uint uint vertex_indices\nend_header\n";
-    return head + vertex_bytes_ + face_bytes_;
+    return out_.file();
   }
 
  private:
   void read(const Element& element, std::uint64_t number) {
     const auto place = [&] { return element.name + ' ' + std::to_string(number); };
-    std::array<double, 3> p{};
+    Vec3 p = Vec3::Zero();
+    body_.begin_element();
     for (const Property& property : element.properties) {
       read(property, place);
       if (element.name == "vertex" && property.length == Scalar::none && property.name.size() == 1 &&
           property.name[0] >= 'x' && property.name[0] <= 'z')
-        p[static_cast<std::size_t>(property.name[0] - 'x')] = values_[0];
+        p[property.name[0] - 'x'] = values_[0];
       if (element.name == "face" && has_corners(property)) add_face(place);
       if (element.name == "tristrips" && has_corners(property)) add_strips(place);
     }
-    if (element.name == "vertex")
-      for (const double x : p) put(vertex_bytes_, x);
+    if (element.name == "vertex") out_.vertex(p);
     if (!body_.end_element()) refuse(path_, "damaged: more values on its line than " + place() + " has");
   }
 
@@ -300,6 +298,7 @@ class PlyReader {
 
   template <class Place>
   std::uint32_t vertex(double value, Place place) const {
+    if (value != std::floor(value)) refuse(path_, "damaged: " + place() + " has an index that is no whole number");
     if (!(value >= 0 && value < static_cast<double>(vertices_))) {
       refuse(path_, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) + " of " +
                         std::to_string(vertices_));
@@ -309,9 +308,9 @@ class PlyReader {
 
   template <class Place>
   void add_face(Place place) {
-    put(face_bytes_, static_cast<std::uint32_t>(values_.size()));
-    for (const double value : values_) put(face_bytes_, vertex(value, place));
-    ++faces_;
+    std::vector<std::uint32_t> corners;
+    for (const double value : values_) corners.push_back(vertex(value, place));
+    out_.face(corners);
   }
 
   /// Strips of triangles, one after the other; -1 ends one.
@@ -327,19 +326,17 @@ class PlyReader {
       const std::size_t n = strip.size();
       if (n < 3 || strip[n - 1] == strip[n - 2] || strip[n - 2] == strip[n - 3] || strip[n - 3] == strip[n - 1])
         continue;
-      put(face_bytes_, std::uint32_t{3});
-      for (const std::size_t k : {n - 3, n % 2 == 1 ? n - 2 : n - 1, n % 2 == 1 ? n - 1 : n - 2})
-        put(face_bytes_, strip[k]);
-      ++faces_;
+      const bool odd = n % 2 == 1;
+      out_.face({strip[n - 3], strip[odd ? n - 2 : n - 1], strip[odd ? n - 1 : n - 2]});
     }
   }
 
   const std::string& path_;
   Header header_;
   Body body_;
-  std::uint64_t vertices_ = 0, faces_ = 0;
+  std::uint64_t vertices_ = 0;
   std::vector<double> values_;
-  std::string vertex_bytes_, face_bytes_;
+  PlyBytes out_;
 };
 
 }  // namespace

@@ -11,6 +11,8 @@ namespace tegotae {
 namespace {
 
 constexpr std::size_t kHeader = 84, kFacet = 50;
+// Names are cut there; assimp refuses longer ones.
+constexpr std::size_t kLongestName = 200;
 
 std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -21,6 +23,11 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
 bool is_word(std::string_view word, std::string_view keyword) {
   return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
                     [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+/// Whether a line that begins with `word` is a comment or a color, which some programs write between facets.
+bool is_aside(std::string_view word) {
+  return word.substr(0, 1) == "#" || word.substr(0, 1) == ";" || word.substr(0, 2) == "//" || is_word(word, "color");
 }
 
 /// The words of a text STL file, and the plain file as it becomes.
@@ -38,6 +45,8 @@ class TextStl {
         out_ += "endsolid\n";
         rest_of_line();
         open_ = false;
+      } else if (is_aside(word)) {
+        rest_of_line();
       } else if (open_ || is_word(word, "facet")) {
         refuse(path_,
                "truncated or damaged: \"" + std::string(word.substr(0, 40)) + "\" where a facet or endsolid belongs");
@@ -75,7 +84,7 @@ class TextStl {
       if (name.empty()) name = word;
     }
     out_ += "solid";
-    if (!name.empty()) (out_ += ' ') += name;
+    if (!name.empty()) (out_ += ' ') += name.substr(0, kLongestName);
     out_ += '\n';
     open_ = true;
   }
@@ -119,6 +128,23 @@ class TextStl {
   bool open_ = false;
 };
 
+/// What might be a text STL file, from its first word that is no comment to the padding at its end.
+std::string_view text_of(std::string_view bytes) {
+  bytes = bytes.substr(0, bytes.find_last_not_of('\0') + 1);
+  if (bytes.substr(0, 3) == "\xef\xbb\xbf") bytes.remove_prefix(3);
+  for (;;) {
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(kBlank), bytes.size()));
+    if (bytes.empty() || !is_aside(bytes.substr(0, bytes.find_first_of(kBlank)))) return bytes;
+    bytes.remove_prefix(std::min(bytes.find_first_of("\r\n"), bytes.size()));
+  }
+}
+
+/// Whether `bytes` look like text: the count of a binary file has a byte that is none.
+bool is_text(std::string_view bytes) {
+  return std::none_of(bytes.begin(), bytes.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 32 && kBlank.find(c) == kBlank.npos; });
+}
+
 }  // namespace
 
 std::string plain_stl(const std::string& path, std::string_view bytes) {
@@ -126,10 +152,10 @@ std::string plain_stl(const std::string& path, std::string_view bytes) {
   const std::size_t room = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
   const std::size_t whole = kHeader + kFacet * static_cast<std::size_t>(facets);
   if (bytes.size() >= kHeader && whole == bytes.size()) return std::string(bytes);
-  std::string_view text = bytes.substr(bytes.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
-  text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+  const std::string_view text = text_of(bytes);
   if (is_word(text.substr(0, 5), "solid") && text.find('\0') == std::string_view::npos)
     return TextStl(path, text).plain();
+  if (is_text(bytes.substr(0, kHeader))) refuse(path, "damaged: a text STL file begins with \"solid\"");
   if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
   // Bytes behind the last facet are padding, but for as many as a facet has: then the count is wrong.
   if (facets > 0 && room == facets) return std::string(bytes.substr(0, whole));

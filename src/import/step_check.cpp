@@ -4,9 +4,12 @@
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <vector>
 
+#include "import/check_text.hpp"
 #include "import/file_check.hpp"
 #include "import/read_parts.hpp"
+#include "import/step_entities.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -17,22 +20,26 @@ constexpr std::string_view kMagic = "ISO-10303-21";
 constexpr std::array<std::string_view, 6> kSchemas = {"CONFIG_CONTROL_DESIGN", "AP203", "CCD_CLA",
                                                       "AUTOMOTIVE_DESIGN",     "AP214", "AP242"};
 
-bool known_schema(std::string_view name) {
+bool known_schema(const std::string& name) {
   return std::any_of(kSchemas.begin(), kSchemas.end(),
-                     [&](std::string_view s) { return name.substr(0, s.size()) == s; });
+                     [&](std::string_view s) { return name.compare(0, s.size(), s) == 0; });
 }
 
-/// The first name in FILE_SCHEMA(('NAME ...')), in capitals; empty when there is none.
-std::string schema_of(std::string_view bytes) {
+/// The names in FILE_SCHEMA(('NAME ...', ...)), in capitals.
+std::vector<std::string> schemas_of(std::string_view bytes) {
+  std::vector<std::string> names;
   std::size_t at = bytes.find("FILE_SCHEMA");
-  if (at == std::string_view::npos) return "";
-  at = bytes.find('\'', at);
-  if (at == std::string_view::npos) return "";
-  const std::size_t end = bytes.find_first_of("' {\r\n", at + 1);
-  if (end == std::string_view::npos) return "";
-  std::string name(bytes.substr(at + 1, end - at - 1));
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
-  return name;
+  if (at == std::string_view::npos) return names;
+  std::string_view list = bytes.substr(at, bytes.find(';', at) - at);
+  while ((at = list.find('\'')) != std::string_view::npos) {
+    list.remove_prefix(at + 1);
+    const std::string_view text = list.substr(0, list.find('\''));
+    list.remove_prefix(std::min(text.size() + 1, list.size()));
+    std::string name(text.substr(0, text.find_first_of(" {\r\n")));
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
+    if (!name.empty()) names.push_back(std::move(name));
+  }
+  return names;
 }
 
 }  // namespace
@@ -47,17 +54,20 @@ bool is_step(const std::string& path) {
 }
 
 std::string check_step(const std::string& path) {
-  std::string bytes = read_bytes(path);
+  std::string bytes = plain_step(path, read_bytes(path));
   const std::string_view all(bytes);
-  const std::size_t begin = all.find_first_not_of(" \t\r\n");
+  const std::size_t begin = all.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) throw Error(path + ": empty file");
   if (all.substr(begin, kMagic.size()) != kMagic) throw Error(path + ": damaged: it does not begin with ISO-10303-21");
-  const std::size_t end = all.rfind("END-ISO-10303-21;");
-  if (end == std::string_view::npos) throw Error(path + ": truncated: it has no END-ISO-10303-21");
-  const std::string schema = schema_of(all);
-  if (schema.empty()) throw Error(path + ": damaged: it names no schema (FILE_SCHEMA)");
-  if (!known_schema(schema))
-    throw Error(path + ": unknown STEP schema " + schema + " (known: AP203, AP214, AP242); export one of these");
+  const std::size_t end = all.rfind("END-ISO-10303-21");
+  const std::size_t semicolon = end == all.npos ? all.npos : all.find_first_not_of(kBlank, end + 16);
+  if (semicolon == all.npos || all[semicolon] != ';') throw Error(path + ": truncated: it has no END-ISO-10303-21");
+  const std::vector<std::string> schemas = schemas_of(all);
+  if (schemas.empty()) throw Error(path + ": damaged: it names no schema (FILE_SCHEMA)");
+  if (std::none_of(schemas.begin(), schemas.end(), known_schema))
+    throw Error(path + ": unknown STEP schema " + schemas.front() +
+                " (known: AP203, AP214, AP242); export one of these");
+  bytes.erase(end + 16, semicolon - end - 16);  // OpenCASCADE wants the two together
   return bytes;
 }
 

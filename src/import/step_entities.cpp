@@ -134,4 +134,48 @@ std::vector<StepStatement> step_statements(const std::string& path, std::string_
   return out;
 }
 
+namespace {
+
+std::string without_comments(const std::string& path, std::string_view bytes) {
+  std::string out;
+  out.reserve(bytes.size());
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t n = unit(bytes.substr(at));
+    if (n == 0) refuse(path, "damaged: a text or comment in it has no end");
+    if (bytes.substr(at, 2) == "/*")
+      out += ' ';
+    else
+      out += bytes.substr(at, n);
+    at += n;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string plain_step(const std::string& path, std::string bytes) {
+  if (bytes.compare(0, 3, "\xef\xbb\xbf") == 0) bytes.erase(0, 3);
+  const auto has = [&](const char* text) { return bytes.find(text) != std::string::npos; };
+  if (has("/*")) bytes = without_comments(path, bytes);
+  if (!has("DATA(") && !has("DATA (") && !has("ANCHOR;") && !has("REFERENCE;")) return bytes;
+  std::string out, section, data;
+  for (const StepStatement& s : step_statements(path, bytes)) {
+    StepCursor cursor(path, 0, s.text);
+    const std::string word(s.id == 0 ? cursor.word() : std::string_view());
+    if (word == "REFERENCE") refuse(path, "it refers to entities of other files (REFERENCE), which are not read");
+    if (word == "ANCHOR" || word == "DATA") {
+      section = word;
+    } else if (!section.empty()) {
+      if (word == "ENDSEC")
+        section.clear();
+      else if (section == "DATA")
+        data += s.text;
+    } else {
+      if (word == "END") out += "\nDATA;" + data + "\nENDSEC;";
+      out += s.text;
+    }
+  }
+  return out;
+}
+
 }  // namespace tegotae

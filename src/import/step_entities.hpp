@@ -58,4 +58,9 @@ struct StepStatement {
 /// does not end, or the number of an entity is too large for OpenCASCADE.
 std::vector<StepStatement> step_statements(const std::string& path, std::string_view bytes);
 
+/// The text of a STEP file as OpenCASCADE reads it: without byte order mark and comments, its data sections (edition
+/// 2 on) one, its anchors left out. Throws Error when it refers to entities of other files, or a text or comment does
+/// not end.
+std::string plain_step(const std::string& path, std::string bytes);
+
 }  // namespace tegotae

@@ -6,6 +6,7 @@
 #include <Message_Messenger.hxx>
 #include <Quantity_ColorRGBA.hxx>
 #include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TDF_LabelSequence.hxx>
@@ -145,19 +146,32 @@ class StepReader {
     PlainStep plain;
     if (mentions_triangles(bytes_)) plain = take_triangles(path_, bytes_);
     unread_ = plain.unread;
-    std::istringstream text(plain.text);
-    const bool done = plain.text.empty() ? reader.ReadFile(path_.c_str()) == IFSelect_RetDone
-                                         : reader.ChangeReader().ReadStream(path_.c_str(), text) == IFSelect_RetDone;
-    if (!done) throw Error(path_ + ": damaged: not a readable STEP file");
+    std::istringstream text(plain.text.empty() ? bytes_ : plain.text);
+    if (reader.ChangeReader().ReadStream(path_.c_str(), text) != IFSelect_RetDone)
+      throw Error(path_ + ": damaged: not a readable STEP file");
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
     face_names_.emplace(session);
     const bool has_colors = check_entities(path_, session);
     reader.SetColorMode(has_colors);
     if (!has_colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
+    for (const std::string& file : named_files(path_, session))
+      assembly_.notes.push_back("the file \"" + file + "\" that it names is missing: its part is left out");
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
+    for (const std::string& solid : unread_solids(session)) unread_.push_back(solid);
+    unplaced_ = unplaced(session);
+    check_named_files(reader);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
+  }
+
+  /// Other files are read with this one, and looked through after that only.
+  void check_named_files(STEPCAFControl_Reader& reader) {
+    NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator file(
+        reader.ExternFiles());
+    for (; file.More(); file.Next())
+      if (file.Value()->GetLoadStatus() == IFSelect_RetDone)
+        check_entities(path_ + ": " + file.Key().ToCString(), file.Value()->GetWS());
   }
 
   /// `use` is the instance, `what` the product it shows (the same for a root).
@@ -314,6 +328,7 @@ class StepReader {
   }
 
   void tell_unread() {
+    for (const std::string& what : unplaced_) assembly_.notes.push_back(what);
     for (const std::string& what : unread_) assembly_.notes.push_back(what + ", which is not read: left out");
     for (const std::uint64_t id : triangles_.unused())
       assembly_.notes.push_back("the triangles of #" + std::to_string(id) + " are of no product: left out");
@@ -326,6 +341,7 @@ class StepReader {
       if (empty(part) && !leaves_[part.shape].tessellated)
         assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
+    if (parts.empty() && !unplaced_.empty()) throw Error(path_ + ": " + unplaced_.front());
     if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
   }
 
@@ -338,7 +354,8 @@ class StepReader {
   std::map<std::string, std::size_t> leaf_of_;
   TransferredTriangles triangles_;
   std::optional<FaceNames> face_names_;  // since the file is open
-  std::vector<std::string> unread_;      // kinds of tessellated shapes
+  std::vector<std::string> unplaced_;    // instances, a note each
+  std::vector<std::string> unread_;      // shapes, each "#17 is a ..."
   Assembly assembly_;
 };
 

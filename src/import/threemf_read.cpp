@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -19,11 +20,13 @@ namespace {
 // Components may name components; more levels, or parts and groups, than these are made to do harm.
 constexpr int kDeepest = 100;
 constexpr std::size_t kMaxParts = 1'000'000;
-// What a required extension may be: production splits a file into several, materials tell colors.
-constexpr std::array<const char*, 4> kKnownExtensions = {
+// What a required extension may be: production splits a file into several, materials tell colors, triangle sets
+// give names.
+constexpr std::array<const char*, 5> kKnownExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
     "http://schemas.3mf.io/3dmanufacturing/displaycolor"};
 
 /// The name of an element or attribute without its namespace's prefix.
@@ -156,6 +159,10 @@ class ThreeMfReader {
       file_.notes.push_back('"' + name + "\" is a support of the print: left out");
       return;
     }
+    if (type == "other") {
+      file_.notes.push_back('"' + name + "\" is of the type other, which is nothing to be made: left out");
+      return;
+    }
     if (++placed_ > kMaxParts) damaged("it has more than a million parts and groups");
     if (depth > kDeepest) damaged("its components are nested more than " + std::to_string(kDeepest) + " deep");
     if (const pugi::xml_node components = child(object, "components")) {
@@ -175,13 +182,17 @@ class ThreeMfReader {
     TriangleMesh out;
     out.name = name;
     const pugi::xml_node mesh = child(object, "mesh");
-    for (const pugi::xml_node& v : child(mesh, "vertices").children())
+    for (const pugi::xml_node& v : child(mesh, "vertices").children()) {
+      if (!is(v.name(), "vertex")) continue;
       out.vertices.push_back(units_ * Vec3(number(v.attribute("x").value()), number(v.attribute("y").value()),
                                            number(v.attribute("z").value())));
+    }
     for (const pugi::xml_node& t : child(mesh, "triangles").children()) {
+      if (!is(t.name(), "triangle")) continue;
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t k = 0; k < 3; ++k) {
         const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value());
+        if (index != std::floor(index)) damaged("a triangle of \"" + name + "\" has an index that is no whole number");
         if (!(index >= 0 && index < static_cast<double>(out.vertices.size())))
           throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it has not");
         corners[k] = static_cast<std::uint32_t>(index);
@@ -189,6 +200,9 @@ class ThreeMfReader {
       out.triangles.push_back(corners);
     }
     if (child(mesh, "beamlattice")) file_.notes.push_back('"' + name + "\" has a beam lattice, which is not read");
+    if (attribute(object, "meshresolution") == "lowres")
+      file_.notes.push_back('"' + name +
+                            "\" is printed from slices, which are not read: its mesh is a coarse stand-in");
     return out;
   }
 

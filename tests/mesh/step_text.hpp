@@ -91,6 +91,14 @@ class StepText {
     add("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(" + ref(relation) + "," + ref(self) + ")");
   }
 
+  /// An operator of these axes (0: left out) and nothing else.
+  int turning(int x, int y, int z) {
+    const auto axis = [](int id) { return id == 0 ? std::string("$") : ref(id); };
+    const int at = point(0, 0, 0);
+    return add("CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',''," + axis(x) + "," + axis(y) + "," + ref(at) + ",$," +
+               axis(z) + ")");
+  }
+
   /// An operator with these axes, moved by 5 mm in x.
   int placing(double x_axis, double scale) {
     const int x = direction(x_axis, 0, 0), y = direction(0, 1, 0), at = point(5, 0, 0), z = direction(0, 0, 1);

@@ -133,6 +133,33 @@ TEST_CASE("3MF: what is not built is left out, supports with a note; lattices ar
              Catch::Contains("\"tip\" has a beam lattice") && Catch::Contains("\"prop\" is a support"));
 }
 
+TEST_CASE("3MF: objects of the type other, and meshes that stand in for slices, are told", "[3mf]") {
+  const TempFolder folder;
+  const Assembly a =
+      read_assembly(write(folder, model(object("1", "name=\"tip\" s:meshresolution=\"lowres\"") +
+                                            object("2", "type=\"other\" name=\"aid\""),
+                                        R"(<item objectid="1"/><item objectid="2"/>)",
+                                        "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"")));
+  REQUIRE(a.parts.size() == 1);
+  CHECK(has_note(a, "\"aid\" is of the type other"));
+  CHECK(has_note(a, "\"tip\" is printed from slices"));
+}
+
+TEST_CASE("3MF: elements of extensions in a mesh are skipped, triangle sets may be required", "[3mf]") {
+  const TempFolder folder;
+  std::string mesh = kMesh;
+  mesh.insert(mesh.find("<vertices>") + 10, "<t:more/><!-- corners -->");
+  mesh.insert(mesh.find("<triangles>") + 11, "<t:more/>");
+  const Assembly a = read_assembly(
+      write(folder, model(object("1", "", mesh), R"(<item objectid="1"/>)",
+                          "requiredextensions=\"t\" "
+                          "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07\"")));
+  check_part(a, 0, Vec3::Zero(), Vec3::Constant(0.01));
+  mesh.replace(mesh.find("v1=\"0\""), 6, "v1=\".5\"");
+  CHECK_THAT(refusal(write(folder, model(object("1", "", mesh), R"(<item objectid="1"/>)"))),
+             Catch::Contains("no whole number"));
+}
+
 TEST_CASE("3MF: a required extension that is not read refuses the file", "[3mf]") {
   const TempFolder folder;
   CHECK_THAT(refusal(write(folder, model(object("1", ""), R"(<item objectid="1"/>)", "requiredextensions=\"p b\""))),

@@ -84,6 +84,47 @@ TEST_CASE("glTF: the scene that the file names is read, the first without one, a
   CHECK(read(doc.save(folder)).parts.size() == 2);
 }
 
+TEST_CASE("glTF: nodes of other scenes, and those scaled to nothing, are told and left out", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  const std::size_t mesh = doc.mesh(doc.tetrahedron());
+  doc.node({{"mesh", mesh}});
+  CHECK(read(doc.save(folder)).notes.empty());
+  doc.node({{"mesh", mesh}, {"name", "hidden"}, {"scale", {0, 0, 0}}});
+  doc.node({{"mesh", mesh}, {"translation", {9, 0, 0}}}, false);
+  doc.j["scenes"].push_back({{"nodes", {2}}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 1);
+  CHECK(has_note(a, "\"hidden\" is scaled to nothing"));
+  CHECK(has_note(a, "not in the scene that is read: nodes with meshes, 1"));
+}
+
+TEST_CASE("glTF: the bytes say what a file is; numbers like 8.0 are whole", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.j["accessors"][0]["count"] = 4.0;
+  doc.save(folder);
+  std::string text = read_text(folder / "a.gltf");
+  const auto check = [&](const std::string& name, const std::string& bytes) {
+    INFO(name);
+    folder.write(name, bytes);
+    check_near(box_of(read(folder / name), 0), Vec3::Zero(), Vec3::Ones());
+  };
+  check("text.glb", text);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto glb = [&](std::uint32_t version) {
+    const auto size = static_cast<std::uint32_t>(text.size());
+    return "glTF" + GltfDoc::bytes_of<std::uint32_t>({version, 20 + size, size}) + "JSON" + text;
+  };
+  check("binary.gltf", glb(2));
+  folder.write("old.glb", glb(1));
+  CHECK_THAT(refused(folder / "old.glb"), Catch::Contains("version 1 is not read"));
+  const std::string uri = "\"uri\":\"a.bin\"";
+  folder.write("percent.gltf", text.replace(text.find(uri), uri.size(), "\"uri\":\"data:,%00\""));
+  CHECK_THAT(refused(folder / "percent.gltf"), Catch::Contains("not base64"));
+}
+
 TEST_CASE("glTF: triangles come as lists, strips and fans, with and without indices; points and lines go", "[gltf]") {
   const TempFolder folder;
   GltfDoc doc;
@@ -154,6 +195,31 @@ TEST_CASE("glTF: sparse accessors", "[gltf]") {
   CHECK_THAT(refused(beyond.save(folder)), Catch::Contains("index out of range: a sparse accessor"));
 }
 
+TEST_CASE("glTF: sparse indices", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  const std::size_t corners = doc.corners(), indices = doc.faces();
+  // The last face is a wrong one that the sparse part puts right.
+  const std::size_t last = doc.view(std::string({9, 10, 11})), right = doc.view(std::string({2, 0, 0, 0, 3, 0}));
+  const std::size_t wrong = doc.accessor(
+      GltfDoc::bytes_of(std::vector<std::uint16_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 0, 0}), 5123, "SCALAR", 12);
+  doc.j["accessors"][wrong]["sparse"] = {
+      {"count", 3}, {"indices", {{"bufferView", last}, {"componentType", 5121}}}, {"values", {{"bufferView", right}}}};
+  doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", corners}}}, {"indices", wrong}})}});
+  // Of nothing but zeros, all of them changed.
+  Json bare = doc.j["accessors"][indices];
+  const std::size_t all = doc.view(std::string({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  bare["sparse"] = {{"count", 12},
+                    {"indices", {{"bufferView", all}, {"componentType", 5121}}},
+                    {"values", {{"bufferView", bare["bufferView"]}}}};
+  bare.erase("bufferView");
+  doc.j["accessors"].push_back(bare);
+  doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", corners}}}, {"indices", doc.j["accessors"].size() - 1}})}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 2);
+  for (const auto& shape : a.shapes) CHECK(volume(*shape) == Approx(1.0 / 6));
+}
+
 TEST_CASE("glTF: morph weights of the node, or of the mesh, pose it", "[gltf]") {
   const TempFolder folder;
   GltfDoc doc;
@@ -194,6 +260,27 @@ TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", 
   check_near(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
   doc.j["skins"][0]["joints"] = {near};
   CHECK_THAT(refused(doc.save(folder)), Catch::Contains("a vertex names a joint"));
+}
+
+TEST_CASE("glTF: weights of a skin count as shares of their sum, and are told when that is not one", "[gltf]") {
+  const auto posed = [](const std::vector<float>& weights) {
+    const TempFolder folder;
+    GltfDoc doc;
+    Json primitive = doc.tetrahedron();
+    primitive["attributes"]["JOINTS_0"] = doc.accessor(std::string(16, '\0'), 5121, "VEC4", 4);
+    primitive["attributes"]["WEIGHTS_0"] = doc.floats(weights, "VEC4", 4);
+    const std::size_t joint = doc.node({{"translation", {10, 0, 0}}}, false);
+    doc.j["skins"] = {{{"joints", {joint}}}};
+    doc.node({{"mesh", doc.mesh(primitive)}, {"skin", 0}});
+    return read(doc.save(folder));
+  };
+  const Assembly off = posed({2, 0, 0, 0, .5f, 0, 0, 0, .25f, .25f, 0, 0, 1, 0, 0, 0});
+  check_near(box_of(off, 0), {10, 0, 0}, {11, 1, 1});
+  CHECK(has_note(off, "the weights of 3 vertices"));
+  const Assembly rounded = posed({.998f, 0, 0, 0, .333f, .333f, .333f, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  check_near(box_of(rounded, 0), {10, 0, 0}, {11, 1, 1});
+  CHECK(rounded.notes.empty());
+  CHECK_THAT(test::refusal([&] { posed(std::vector<float>(16, 0)); }), Catch::Contains("hangs on no joint"));
 }
 
 TEST_CASE("glTF: instances (EXT_mesh_gpu_instancing)", "[gltf]") {
@@ -279,6 +366,36 @@ TEST_CASE("glTF: Draco (KHR_draco_mesh_compression)", "[gltf]") {
   refused_for(morphed);
   doc.j["bufferViews"][view]["byteLength"] = packed.size() / 2;
   CHECK_THAT(refused(doc.save(folder)), Catch::Contains("Draco is no stream of it"));
+}
+
+TEST_CASE("glTF: integers compressed by Draco stand for what their accessor says", "[gltf]") {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(4);
+  const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_INT16);
+  const std::int16_t c[4][3] = {{0, 0, 0}, {32767, 0, 0}, {0, 32767, 0}, {0, 0, 32767}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (int f = 0; f < 4; ++f)
+    builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(f)), c[faces[f][0]],
+                                      c[faces[f][1]], c[faces[f][2]]);
+  draco::Encoder encoder;
+  draco::EncoderBuffer packed;
+  REQUIRE(encoder.EncodeMeshToBuffer(*builder.Finalize(), &packed).ok());
+  for (const bool normalized : {true, false}) {
+    const TempFolder folder;
+    GltfDoc doc;
+    doc.uses("KHR_draco_mesh_compression");
+    doc.uses("KHR_mesh_quantization");
+    doc.j["accessors"] = {{{"componentType", 5122}, {"count", 4}, {"type", "VEC3"}, {"normalized", normalized}},
+                          {{"componentType", 5123}, {"count", 12}, {"type", "SCALAR"}}};
+    const Json stream = {{"bufferView", doc.view(std::string(packed.data(), packed.size()))},
+                         {"attributes", {{"POSITION", 0}}}};
+    const double size = normalized ? 1 : 1.0 / 32767;
+    doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", 0}}},
+                                 {"indices", 1},
+                                 {"extensions", {{"KHR_draco_mesh_compression", stream}}}})},
+              {"scale", {size, size, size}}});
+    check_near(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
+  }
 }
 
 TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {

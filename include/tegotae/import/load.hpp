@@ -18,8 +18,8 @@ double unit_length(const std::string& unit);
 /// Dirty surfaces load (see report.hpp for what is counted); a file that cannot be used throws Error with the file and
 /// the reason: unreadable, empty, truncated, no triangles, indices out of range, non-finite or absurd coordinates,
 /// no triangle with an area, STEP, unknown format, a required extension that is not read; polygons that would take more
-/// than some ten seconds to cut into triangles; in text PLY and OFF, vertices or faces that do not take a line each; in
-/// OFF, faces of more than 9 corners. Coordinates have the precision of a float of the file's numbers.
+/// than some ten seconds to cut into triangles; in text PLY and OFF, vertices or faces that do not take a line each.
+/// Coordinates have the precision of a float of the file's numbers.
 TriangleMesh load_mesh(const std::string& path, double unit_in_m = 1.0);
 
 }  // namespace tegotae

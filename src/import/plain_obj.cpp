@@ -1,0 +1,143 @@
+#include "import/plain_obj.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "import/check_text.hpp"
+
+namespace tegotae {
+namespace {
+
+constexpr std::string_view kSpace = " \t\v\f";
+// Names are cut there; no program makes longer ones.
+constexpr std::size_t kLongestName = 200;
+
+/// The statements of an OBJ file, and the plain file as it becomes.
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {
+    if (rest_.substr(0, 3) == "\xef\xbb\xbf") rest_.remove_prefix(3);
+  }
+
+  std::string plain(std::size_t& surface_line) {
+    while (!rest_.empty()) {
+      line_ = next_line_;
+      take_statement();
+      read();
+    }
+    if (largest_ > vertices_)
+      refuse(path_, "index out of range: line " + std::to_string(largest_line_) + " names vertex " +
+                        std::to_string(largest_) + " of " + std::to_string(vertices_));
+    surface_line = surface_line_;
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void bad(const std::string& why) const {
+    refuse(path_, (ends_file_ ? "truncated: the last line \"" : "damaged: line " + std::to_string(line_) + " \"") +
+                      statement_.substr(0, 60) + "\" " + why);
+  }
+
+  /// The next statement into `statement_`: a backslash at the end of a line goes on with the next, but in a comment,
+  /// where it is the end of some folder's name.
+  void take_statement() {
+    statement_.clear();
+    for (bool goes_on = true; goes_on && !rest_.empty();) {
+      std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+      rest_.remove_prefix(line.size());
+      ends_file_ = rest_.empty();
+      rest_.remove_prefix(std::min<std::size_t>(rest_.substr(0, 2) == "\r\n" ? 2 : 1, rest_.size()));
+      ++next_line_;
+      const std::size_t start = std::min(line.find_first_not_of(kSpace), line.size());
+      if (statement_.empty() && line.substr(start, 1) == "#") return;
+      goes_on = !line.empty() && line.back() == '\\';
+      if (goes_on) line.remove_suffix(1);
+      (statement_ += line) += goes_on ? " " : "";
+    }
+  }
+
+  static std::string_view take_word(std::string_view& line) {
+    line.remove_prefix(std::min(line.find_first_not_of(kSpace), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(kSpace));
+    line.remove_prefix(word.size());
+    return word;
+  }
+
+  void read() {
+    std::string_view values = statement_;
+    const std::string_view word = take_word(values);
+    if (word == "v") {
+      read_vertex(values.substr(0, values.find('#')));
+    } else if (word == "f" || word == "fo") {
+      read_face(values.substr(0, values.find('#')));
+    } else if (word == "o" || word == "g" || word == "usemtl" || word == "mtllib") {
+      copy_name(word, values);
+    } else if (word == "surf" && surface_line_ == 0) {
+      surface_line_ = line_;
+    }
+  }
+
+  /// Behind x, y and z stand a weight that only curves and surfaces use, or a color.
+  void read_vertex(std::string_view values) {
+    out_ += 'v';
+    for (int k = 0; k < 3; ++k) {
+      std::string number(take_word(values));
+      // Some programs write the decimal comma of their country; it cannot be anything else here.
+      std::replace(number.begin(), number.end(), ',', '.');
+      std::string_view text = number;
+      double value = 0;
+      if (number.empty() || !take_number(text, value)) bad("has no coordinate where one belongs");
+      (out_ += ' ') += number[0] == '+' ? number.substr(1) : number;
+    }
+    out_ += '\n';
+    ++vertices_;
+  }
+
+  /// Corners are "vertex/texture/normal", of which only the vertex counts.
+  void read_face(std::string_view values) {
+    std::vector<std::uint64_t> corners;
+    for (std::string_view word = take_word(values); !word.empty(); word = take_word(values)) {
+      std::string_view text = word.substr(0, word.find('/'));
+      std::int64_t index = 0;
+      if (!take_number(text, index)) bad("has a corner that is no index of a vertex");
+      const auto known = static_cast<std::int64_t>(vertices_);
+      if (index == 0 || index < -known) bad("has an index out of range");
+      corners.push_back(static_cast<std::uint64_t>(index > 0 ? index : known + index + 1));
+      if (corners.back() > largest_) {
+        largest_ = corners.back();
+        largest_line_ = line_;
+      }
+    }
+    if (corners.size() < 3) {
+      if (ends_file_) bad("has fewer than three corners");
+      return;  // a point or a line
+    }
+    out_ += 'f';
+    for (const std::uint64_t corner : corners) (out_ += ' ') += std::to_string(corner);
+    out_ += '\n';
+  }
+
+  void copy_name(std::string_view word, std::string_view name) {
+    name.remove_prefix(std::min(name.find_first_not_of(kSpace), name.size()));
+    (out_ += word) += ' ';
+    for (const char c : name.substr(0, kLongestName)) out_ += c == '\\' ? '/' : c;  // assimp goes on after a backslash
+    out_ += '\n';
+  }
+
+  const std::string& path_;
+  std::string_view rest_;
+  std::string statement_, out_;
+  std::size_t line_ = 0, next_line_ = 1, largest_line_ = 0, surface_line_ = 0;
+  std::uint64_t vertices_ = 0, largest_ = 0;
+  bool ends_file_ = false;  // with the statement, and no line break behind it
+};
+
+}  // namespace
+
+std::string plain_obj(const std::string& path, std::string_view bytes, std::size_t& surface_line) {
+  return ObjReader(path, bytes).plain(surface_line);
+}
+
+}  // namespace tegotae

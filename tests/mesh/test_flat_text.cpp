@@ -1,0 +1,178 @@
+// The ways in which OBJ and OFF files are written, and what STL and PLY files have around their facets: tests for rows
+// of docs/formats.md.
+#include "apps/run_program.hpp"
+#include "mesh/assembly_checks.hpp"
+#include "tegotae/import/load.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+// A tetrahedron of the corners 0, 2x, y, z.
+const std::string kCorners = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string kFaces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const std::string kOffCorners = "0 0 0\n2 0 0\n0 1 0\n0 0 1\n";
+const std::string kOffFaces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TriangleMesh check_tetrahedron(const std::string& name, const std::string& bytes) {
+  INFO(name);
+  const TempFolder folder;
+  folder.write(name, bytes);
+  TriangleMesh mesh;
+  REQUIRE_NOTHROW(mesh = load_mesh(folder / name));
+  const MeshReport r = report(mesh);
+  CHECK(r.triangles == 4);
+  CHECK(r.vertices == 4);
+  CHECK(r.closed);
+  CHECK(r.inverted_shells == 0);
+  CHECK(r.box_min.norm() == 0);
+  CHECK((r.box_max - Vec3(2, 1, 1)).norm() == 0);
+  return mesh;
+}
+
+std::string refused(const std::string& name, const std::string& bytes) {
+  const TempFolder folder;
+  folder.write(name, bytes);
+  return test::refusal([&] { load_mesh(folder / name); });
+}
+
+/// A prism over a regular polygon, height 1, radius 1.
+std::string off_prism(int n) {
+  std::string text = "OFF\n" + std::to_string(2 * n) + ' ' + std::to_string(n + 2) + " 0\n", bottom, top, sides;
+  for (int z = 0; z < 2; ++z)
+    for (int i = 0; i < n; ++i)
+      text += std::to_string(std::cos(2 * M_PI * i / n)) + ' ' + std::to_string(std::sin(2 * M_PI * i / n)) + ' ' +
+              std::to_string(z) + '\n';
+  for (int i = 0; i < n; ++i) {
+    bottom += ' ' + std::to_string(n - 1 - i);
+    top += ' ' + std::to_string(n + i);
+    const int next = (i + 1) % n;
+    sides += "4 " + std::to_string(i) + ' ' + std::to_string(next) + ' ' + std::to_string(n + next) + ' ' +
+             std::to_string(n + i) + '\n';
+  }
+  return text + std::to_string(n) + bottom + '\n' + std::to_string(n) + top + '\n' + sides;
+}
+
+}  // namespace
+
+TEST_CASE("OBJ: lines, blanks, marks and comments", "[flat]") {
+  const std::string all = kCorners + kFaces;
+  check_tetrahedron("mark.obj", "\xef\xbb\xbf" + all);
+  check_tetrahedron("indent.obj", "  " + replaced_all(all, "\n", "\n \t "));
+  check_tetrahedron("return.obj", replaced_all(all, "\n", "\r"));
+  check_tetrahedron("crlf.obj", replaced_all(all, "\n", "\r\n"));
+  check_tetrahedron("aside.obj", replaced_all(all, "\n", " # 1 2 3\n"));
+  check_tetrahedron("continued.obj", replaced_all(replaced_all(all, "f 1 ", "f 1 \\\n"), "v 2", "v \\\r\n2"));
+  // The folder's last sign does not go on with the next line.
+  check_tetrahedron("folder.obj", "# made in C:\\parts\\\n" + all);
+  check_tetrahedron("library.obj", "mtllib C:\\parts\\\\a.mtl\ng left\\side\n" + all);
+  check_tetrahedron("long.obj", "# " + std::string(10000, 'x') + "\ng " + std::string(10000, 'x') + '\n' + all);
+}
+
+TEST_CASE("OBJ: what vertices and corners have besides", "[flat]") {
+  for (const char* more : {" 2.0", " 0", " 0.1 0.2 0.3", " 0.1 0.2 0.3 1", " 255 0", " 1 255 0 0 255"}) {
+    INFO(more);
+    check_tetrahedron("more.obj", replaced_all(kCorners, "\n", std::string(more) + "\n") + kFaces);
+  }
+  check_tetrahedron("texture.obj", kCorners + "vt 0\nvn nan nan nan\n" + replaced_all(kFaces, " 4", " 4/1/1"));
+  check_tetrahedron("missing.obj", kCorners + replaced_all(kFaces, " 4", " 4/7/9"));
+  check_tetrahedron("first.obj", kFaces + kCorners);
+  check_tetrahedron("comma.obj", replaced_all(kCorners, "2 ", "2,0 ") + kFaces);
+  check_tetrahedron("plus.obj", replaced_all(kCorners, "2 ", "+2.0E0 ") + kFaces);
+  check_tetrahedron("relative.obj", "v 9 9 9\n" + kCorners + "o a\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\nf -2 -4 -1\n");
+}
+
+TEST_CASE("OBJ: free-form surfaces are told", "[flat]") {
+  const TriangleMesh mesh =
+      check_tetrahedron("surface.obj", kCorners + "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n" + kFaces);
+  REQUIRE(mesh.notes.size() == 1);
+  CHECK_THAT(mesh.notes[0], Catch::Contains("line 7") && Catch::Contains("not read"));
+  const TempFolder folder;
+  folder.write("a.obj", kCorners + "surf 0 1 0 1 1 2 3 4\n" + kFaces);
+  CHECK(has_note(read_assembly(folder / "a.obj"), "free-form"));
+}
+
+TEST_CASE("OBJ: what cannot be is refused with its line", "[flat]") {
+  CHECK_THAT(refused("two.obj", "\n" + kCorners + "v 1 2\n" + kFaces), Catch::Contains("line 6 \"v 1 2\""));
+  CHECK_THAT(refused("word.obj", kCorners + "f 1 2 x\n" + kFaces), Catch::Contains("line 5 \"f 1 2 x\""));
+  CHECK_THAT(refused("zero.obj", kCorners + "f 1 2 0\n"), Catch::Contains("line 5") && Catch::Contains("range"));
+  CHECK_THAT(refused("back.obj", kCorners + "f 1 2 -5\n"), Catch::Contains("line 5") && Catch::Contains("range"));
+  CHECK_THAT(refused("range.obj", kCorners + kFaces + "f 1 2 5\n"), Catch::Contains("line 9 names vertex 5 of 4"));
+  CHECK_THAT(refused("huge.obj", replaced_all(kCorners, "v 2", "v 1e400") + kFaces), Catch::Contains("finite"));
+}
+
+TEST_CASE("OFF: headers, comments and blank lines", "[flat]") {
+  const std::string body = kOffCorners + kOffFaces;
+  check_tetrahedron("one.off", "OFF 4 4 6\n" + body);
+  check_tetrahedron("none.off", "4 4 0\n" + body);
+  check_tetrahedron("no_edges.off", "OFF\n4 4\n" + body);
+  check_tetrahedron("three.off", "OFF\n4\n4 6\n" + body);
+  check_tetrahedron("mark.off", "\xef\xbb\xbfOFF\r\n4 4 6\r\n" + replaced_all(body, "\n", "\r\n"));
+  check_tetrahedron("comments.off", "# a\nOFF # b\n# c\n4 4 6 # d\n" + replaced_all(body, "\n", " # e\n\n# f\n \n"));
+  check_tetrahedron("long.off",
+                    "OFF\n4 4 6\n" + replaced_all(body, "2 0 0\n", "2 0 0" + std::string(9000, ' ') + '\n'));
+}
+
+TEST_CASE("OFF: what vertices have besides, and other dimensions", "[flat]") {
+  const auto with = [](const std::string& more) { return replaced_all(kOffCorners, "\n", more + "\n") + kOffFaces; };
+  check_tetrahedron("color3.off", "COFF\n4 4 6\n" + with(" 255 0 0"));
+  check_tetrahedron("all.off", "STCNOFF\n4 4 6\n" + with(" nan nan nan 0 0 1 1 0 0"));
+  check_tetrahedron("dimension.off", "nOFF\n3\n4 4 6\n" + with(""));
+  // Homogeneous: what counts is x / w.
+  check_tetrahedron("four.off", "4OFF\n4 4 6\n0 0 0 7\n4 0 0 2\n0 1 0 1\n0 0 0.5 0.5\n" + kOffFaces);
+  CHECK_THAT(refused("infinity.off", "4OFF\n4 4 6\n" + with(" 0")), Catch::Contains("infinity"));
+  CHECK_THAT(refused("four_dimensions.off", "nOFF\n4\n4 4 6\n" + with(" 0")), Catch::Contains("4 dimensions"));
+  CHECK_THAT(refused("word.off", "BOFF\n4 4 6\n" + with("")), Catch::Contains("does not begin with OFF"));
+}
+
+TEST_CASE("OFF: faces of any number of corners, and of none", "[flat]") {
+  const TempFolder folder;
+  for (const int n : {3, 9, 10, 40, 300}) {
+    INFO(n);
+    folder.write("prism.off", off_prism(n));
+    const TriangleMesh mesh = load_mesh(folder / "prism.off");
+    CHECK(report(mesh).closed);
+    CHECK(volume(mesh) == Approx(n * std::sin(2 * M_PI / n) / 2).epsilon(1e-4));
+  }
+  check_tetrahedron("few.off", "OFF\n4 7 0\n" + kOffCorners + "0\n1 2\n2 0 1\n" + kOffFaces);
+}
+
+TEST_CASE("STL: comments, colors and padding around the facets; names of any length", "[flat]") {
+  std::string facets;
+  const std::string corners[] = {"vertex 0 0 0\n", "vertex 2 0 0\n", "vertex 0 1 0\n", "vertex 0 0 1\n"};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (const auto& f : faces) {
+    facets += "facet normal 0 0 0\nouter loop\n";
+    for (const int i : f) facets += corners[i];
+    facets += "endloop\nendfacet\n";
+  }
+  const std::string all = "solid a\n" + facets + "endsolid a\n";
+  check_tetrahedron("before.stl", "# made by hand\n ; and more\n" + all);
+  check_tetrahedron("between.stl", replaced_all(all, "endfacet\n", "endfacet\n// next\n color 1 0 0\n"));
+  check_tetrahedron("padded.stl", all + std::string(30, '\0'));
+  check_tetrahedron("long.stl", replaced_all(all, "solid a", "solid " + std::string(5000, 'a')));
+  CHECK_THAT(refused("none.stl", facets), Catch::Contains("begins with \"solid\""));
+  CHECK_THAT(refused("huge.stl", replaced_all(all, "vertex 2", "vertex 1e400")), Catch::Contains("finite"));
+}
+
+TEST_CASE("PLY: byte order marks and blank lines; indices and coordinates that cannot be", "[flat]") {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 4\nproperty list uchar float vertex_indices\nend_header\n";
+  check_tetrahedron("mark.ply", "\xef\xbb\xbf" + head + kOffCorners + kOffFaces);
+  check_tetrahedron("blank.ply", head + "\n" + kOffCorners + " \n\n" + kOffFaces + "\n\n");
+  CHECK_THAT(refused("half.ply", head + kOffCorners + replaced_all(kOffFaces, "3 2 0 3", "3 2 0.5 3")),
+             Catch::Contains("face 3 has an index that is no whole number"));
+  CHECK_THAT(refused("huge.ply", head + replaced_all(kOffCorners, "2 0 0", "1e400 0 0") + kOffFaces),
+             Catch::Contains("finite"));
+  check_tetrahedron("tiny.ply", head + replaced_all(kOffCorners, "0 1 0", "1e-400 1 -0.0e-999") + kOffFaces);
+  CHECK_THAT(refused("type.ply", replaced_all(head, "uchar float", "uchar int64")),
+             Catch::Contains("\"property list uchar int64 vertex_indices\""));
+}
