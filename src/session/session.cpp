@@ -171,7 +171,7 @@ class Session {
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     RunSegment& segment = segments_.now();
-    for (const Pose& X : report.pieces) segment.check->add(X, static_cast<std::uint32_t>(segment.freed));
+    for (const Pose& X : report.substeps) segment.check->add(X, static_cast<std::uint32_t>(segment.freed));
     if (holds_first_) X_ = report.proxy.X;
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (segment.recorder) record(number, t, pen, report, tick_us);
@@ -215,7 +215,7 @@ class Session {
     frame.tick_us = tick_us;
     frame.lag_reason = report.lag_reason;
     frame.forces = report.forces;
-    for (const Pose& X : report.pieces) {
+    for (const Pose& X : report.substeps) {
       frame.x = X;
       segments_.now().recorder->push(frame);
       ++frame.substep;

@@ -32,9 +32,9 @@ struct TickFlags {
 
 /// Report of one tick of the contact loop.
 struct TickReport {
-  std::vector<Pose> pieces;  ///< free poses through which X went, in order; the last one is X (never empty)
-  ProxyState proxy;          ///< X, its velocity, and whether it touches
-  ContactPlanes planes;      ///< for a servo that updates X between two ticks
+  std::vector<Pose> substeps;  ///< free poses through which X went, in order; the last one is X (never empty)
+  ProxyState proxy;            ///< X, its velocity, and whether it touches
+  ContactPlanes planes;        ///< for a servo that updates X between two ticks
   /// What the contacts exert on the held part at the end of the tick. Together with `forces.lag` it is the wrench of
   /// the coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's
   /// newer Y and the safety chain. Only resolvers that project (Resolver::projects, "qp") report forces, and only while
