@@ -16,7 +16,7 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
     const ContactPlane& plane = planes.planes[static_cast<std::size_t>(i)];
     store(plane.normal, out.planes[i].normal);
     store(plane.point, out.planes[i].point);
-    out.planes[i].room = plane.room;
+    out.planes[i].clearance = plane.clearance;
     out.planes[i].mu = plane.mu;
   }
 }

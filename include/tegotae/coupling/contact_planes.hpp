@@ -8,11 +8,11 @@
 namespace tegotae TEGOTAE_EXPORT {
 
 /// Constraint on the held part's motion near its pose X: the part's point `point` may move against `normal` by at most
-/// `room`.
+/// `clearance`.
 struct ContactPlane {
   Vec3 normal = Vec3::Zero();  ///< unit, out of the obstacle, world
   Vec3 point = Vec3::Zero();   ///< of the held part at X, m, world
-  double room = 0;             ///< m; negative: the point should move out by this much
+  double clearance = 0;        ///< m; negative: the point should move out by this much
   double mu = 0;               ///< coefficient of friction while the plane holds the point
 };
 

@@ -146,11 +146,11 @@ struct tegotae_shm_device {
   int64_t session;                  /**< session of the application that the servo serves; 0: none yet */
 };
 
-/** A constraint that holds the part back: its point `point` may move against `normal` by at most `room`. */
+/** A constraint that holds the part back: its point `point` may move against `normal` by at most `clearance`. */
 struct tegotae_shm_plane {
   double normal[3]; /**< unit, out of the obstacle, world */
   double point[3];  /**< of the held part when it is at tegotae_shm_application.position, world, m */
-  double room;      /**< m; negative: the point should move out by this much */
+  double clearance; /**< m; negative: the point should move out by this much */
   double mu;        /**< coefficient of friction while the plane holds the point, 0 to 10 */
 };
 
