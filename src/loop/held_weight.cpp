@@ -30,7 +30,7 @@ HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
     throw Error("part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " +
                 std::to_string(out.mass));
   const double newtons = out.mass * s.gravity.norm();
-  if (s.most && newtons > *s.most) out.share = std::max(0.0, *s.most) / newtons;
+  if (s.max_force && newtons > *s.max_force) out.share = std::max(0.0, *s.max_force) / newtons;
   out.force = out.share * out.mass * s.gravity;
   return out;
 }

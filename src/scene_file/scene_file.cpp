@@ -201,7 +201,7 @@ void read_weight(const TomlTable& top, const SimulatedDeviceSettings& device, co
   double stands = device_info(device).continuous_force;
   if (safety.continuous_force > 0)
     stands = stands > 0 ? std::min(stands, safety.continuous_force) : safety.continuous_force;
-  scene.weight.most = weight_bound(stands);
+  scene.weight.max_force = weight_bound(stands);
 }
 
 /// A script of a hand that stays where the held part starts.

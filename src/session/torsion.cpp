@@ -27,7 +27,7 @@ Scene bounded_by(Scene scene, const std::string& device) {
   ChannelReader::open(device.substr(std::string(kDeviceScheme).size())).read(told);
   if (scene.max_torsional_stiffness)
     scene.max_torsional_stiffness = torsional_stiffness_bound(told.torsional_stiffness_limit, told.torque_limit);
-  scene.weight.most = weight_bound(told.continuous_force);
+  scene.weight.max_force = weight_bound(told.continuous_force);
   return scene;
 }
 

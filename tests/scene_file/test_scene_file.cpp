@@ -186,7 +186,7 @@ TEST_CASE("friction and weight arrive, and what of them cannot be is named", "[s
       folder.load("weight = true\ngravity = [0, -9.8, 0]\n" + parts + "[friction]\nmu = 0.3\n" + pair + kDevice);
   CHECK(file.scene.weight.on);
   CHECK(file.scene.weight.gravity == Vec3(0, -9.8, 0));
-  CHECK(*file.scene.weight.most == Approx(0.7));  // half of what the pen stands for long
+  CHECK(*file.scene.weight.max_force == Approx(0.7));  // half of what the pen stands for long
   CHECK(*file.scene.parts[1].mass == 0.25);
   CHECK(file.scene.friction.mu == 0.3);
   REQUIRE(file.scene.friction.pairs.size() == 1);

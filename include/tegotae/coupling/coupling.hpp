@@ -22,9 +22,9 @@ double coupling_radius(const CouplingSettings& settings, double scale = 1) noexc
 
 /// Returns the torsional stiffness (N·m/rad) that fits a part with a radius of gyration of `radius` (m, in the pen's
 /// lengths): stiffness × radius², so that rotating it and moving it feel equally hard. The result is at least the
-/// default of CouplingSettings, which is enough for small parts, and at most `most`, which device and stability allow
-/// (torsional_stiffness_bound()).
-double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept;
+/// default of CouplingSettings, which is enough for small parts, and at most `max_stiffness`, which device and
+/// stability allow (torsional_stiffness_bound()).
+double fitted_torsional_stiffness(double stiffness, double radius, double max_stiffness) noexcept;
 
 /// State of the held part that the coupling needs: its pose `X` and the velocity of its center of mass, in the world.
 struct ProxyState {

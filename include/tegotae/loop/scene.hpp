@@ -96,7 +96,7 @@ struct WeightSettings {
   Vec3 gravity = {0, 0, -9.80665};  ///< m/s², world
   /// N, the largest weight that the hand carries, for a device that would get warm; a heavier part weighs this much.
   /// Not set: unbounded.
-  std::optional<double> most = {};
+  std::optional<double> max_force = {};
 };
 
 /// Parts of a mock-up, and the settings of its loops.
