@@ -114,8 +114,8 @@ class Judge {
                    until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
-            "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +
-                (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
+            "Touching at the start, and relieved by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
+                "; " + (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
     }
   }
 

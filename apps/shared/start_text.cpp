@@ -33,7 +33,7 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   text += !c.depth ? ", open surfaces cross" : c.gap > 0 ? ", gap " + length(c.gap) : ", depth " + length(*c.depth);
   if (pair.state == InitialContactState::filtered) return text + "; SUSPENDED: nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; in contact with it taken " + length(pair.relief) + " smaller\n";
+    return text + "; in contact with it taken " + length(pair.inward_offset) + " smaller\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
@@ -51,7 +51,7 @@ nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene
                      {"gap_m", c.gap},
                      {"depth_m", c.depth ? nlohmann::ordered_json(*c.depth) : nlohmann::ordered_json()},
                      {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}},
-                     {"relief_m", pair.relief},
+                     {"relief_m", pair.inward_offset},
                      {"state", state_name(pair.state)}});
   }
   return {{"shift_m", start.shift}, {"pairs", pairs}, {"suspended", suspended}};
@@ -71,7 +71,7 @@ std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
     if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
     text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
             " where its pen went " + length(h.pen) + "; there is no room, even with that part taken " +
-            length(pair.relief) + " smaller\n";
+            length(pair.inward_offset) + " smaller\n";
   }
   return text;
 }

@@ -59,7 +59,7 @@ class InitialSeparation {
       if (!relieved(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
       const InitialContact& pair = at_.start.report().pairs[w.pair];
       const PartId id{static_cast<std::uint32_t>(pair.part)};
-      list.push_back({id, w.part, w.stand_in, pair.relief, pair.relief + kMargin * kGapFloor, false});
+      list.push_back({id, w.part, w.stand_in, pair.inward_offset, pair.inward_offset + kMargin * kGapFloor, false});
     }
     return list;
   }

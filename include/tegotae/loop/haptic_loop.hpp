@@ -52,7 +52,7 @@ struct TickReport {
   double fraction = 1;                               ///< fraction of the wanted motion that the tick made, in [0, 1]
   TickFlags flags;                                   ///< events of the tick
   int filtered = 0;  ///< pairs that overlapped at the start and have not separated yet: nothing keeps them apart
-  int shrunk = 0;    ///< pairs that touched at the start and have not separated yet (InitialContact::relief)
+  int shrunk = 0;    ///< pairs that touched at the start and have not separated yet (InitialContact::inward_offset)
   /// How far X lags the pen after the tick, m: the distance of the two centers of mass plus the held part's radius
   /// times the angle between the two poses.
   double lag = 0;

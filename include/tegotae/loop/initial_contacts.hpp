@@ -12,7 +12,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// Whether the contact loop keeps the held part out of a fixed part that it touched or overlapped at the start.
 enum class InitialContactState : std::uint8_t {
   active,   ///< yes
-  shrunk,   ///< out of a copy of the fixed part that is smaller by InitialContact::relief
+  shrunk,   ///< out of a copy of the fixed part that is smaller by InitialContact::inward_offset
   filtered  ///< no
 };
 
@@ -21,9 +21,9 @@ struct InitialContact {
   /// Value of `freed` of a pair that has not separated yet.
   static constexpr std::uint32_t kNotYet = 0xffffffffu;
 
-  std::size_t part = 0;  ///< the fixed part, index into Scene::parts
-  Clash clash;           ///< at the held part's pose in the scene: touch or overlap, gap or depth, place
-  double relief = 0;     ///< m: how far the fixed part's faces are moved inward while the pair is shrunk
+  std::size_t part = 0;      ///< the fixed part, index into Scene::parts
+  Clash clash;               ///< at the held part's pose in the scene: touch or overlap, gap or depth, place
+  double inward_offset = 0;  ///< m: how far the fixed part's faces are moved inward while the pair is shrunk
   InitialContactState state = InitialContactState::active;  ///< after the last tick
   /// Order in which the pairs separated, counted from 1 over those that did after the first tick began. 0: before;
   /// kNotYet: not yet.
