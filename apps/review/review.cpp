@@ -30,7 +30,7 @@ std::optional<Pose> recorded_goal(const Review& r) {
 
 /// The recording may be a part of a run only.
 void tell_scene_changes(const RecordingInfo& info, Review& r) {
-  if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.goes_on.empty()) {
+  if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.continued_by.empty()) {
     r.verdict.outcome = Outcome::open;
     r.verdict.headline = "It had not got there when the scene was changed";
   }

@@ -74,7 +74,7 @@ std::string named_scene(const std::string& path, const RecordingInfo& info) {
   if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
   const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
   // That of a changed scene was written there.
-  const std::filesystem::path named = info.follows.empty() ? std::filesystem::path(scene) : beside;
+  const std::filesystem::path named = info.continues.empty() ? std::filesystem::path(scene) : beside;
   for (const std::filesystem::path& file : {named, beside})
     if (std::filesystem::exists(file)) return file.string();
   throw Error(path + ": its scene " + scene + " is gone; add the scene file to the command");
@@ -90,9 +90,9 @@ SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info
 
 std::vector<std::string> scene_changes(const RecordingInfo& info) {
   std::vector<std::string> texts;
-  if (!info.follows.empty()) texts.push_back("It goes on from " + info.follows + ", where the scene was changed.");
-  if (!info.goes_on.empty())
-    texts.push_back("At its end the scene was changed; the run goes on in " + info.goes_on + ".");
+  if (!info.continues.empty()) texts.push_back("It goes on from " + info.continues + ", where the scene was changed.");
+  if (!info.continued_by.empty())
+    texts.push_back("At its end the scene was changed; the run goes on in " + info.continued_by + ".");
   return texts;
 }
 
@@ -127,7 +127,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   held_part(file.scene).pose = rows.front().x;
   add_scene(bundle, file.scene, follower.loop().center());
   // After a change of the scene the script may be of another part.
-  if (recording.info.follows.empty()) add_script(bundle, file.script);
+  if (recording.info.continues.empty()) add_script(bundle, file.script);
   bundle.about["mode"] = "replay";
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
@@ -143,7 +143,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
   if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
   for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);
-  if (!recording.info.suspended.empty()) notes.push_back("Suspended at the start: " + recording.info.suspended);
+  if (!recording.info.filtered.empty()) notes.push_back("Suspended at the start: " + recording.info.filtered);
   bundle.about["notes"] = notes;
   return bundle.bytes();
 }

@@ -107,7 +107,7 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
     segment.recording = numbered(first, segment.number + 1, first.extension()).string();
     segment.scene_file = numbered(first, segment.number + 1, ".toml").string();
     info.scene = fs::path(segment.scene_file).filename().string();
-    info.follows = fs::path(segments_.back()->recording).filename().string();
+    info.continues = fs::path(segments_.back()->recording).filename().string();
   }
   refuse_to_replace({segment.recording, recording_info_path(segment.recording), segment.scene_file}, file_.files);
   if (segment.number > 0)
@@ -179,10 +179,10 @@ std::vector<Part> RunSegments::change(std::vector<Part> parts, const std::functi
   return segment.scene.parts;
 }
 
-void RunSegments::finish(RunSegment& segment, const std::string& goes_on) noexcept {
+void RunSegments::finish(RunSegment& segment, const std::string& continued_by) noexcept {
   if (!segment.recorder) return;
   try {
-    segment.recorder->close(goes_on);
+    segment.recorder->close(continued_by);
   } catch (const Error& e) {
     if (failure_.empty()) failure_ = e.what();
   }

@@ -39,9 +39,9 @@ class Recorder {
   /// Adds a row. Call it in one thread. Threaded: never waits or allocates; when the ring is full, it drops the frame
   /// and counts it. After a failed write it does nothing; close() reports the failure.
   void push(const RecordFrame& frame) noexcept;
-  /// Writes the rest and closes. Adds `goes_on` to the info (RecordingInfo::goes_on). Throws Error that names the path,
-  /// the cause of the first failed write, and the number of rows written before it.
-  void close(const std::string& goes_on = {});
+  /// Writes the rest and closes. Adds `continued_by` to the info (RecordingInfo::continued_by). Throws Error that names
+  /// the path, the cause of the first failed write, and the number of rows written before it.
+  void close(const std::string& continued_by = {});
 
   std::uint64_t rows() const noexcept;     ///< rows that push() accepted
   std::uint64_t dropped() const noexcept;  ///< frames that push() dropped, because the ring was full

@@ -32,11 +32,11 @@ struct RecordingInfo {
   std::string held;         ///< name of the held part
   std::string resolver;     ///< name
   std::string program;      ///< name and version of the program that wrote it
-  std::string suspended{};  ///< names of the parts that the held part overlapped at the start, and from which nothing
+  std::string filtered{};   ///< names of the parts that the held part overlapped at the start, and from which nothing
                             ///< keeps it apart
-  std::string follows{};    ///< the recording beside it that it continues: the scene changed there
-  std::string goes_on{};    ///< the recording beside it that continues it: the scene changed there
-  std::string goal{};       ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
+  std::string continues{};  ///< the recording beside it that it continues: the scene changed there
+  std::string continued_by{};  ///< the recording beside it that continues it: the scene changed there
+  std::string goal{};  ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
 };
 
 /// A recording in memory.
