@@ -158,7 +158,7 @@ class Session {
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::string& held = segments_.now().held;
-    if (segments_.follow() && segments_.now().held != held) hold(pen);
+    if (segments_.follow() && segments_.now().held != held) grasp(pen);
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
     pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
     sequence_ = pen.state.sequence;
@@ -187,10 +187,10 @@ class Session {
   }
 
   /// Another part is held: the pen comes to mean it where it is.
-  void hold(PenSample& pen) noexcept {
+  void grasp(PenSample& pen) noexcept {
     const Pose& X = loop_.report().proxy.X;
     watch_.begin(X);
-    pen_->hold(loop_.center(), loop_.coupling(), X);
+    pen_->grasp(loop_.center(), loop_.coupling(), X);
     pen.state.pose = X;
     pen.state.velocity = {};
     holds_first_ = segments_.now().held == held_part(file_.scene).name;

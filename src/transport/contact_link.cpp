@@ -65,7 +65,7 @@ void ContactLink::home(const Pose& X) noexcept {
   if (++home_counter_ == 0) ++home_counter_;
 }
 
-void ContactLink::hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
+void ContactLink::grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
   center_ = center;
   coupling_ = coupling;
   home(X);

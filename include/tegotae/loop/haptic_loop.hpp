@@ -67,7 +67,7 @@ struct TickReport {
 /// Weight of the held part (Scene::weight).
 struct HeldWeight {
   double mass = 0;            ///< kg, as given or from volume and density; 0: the scene has no weight
-  double share = 1;           ///< fraction of mass × gravity that the hand carries: below 1 where that is more than
+  double share = 1;           ///< fraction of mass × gravity that the hand carries: below 1 at
                               ///< WeightSettings::max_force
   Vec3 force = Vec3::Zero();  ///< N, world: share × mass × gravity
 };

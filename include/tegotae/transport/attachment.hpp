@@ -32,8 +32,8 @@ class Attachment {
   void publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence, std::int64_t now_ns,
                const ContactPlanes& planes = {}) noexcept;
 
-  /// Does what ContactLink::hold does, for this device and its successors.
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
+  /// Does what ContactLink::grasp does, for this device and its successors.
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
 
   /// Returns whether the device's heartbeat was fresh at the last read().
   bool connected() const noexcept { return connected_; }

@@ -55,7 +55,7 @@ class ContactLink {
   void home(const Pose& X) noexcept;
   /// Grasps another part: `center` is its center of mass, `coupling` its coupling, and the pen's present pose maps to
   /// the part at `X`.
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
   /// Returns whether the servo served this application, and had executed its home commands, when it published `pen`.
   bool obeyed(const PenSample& pen) const noexcept;
 
