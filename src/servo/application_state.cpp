@@ -34,7 +34,7 @@ CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept {
 MappingCommand mapping_of(const tegotae_shm_application& in) noexcept {
   return {in.scale,        static_cast<Clutch>(in.clutch),
           in.home_counter, {quaternion(in.home_orientation), vector(in.home_position)},
-          in.session,      vector(in.center)};
+          in.attachment,   vector(in.center)};
 }
 
 ProxyState proxy_of(const tegotae_shm_application& in) noexcept {

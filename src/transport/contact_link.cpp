@@ -24,7 +24,7 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
 }  // namespace
 
 ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center)
-    : channel_(channel), coupling_(coupling), center_(center), session_(monotonic_ns()) {}
+    : channel_(channel), coupling_(coupling), center_(center), attachment_(monotonic_ns()) {}
 
 bool ContactLink::read(PenSample& pen) const noexcept {
   tegotae_shm_device in;
@@ -45,7 +45,7 @@ bool ContactLink::read(PenSample& pen) const noexcept {
   pen.energy = in.energy;
   pen.heartbeat_ns = in.heartbeat_ns;
   pen.tick = in.tick;
-  pen.session = in.session;
+  pen.attachment = in.attachment;
   pen.home_counter = in.home_counter;
   return true;
 }
@@ -56,7 +56,7 @@ void ContactLink::set_scale(double scale) {
 }
 
 bool ContactLink::obeyed(const PenSample& pen) const noexcept {
-  return pen.session == session_ && pen.home_counter == home_counter_;
+  return pen.attachment == attachment_ && pen.home_counter == home_counter_;
 }
 
 void ContactLink::home(const Pose& X) noexcept {
@@ -77,7 +77,7 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.heartbeat_ns = now_ns;
   out.tick = tick;
   out.device_sequence = device_sequence;
-  out.session = session_;
+  out.attachment = attachment_;
   out.touching = proxy.touching ? 1 : 0;
   out.enable = enable_ ? 1 : 0;
   out.clutch = static_cast<std::uint32_t>(clutch_);

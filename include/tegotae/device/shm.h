@@ -143,7 +143,7 @@ struct tegotae_shm_device {
   double torsional_stiffness_limit; /**< N*m/rad, the same */
   double thermal_load;              /**< running RMS of the force over continuous_force, 1: all that is allowed; or 0 */
   double energy;                    /**< J that the hand has put into the coupling, less what it got back */
-  int64_t session;                  /**< session of the application that the servo serves; 0: none yet */
+  int64_t attachment;               /**< that of the application that the servo serves; 0: none yet */
 };
 
 /** A constraint that holds the part back: its point `point` may move against `normal` by at most `clearance`. */
@@ -159,14 +159,14 @@ struct tegotae_shm_application {
   int64_t heartbeat_ns;     /**< time of writing */
   uint64_t tick;            /**< number of the contact loop's tick */
   uint64_t device_sequence; /**< the pen's sample that this tick answered */
-  int64_t session;          /**< when this application attached, monotonic ns: another value is another application */
+  int64_t attachment;       /**< when this application attached, monotonic ns: another value is another application */
   uint32_t touching;        /**< nonzero: at least one contact; otherwise the wrench is the weight */
   uint32_t enable;          /**< nonzero: the application asks for force */
   uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: what the part does not follow now */
-  uint32_t home_counter;    /**< a new value other than 0 makes Y jump to the home pose; begins at 0 in each session */
-  double position[3];       /**< of the held part's file frame (the proxy X) */
-  double orientation[4];    /**< of the same */
-  double velocity[3];       /**< of the held part's center of mass */
+  uint32_t home_counter; /**< a new value other than 0 makes Y jump to the home pose; begins at 0 in each attachment */
+  double position[3];    /**< of the held part's file frame (the proxy X) */
+  double orientation[4]; /**< of the same */
+  double velocity[3];    /**< of the held part's center of mass */
   double angular_velocity[3]; /**< of the same */
   double center[3];           /**< center of mass of the held part, in its file frame */
   double stiffness;           /**< N/m, which the hand feels at any scale */
@@ -229,7 +229,7 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, position) == 88, "layout 
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, force) == 192, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, raw_position) == 240, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, scale) == 296, "layout of tegotae_shm_device");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, session) == 368, "layout of tegotae_shm_device");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, attachment) == 368, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_plane) == 64, "layout of tegotae_shm_plane");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 744, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, touching) == 32, "layout of tegotae_shm_application");

@@ -25,7 +25,7 @@ struct PenSample {
   double energy = 0;                                  ///< J, of the passivity observer; below zero: generated
   std::int64_t heartbeat_ns = 0;                      ///< time of the servo's tick
   std::uint64_t tick = 0;                             ///< number of the servo's tick
-  std::int64_t session = 0;                           ///< session of the application that the servo serves
+  std::int64_t attachment = 0;                        ///< that of the application that the servo serves
   std::uint32_t home_counter = 0;                     ///< number of the last home command that the servo executed
 };
 
@@ -63,7 +63,7 @@ class ContactLink {
   Channel& channel_;
   CouplingSettings coupling_;
   Vec3 center_;
-  std::int64_t session_;  // when this application attached
+  std::int64_t attachment_;  // when this application attached
   bool enable_ = true;
   double scale_ = 1;
   Clutch clutch_ = Clutch::none;
