@@ -94,7 +94,7 @@ class Judge {
     if (f_.start.intersecting == 0)
       good(std::string("No pose intersects another part") +
            (std::all_of(pairs.begin(), pairs.end(), was_active) ? "" : " that was free of it") +
-           ", by their triangles and asked independently of the run.");
+           ", by their triangles, checked independently of the run.");
     else
       bad(format("%lld poses intersect another part.", static_cast<long long>(f_.start.intersecting)));
   }
@@ -105,7 +105,7 @@ class Judge {
       if (was_active(f)) touching.push_back(f.pair.part);
     if (!touching.empty())
       plain("Touching at the start: " + names_text(touching, scene_) +
-            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " off." : "."));
+            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " to part them." : "."));
     for (const StartFinding& f : f_.start.pairs) {
       const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
       const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
@@ -114,7 +114,7 @@ class Judge {
                    until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
-            "Touching at the start, and relieved by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
+            "Touching at the start, and shrunk by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
                 "; " + (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
     }
   }
@@ -135,7 +135,7 @@ class Judge {
     add(within ? Evidence::Kind::good : Evidence::Kind::bad, text);
     if (l.continuous > 0)
       add(l.running_rms <= 0.999 * l.continuous ? Evidence::Kind::good : Evidence::Kind::bad,
-          format("Running RMS over %.0f s at most %.2f N; the motors stand for %.2g N.", l.thermal_time, l.running_rms,
+          format("Running RMS over %.0f s at most %.2f N; the motors sustain %.2g N.", l.thermal_time, l.running_rms,
                  l.continuous));
   }
 

@@ -33,7 +33,7 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   text += !c.depth ? ", open surfaces cross" : c.gap > 0 ? ", gap " + length(c.gap) : ", depth " + length(*c.depth);
   if (pair.state == InitialContactState::filtered) return text + "; SUSPENDED: nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; in contact with it taken " + length(pair.inward_offset) + " smaller\n";
+    return text + "; contact is with a copy of it that is " + length(pair.inward_offset) + " smaller\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
@@ -60,7 +60,8 @@ nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene
 std::string start_text(const InitialContactReport& start, const Scene& scene) {
   std::string text;
   for (const InitialContact& pair : start.pairs) text += line(pair, scene);
-  if (start.shift > 0) text += format("  %-12s moved by ", "start") + length(start.shift) + " off what it touches\n";
+  if (start.shift > 0)
+    text += format("  %-12s moved by ", "start") + length(start.shift) + " away from what it touches\n";
   return text;
 }
 
@@ -70,7 +71,7 @@ std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
   for (const InitialContact& pair : summary.start.pairs) {
     if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
     text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
-            " where its pen went " + length(h.pen) + "; there is no room, even with that part taken " +
+            " where its pen went " + length(h.pen) + "; the fit has no clearance, even with that part taken " +
             length(pair.inward_offset) + " smaller\n";
   }
   return text;

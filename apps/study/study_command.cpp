@@ -60,7 +60,7 @@ int run_shard(const StudyOptions& o) {
   const std::atomic<bool>& interrupted = apps::catch_interrupts();
   run_missing(s.study, *s.tasks, numbers, o.jobs, table, interrupted);
   if (interrupted) {
-    std::cout << "interrupted; the same command goes on from here" << std::endl;
+    std::cout << "interrupted; the same command continues from here" << std::endl;
     return apps::kRunFailed;
   }
   std::vector<Result> results;
@@ -122,7 +122,7 @@ int run_one(const StudyOptions& o) {
   Opened s;
   open(o, s);
   if (o.number >= case_count(s.study))
-    throw Error(o.study + format(": has no case %d, but 0 to %d", o.number, case_count(s.study) - 1));
+    throw Error(o.study + format(": has no case %d; its cases are 0 to %d", o.number, case_count(s.study) - 1));
   const Case c = make_case(s.study, o.number);
   const std::string folder = o.to.empty() ? s.out + "/case-" + std::to_string(o.number) : o.to;
   const std::size_t tasks = s.tasks->of(c).size();

@@ -72,7 +72,7 @@ int run_tries(const TryOptions& o) {
   const Result* best = best_case(results);
   const RecordTo record_to = [&](SceneFile&, std::size_t) { return recording; };
   if (interrupted || !run_case(study, *tasks, make_case(study, best->number), interrupted, record_to)) {
-    std::cout << "interrupted; the same command goes on from here" << std::endl;
+    std::cout << "interrupted; the same command continues from here" << std::endl;
     return apps::kRunFailed;
   }
   std::cout << apps::format("best: try %d, %.2f s, recorded in ", best->number, best->time) << recording << "\n";

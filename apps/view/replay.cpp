@@ -90,9 +90,9 @@ SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info
 
 std::vector<std::string> scene_changes(const RecordingInfo& info) {
   std::vector<std::string> texts;
-  if (!info.continues.empty()) texts.push_back("It goes on from " + info.continues + ", where the scene was changed.");
+  if (!info.continues.empty()) texts.push_back("It continues " + info.continues + ", where the scene changed.");
   if (!info.continued_by.empty())
-    texts.push_back("At its end the scene was changed; the run goes on in " + info.continued_by + ".");
+    texts.push_back("At its end the scene changed; the run continues in " + info.continued_by + ".");
   return texts;
 }
 

@@ -25,7 +25,7 @@ bool same(std::string_view a, std::string_view b) {
 std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
   if (getrandom(random.data(), bytes, 0) != static_cast<ssize_t>(bytes))
-    throw Error("the system gives no random numbers");
+    throw Error("the system provides no random numbers");
   std::string text;
   for (const unsigned char byte : random) {
     text += "0123456789abcdef"[byte >> 4];

@@ -97,7 +97,7 @@ bool check_entities(const std::string& path, const Handle(XSControl_WorkSession)
       has_colors = has_colors && is_beside_color(type);
     } else {
       const std::string which = entity.IsNull() ? "" : " (#" + std::to_string(model->IdentLabel(entity)) + ")";
-      throw Error(path + ": damaged: OpenCASCADE finds entities that cannot be: wrong or missing references" + which);
+      throw Error(path + ": damaged: OpenCASCADE finds impossible entities: wrong or missing references" + which);
     }
   }
   require_rigid(path, model);

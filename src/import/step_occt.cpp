@@ -152,7 +152,7 @@ class StepReader {
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
     const bool has_colors = check_entities(path_, session);
     reader.SetColorMode(has_colors);
-    if (!has_colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
+    if (!has_colors) assembly_.notes.push_back("colors are not read: their entities are damaged");
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());

@@ -183,7 +183,7 @@ class ThreeMfReader {
       for (std::size_t k = 0; k < 3; ++k) {
         const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value());
         if (!(index >= 0 && index < static_cast<double>(out.vertices.size())))
-          throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it has not");
+          throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it does not have");
         corners[k] = static_cast<std::uint32_t>(index);
       }
       out.triangles.push_back(corners);

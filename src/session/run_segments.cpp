@@ -103,7 +103,7 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
   if (segment.number > 0) {
     const fs::path first = settings_.record;
     if (!fs::is_regular_file(first))
-      throw Error(settings_.record + ": is no regular file, beside which recordings of other scenes could be");
+      throw Error(settings_.record + ": is not a regular file; a changed scene needs a recording beside it");
     segment.recording = numbered(first, segment.number + 1, first.extension()).string();
     segment.scene_file = numbered(first, segment.number + 1, ".toml").string();
     info.scene = fs::path(segment.scene_file).filename().string();
@@ -169,7 +169,7 @@ std::vector<Part> RunSegments::change(std::vector<Part> parts, const std::functi
     segment.recorder.reset();
     if (!segment.recording.empty()) remove_files(segment);
     if (over_) throw Error("the run has ended");
-    throw Error("the held part has gone past what was added or moved, or there is no pen; try again");
+    throw Error("what was added or moved blocks the held part's path, or there is no pen; try again");
   }
   // What could not be taken back is in force, and followed in the same tick.
   while (followed_.load(std::memory_order_acquire) != change) std::this_thread::sleep_for(kPoll);

@@ -152,5 +152,5 @@ TEST_CASE("a weight that cannot be is refused", "[sim][weight]") {
   CHECK_THROWS_AS(HapticLoop(scene), Error);
   Scene lp = block_in_air(1);
   lp.contact.resolver = ResolverKind::lp;
-  CHECK_THROWS_WITH(HapticLoop(lp), Catch::Contains("knows no weight"));
+  CHECK_THROWS_WITH(HapticLoop(lp), Catch::Contains("does not support weight"));
 }
