@@ -37,7 +37,7 @@ int view_scene(const std::string& path, const ViewOptions& options, const MeshLo
     for (Part& part : parts) part.held = part.name == name;
     const auto held = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.held; });
     file.script = StylusScript({{0, held->pose}});
-    std::cout << "In the hand is " << name << "; take another one in the page, or with --hold NAME" << std::endl;
+    std::cout << "The hand holds " << name << "; hold another part in the page, or with --hold NAME" << std::endl;
   }
   // Parts of an assembly as people have them overlap here and there; the page says which.
   file.scene.contact.initial_overlap = InitialOverlap::ignore;

@@ -132,14 +132,14 @@ json start(const Review& r) {
   json t = table("At the start",
                  "Relieved: kept out of a copy of the part that is smaller by so much, until it had come free. "
                  "Suspended: not kept out until then.",
-                 {"part", "", "gap or depth", "shrunk by", "until (s)", "where"});
+                 {"part", "", "gap or depth", "relieved by", "until (s)", "where"});
   for (const StartFinding& f : r.findings.start.pairs) {
     const Clash& c = f.pair.clash;
     const bool relieved = f.pair.state == InitialContactState::shrunk,
                active = f.pair.state == InitialContactState::active;
     t["rows"].push_back({r.file.scene.parts[f.pair.part].name,
                          active     ? "touching"
-                         : relieved ? "touching, shrunk"
+                         : relieved ? "touching, relieved"
                                     : "overlapping, suspended",
                          c.gap > 0  ? "gap " + length_text(c.gap)
                          : !c.depth ? "open surfaces cross"

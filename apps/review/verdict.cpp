@@ -46,11 +46,11 @@ class Judge {
     const auto deeper = std::find_if(f_.start.pairs.begin(), f_.start.pairs.end(), is_too_deep);
     if (f_.start.intersecting > 0) {
       v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: no way for a rigid part";
+      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: impossible for a rigid part";
     } else if (deeper != f_.start.pairs.end()) {
       v_.outcome = Outcome::does_not_go;
       v_.headline = std::to_string(deeper->deeper) + " poses reach deeper into " + name(*deeper) +
-                    " than at the start: no way for a rigid part";
+                    " than at the start: impossible for a rigid part";
     } else if (!f_.goal) {
       v_.headline = "A way of " + length_text(f_.way) + " without a goal";
     } else if (f_.goal->reached) {
@@ -114,7 +114,7 @@ class Judge {
                    until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
-            "Touching at the start, and shrunk by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
+            "Touching at the start, and relieved by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
                 "; " + (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
     }
   }

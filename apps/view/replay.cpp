@@ -71,7 +71,7 @@ class ReplaySource final : public ViewSource {
 
 std::string named_scene(const std::string& path, const RecordingInfo& info) {
   const std::string& scene = info.scene;
-  if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
+  if (scene.empty()) throw Error(path + ": does not name its scene; add the scene file to the command");
   const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
   // That of a changed scene was written there.
   const std::filesystem::path named = info.continues.empty() ? std::filesystem::path(scene) : beside;
@@ -121,7 +121,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
     append_forces(frame, forces);
   }
   if (2 * follower.strayed() > rows.size())
-    throw Error(path + ": does not fit this scene: the part would stand in another one for " +
+    throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(follower.strayed()) + " of " + std::to_string(rows.size()) + " rows");
   Bundle bundle;
   held_part(file.scene).pose = rows.front().x;
@@ -137,7 +137,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   bundle.about["pair_begin"] = bundle.add(pair_begin);
   bundle.about["forces"] = bundle.add(forces);
   bundle.about["force_begin"] = bundle.add(force_begin);
-  nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
+  nlohmann::json notes = nlohmann::json::array({"Contacts recomputed from the recorded poses"});
   const bool felt = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.contacts > 0; });
   if (felt && forces.empty()) notes.push_back("Contact forces are not in this recording (MCAP has those of qp)");
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");

@@ -46,7 +46,7 @@ bool RequestGuard::knows_host(std::string_view host) const {
 }
 
 std::string RequestGuard::foreign(const RequestOrigin& request) const {
-  if (!knows_host(request.host)) return "this server is not called so";
+  if (!knows_host(request.host)) return "this server does not have that name";
   if (!request.origin.empty() && request.origin != "http://" + std::string(request.host)) return "this is not its page";
   if (!request.site.empty() && request.site != "same-origin" && request.site != "none") return "this is not its page";
   return "";

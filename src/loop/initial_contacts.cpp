@@ -75,7 +75,7 @@ void InitialContacts::suspend_or_refuse(const Scene& scene, InitialContact& pair
                     (c.depth ? length(*c.depth) + " deep" : "open surfaces") + " at " + place + " (" +
                     std::to_string(c.triangle_pairs) + " intersecting triangle pairs" + why +
                     "); move the held part to a free position, set contact.touch_tolerance (now " + length(tolerance_) +
-                    ") higher, or set contact.initial_overlap = \"ignore\" to filter the pair until it has separated",
+                    ") higher, or set contact.initial_overlap = \"ignore\" to suspend the pair until it has come free",
                 {{}, 0, {}, other.name});
   }
   pair.state = InitialContactState::filtered;

@@ -207,7 +207,7 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
     CHECK(s.deeper == 0);
     CHECK(s.until == Approx(0.75).margin(3.5e-3));  // one pair a tick is asked about
   }
-  CHECK(tells(good, review::Evidence::Kind::plain, {"shrunk by 4.3 µm until 0.75 s: left; no pose reached deeper"}));
+  CHECK(tells(good, review::Evidence::Kind::plain, {"relieved by 4.3 µm until 0.75 s: left; no pose reached deeper"}));
   CHECK(tells(good, review::Evidence::Kind::good, {"No pose intersects another part that was free of it"}));
 
   const Verdict deep = look(sliding_out(2e-6), f);

@@ -190,7 +190,7 @@ TEST_CASE("a block that starts pressed between two comes out, relieved of them u
   CHECK_THAT(o.out, Contains("No pose intersects another part that was free of it"));
   for (const std::string name : {"left", "right"}) {
     // Until it has gone by its own 10 mm, after half a second.
-    const std::string line = "Touching at the start, and shrunk by 4.3 µm until 0.5";
+    const std::string line = "Touching at the start, and relieved by 4.3 µm until 0.5";
     const auto at = o.out.find(name + "; no pose reached deeper.");
     REQUIRE(at != std::string::npos);
     CHECK(o.out.rfind(line, at) != std::string::npos);
