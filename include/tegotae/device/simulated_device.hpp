@@ -36,8 +36,8 @@ struct SimulatedDeviceSettings {
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
   double velocity_cutoff_hz = 50.0;  ///< of the low-pass filter on the velocity that follows from the steps of the pose
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
-  bool wait_for_application =
-      false;  ///< on the wall clock: the hand waits at the script's first pose until an application attaches
+  /// On the wall clock: the hand waits at the script's first pose until an application attaches.
+  bool wait_for_application = false;
 };
 
 /// Returns DeviceInfo of a SimulatedDevice with these settings.

@@ -22,10 +22,9 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Events of a tick that its user may want to know.
 struct TickFlags {
-  bool timed_out = false;  ///< time or work ran out before the tick decided on the wanted motion
-  bool overflow = false;   ///< a capacity was exceeded; the motion is still free
-  bool input_ignored =
-      false;  ///< the pen's pose or the time was out of range (see HapticLoop::step), and the tick ignored it
+  bool timed_out = false;      ///< time or work ran out before the tick decided on the wanted motion
+  bool overflow = false;       ///< a capacity was exceeded; the motion is still free
+  bool input_ignored = false;  ///< the tick ignored an invalid pen pose or time (see HapticLoop::step)
   bool scene_changed = false;  ///< first tick in a changed scene
   bool part_changed = false;   ///< that scene holds another part; the tick did not follow the pen
 };
@@ -67,8 +66,7 @@ struct TickReport {
 /// Weight of the held part (Scene::weight).
 struct HeldWeight {
   double mass = 0;            ///< kg, as given or from volume and density; 0: the scene has no weight
-  double share = 1;           ///< fraction of mass × gravity that the hand carries: below 1 at
-                              ///< WeightSettings::max_force
+  double share = 1;           ///< fraction of mass × gravity that the hand carries (WeightSettings::max_force)
   Vec3 force = Vec3::Zero();  ///< N, world: share × mass × gravity
 };
 
@@ -106,9 +104,9 @@ class HapticLoop {
   /// microsecond; for another one the tick uses 0. TickFlags::input_ignored reports both.
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
-  /// Sets the share of the weight that the hand carries from the next tick on, from 0 (initially) to 1. The caller
-  /// raises it over some 0.3 s once the force is on. The part sinks by weight / stiffness, and the safety chain would
-  /// wait until a force that jumped is over.
+  /// Sets the share of the weight that the hand carries from the next tick on, from 0 (initially) to 1. Raise it over
+  /// some 0.3 s once the force is on, because the part sinks by weight / stiffness and the safety chain waits until a
+  /// force that jumps is over.
   void carry(double share) noexcept;
 
   /// Continues in another scene: parts are added, removed, hidden (left out), moved, or another one is held. Any thread

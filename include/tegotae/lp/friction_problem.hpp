@@ -8,8 +8,8 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// The two tangents of a contact. row · z is how far its point slides along each (m).
 struct TangentRows {
-  Vec6 row[2];  ///< in the coordinates of the normal's row; for two directions perpendicular to the normal and to each
-                ///< other
+  /// In the coordinates of the normal's row; for two directions perpendicular to the normal and to each other.
+  Vec6 row[2];
 };
 
 /// Coulomb's law for one small motion z of a body that springs pull by `wanted`:

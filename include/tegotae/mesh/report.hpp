@@ -14,11 +14,11 @@ struct MeshReport {
   std::size_t components = 0;          ///< sets of triangles joined over shared edges, collapsed ones left out
   std::size_t boundary_edges = 0;      ///< edges of one face
   std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two faces with opposite orientation
-  std::size_t degenerate_faces =
-      0;  ///< collapsed, or with a height below 8 steps of single precision (their normals are not used)
+  /// Collapsed, or with a height below 8 steps of single precision (their normals are not used).
+  std::size_t degenerate_faces = 0;
   std::size_t duplicate_faces = 0;  ///< the same three vertices as an earlier face, in any order; none collapsed
-  std::size_t inverted_shells =
-      0;  ///< closed meshes: components whose faces point inward where they should point outward, or the reverse
+  /// Closed meshes: components whose faces point inward where they should point outward, or the reverse.
+  std::size_t inverted_shells = 0;
   bool closed = false;          ///< every edge joins exactly two faces with the same orientation
   Vec3 box_min = Vec3::Zero();  ///< m, file frame
   Vec3 box_max = Vec3::Zero();  ///< m, file frame

@@ -28,13 +28,13 @@ struct RecordFrame {
 
 /// Metadata of a recording, with which it can be shown with its parts. Unknown texts are empty.
 struct RecordingInfo {
-  std::string scene;        ///< path of the scene file, as the recording program saw it or from the recording's folder
-  std::string held;         ///< name of the held part
-  std::string resolver;     ///< name
-  std::string program;      ///< name and version of the program that wrote it
-  std::string filtered{};   ///< names of the parts that the held part overlapped at the start, and from which nothing
-                            ///< keeps it apart
-  std::string continues{};  ///< the recording beside it that it continues: the scene changed there
+  std::string scene;     ///< path of the scene file, as the recording program saw it or from the recording's folder
+  std::string held;      ///< name of the held part
+  std::string resolver;  ///< name
+  std::string program;   ///< name and version of the program that wrote it
+  /// Names of the parts that the held part overlapped at the start, and from which nothing keeps it apart.
+  std::string filtered{};
+  std::string continues{};     ///< the recording beside it that it continues: the scene changed there
   std::string continued_by{};  ///< the recording beside it that continues it: the scene changed there
   std::string goal{};  ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
 };

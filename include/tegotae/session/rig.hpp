@@ -18,9 +18,10 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Source of a Rig's time.
 enum class RigClock : std::uint8_t {
-  real,      ///< the machine's clock; the servo has a thread of its own
-  simulated  ///< each step() advances it: servo, contact loop and pen take turns in the caller's thread, and the same
-             ///< scene, pen and build give the same run, bit for bit
+  real,  ///< the machine's clock; the servo has a thread of its own
+  /// Each step() advances it: servo, contact loop and pen take turns in the caller's thread, and the same scene, pen
+  /// and build give the same run, bit for bit.
+  simulated
 };
 
 /// How a Rig runs.

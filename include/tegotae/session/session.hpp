@@ -28,9 +28,9 @@ struct RunProgress {
   std::atomic<double> force{0};                        ///< N
   std::atomic<LagReason> lag_reason{LagReason::none};  ///< of the newest tick; none while the lag is under its bound
   std::atomic<bool> device{true};                      ///< the device is connected
-  std::atomic<bool> held{false};    ///< parts of a fit without clearance hold it where it started (HeldFast)
-  std::atomic<double> checked{-1};  ///< after the last tick: checked share of the poses that remained then
-                                    ///< (RunSummary::checked); before: below 0
+  std::atomic<bool> held{false};  ///< parts of a fit without clearance hold it where it started (HeldFast)
+  /// After the last tick: checked share of the poses that remained then (RunSummary::checked); before: below 0.
+  std::atomic<double> checked{-1};
 };
 
 /// One tick of the contact loop, for a RunObserver.
@@ -41,9 +41,9 @@ struct TickView {
   const HapticLoop& loop;  ///< its report() and constraints() are of this tick
   std::uint64_t segment;   ///< number of the run's segment between two changes of its scene (RunEdits), from 0
   double tick_us;          ///< time the tick took; 0 in virtual time
-  std::optional<double>
-      servo_late_us;  ///< lateness of the servo's newest tick; of a servo in another process the worst of a tenth of a
-                      ///< second; none in virtual time and when that servo does not report it
+  /// Lateness of the servo's newest tick; of a servo in another process the worst of a tenth of a second; none in
+  /// virtual time and when that servo does not report it.
+  std::optional<double> servo_late_us;
   const ServoStatistics& servo;  ///< the servo's newest statistics, ten times a second; zeros in virtual time
 };
 
@@ -60,7 +60,7 @@ class RunObserver {
 
 /// Changes the scene of a run (RunSettings::edits) as HapticLoop::change does: parts are added, removed, moved, or
 /// another one is held. Pen, servo, recorder and ticks continue. When another part is held, the pen's present pose maps
-/// to that part, and the force stays off until the wanted force is small.
+/// to that part, and the force goes off until the wanted force is small.
 ///
 /// A recording is of one scene. So each change ends the recording, and RECORDING.2, RECORDING.3, ... (before its
 /// extension) continue it. Each has its scene in a file beside it (RECORDING.2.toml), and its ticks and times count on.
@@ -99,8 +99,8 @@ struct RunSettings {
   /// device, and in real time a servo in a thread of this process.
   std::string device;
   bool real_time = true;  ///< false: virtual time, as fast as possible and the same on every run
-  double seconds =
-      0;  ///< s to run; 0: to the end of the script plus kSettleTime; with another process's device until `stop`
+  /// Length of the run, s. 0: to the end of the script plus kSettleTime; with another process's device until `stop`.
+  double seconds = 0;
   std::string record;                 ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;                ///< name and version, for the recording's info
   RunProgress* progress = nullptr;    ///< receives the progress; null disables it
@@ -129,8 +129,8 @@ struct LagSummary {
   double max_m = 0;  ///< largest TickReport::lag of a tick
   /// Number of ticks with a lag over lag_bound(), by LagReason.
   std::array<std::int64_t, kLagReasons> ticks{};
-  std::int64_t unexplained =
-      0;  ///< TickReport::unexplained_lag_ticks at the end; 0: a contact explains every stop of the part
+  /// TickReport::unexplained_lag_ticks at the end; 0: a contact explains every stop of the part.
+  std::int64_t unexplained = 0;
 };
 
 /// Result of a run.
@@ -151,9 +151,8 @@ struct RunSummary {
   std::int64_t penetrating = 0;
   std::int64_t checked = 0;  ///< committed poses that FCL checked, spread over the run (RunSettings::check_all)
   std::int64_t poses = 0;    ///< different poses that were committed
-  InitialContactReport
-      /// What the held part touched or overlapped at the start, and the state of these pairs at the end or at a change.
-      start;
+  /// What the held part touched or overlapped at the start, and the state of these pairs at the end or at a change.
+  InitialContactReport start;
   /// The last such event; no parts: there was none.
   HeldFast held_fast;
   double deepest_m = 0;    ///< largest depth of a vertex inside another part at a tick, m; only "penalty" penetrates
@@ -163,8 +162,8 @@ struct RunSummary {
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
   double force_max_n = 0;        ///< largest rendered force, N
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
-  std::uint64_t device_losses =
-      0;  ///< how often the device of another process fell silent; the part stayed in place meanwhile
+  /// How often the device of another process fell silent; the part stayed in place meanwhile.
+  std::uint64_t device_losses = 0;
   std::int64_t ignored = 0;          ///< ticks whose pen pose was out of range (TickFlags::input_ignored)
   std::uint64_t record_dropped = 0;  ///< rows that the recorder dropped because it was too slow
   std::string record_failure;        ///< why a recording is incomplete, and what it contains; empty: all are complete
