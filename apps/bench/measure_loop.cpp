@@ -39,8 +39,8 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
       trace.ticks.push_back({r.proxy.X, Y});
       if (scene.tip) lowest = std::min(lowest, (r.proxy.X * *scene.tip).z());
       if (k % stride == 0) {
-        for (const Pose& X : r.pieces) trace.committed.add(X);
-        trace.checked += static_cast<std::int64_t>(r.pieces.size());
+        for (const Pose& X : r.substeps) trace.committed.add(X);
+        trace.checked += static_cast<std::int64_t>(r.substeps.size());
       }
       if (r.contacts == 0 && !r.flags.timed_out && !scene.all_ticks) continue;
       wall.push_back(wall1 - wall0);

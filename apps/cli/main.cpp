@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   experiment->add_option("NAME", trials.name, "Which one, or all")
       ->required()
       ->check(CLI::IsMember(experiments::names()));
-  experiment->add_option("--out", trials.out, "Folder for what it writes")->capture_default_str()->type_name("DIR");
+  experiment->add_option("--out", trials.out, "Folder for the results")->capture_default_str()->type_name("DIR");
   experiment->add_option("--seeds", trials.seeds, "Runs of each kind (each experiment has its own number)")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");

@@ -35,7 +35,7 @@ void hold_smallest(SceneFile& file, bool quiet) {
   for (Part& part : parts) part.held = part.name == name;
   const auto held = std::find_if(parts.begin(), parts.end(), is_held);
   file.script = StylusScript({{0, held->pose}});
-  (quiet ? std::cerr : std::cout) << "In the hand is " << name
+  (quiet ? std::cerr : std::cout) << "The hand holds " << name
                                   << "; take another one in the page (--view), or with --hold NAME" << std::endl;
 }
 

@@ -14,7 +14,7 @@ void add_device_options(CLI::App& app, DeviceOptions& o) {
       ->type_name("FILE");
   app.add_option("--pen", o.pen, "Name of the pen in the vendor's set-up (openhaptics; default: its default pen)")
       ->type_name("PEN");
-  app.add_option("--name", o.name, "Name of the shared-memory segment, one a device")
+  app.add_option("--name", o.name, "Name of the shared-memory segment, one for each device")
       ->capture_default_str()
       ->type_name("NAME");
   app.add_option("--rate", o.rate_hz, "Servo ticks a second, 10 to 4000")->capture_default_str()->type_name("HZ");
@@ -26,7 +26,7 @@ void add_device_options(CLI::App& app, DeviceOptions& o) {
   app.add_option("--dead-man-button", o.dead_man_button, "Force only while this button is pressed")
       ->check(CLI::Range(0, kButtons - 1))
       ->type_name("N");
-  CLI::Option* status = app.add_flag("--status", o.status, "Print how a running device does, and exit");
+  CLI::Option* status = app.add_flag("--status", o.status, "Print the state of a running device, and exit");
   app.add_flag("--json", o.json, "With --status: one line of JSON")->needs(status);
   status->excludes(type);
 }

@@ -64,11 +64,11 @@ static struct tegotae_shm_segment* create(const char* name) {
 
 /* Where the pen's zero is in the world: the application may say "this is home". */
 static double offset[3];
-static int64_t session;
+static int64_t attachment;
 static uint32_t home_counter;
 static void obey(const struct tegotae_shm_application* a, const double p[3]) {
-  if (a->session != session) home_counter = 0; /* another application counts anew */
-  session = a->session;
+  if (a->attachment != attachment) home_counter = 0; /* another application counts anew */
+  attachment = a->attachment;
   if (a->home_counter == home_counter) return;
   home_counter = a->home_counter;
   for (int i = 0; i < 3; ++i) offset[i] = a->home_position[i] - p[i];
@@ -80,7 +80,7 @@ static uint32_t wrench(const struct tegotae_shm_application* a, int64_t now, con
                        double force[3]) {
   double square = 0;
   force[0] = force[1] = force[2] = 0;
-  if (a->session == 0 || !a->enable) return TEGOTAE_SHM_REASON_SOFTWARE;
+  if (a->attachment == 0 || !a->enable) return TEGOTAE_SHM_REASON_SOFTWARE;
   if (a->heartbeat_ns > now + TIMEOUT_NS || a->heartbeat_ns < now - TIMEOUT_NS) return TEGOTAE_SHM_REASON_WATCHDOG;
   if (!a->touching) return TEGOTAE_SHM_REASON_NONE;
   double f[3];
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     device_write(out.force);
     out.status = out.reason == TEGOTAE_SHM_REASON_NONE ? TEGOTAE_SHM_STATUS_ENABLED : TEGOTAE_SHM_STATUS_READY;
     out.heartbeat_ns = out.time_ns = now;
-    out.session = session;
+    out.attachment = attachment;
     out.home_counter = home_counter;
     tegotae_shm_write(&segment->device_counter, segment->device, &out, sizeof out);
   }

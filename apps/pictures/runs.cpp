@@ -145,7 +145,7 @@ void way() {
   for (int tick = 0; tick <= 12; ++tick) {
     const double s = std::min(tick, 7);
     const Pose pen = at(-25 + 6 * s, 14 - 5.3 * s, 20 + 4 * s);
-    for (const Pose& p : loop.step(pen, 1e-3).pieces)
+    for (const Pose& p : loop.step(pen, 1e-3).substeps)
       table.row({static_cast<double>(tick), pen.p.x(), pen.p.z(), p.p.x(), p.p.z(), p.q.w(), p.q.y()});
   }
 }

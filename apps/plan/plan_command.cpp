@@ -98,25 +98,25 @@ int run_all(const PlanCommand& o) {
 }  // namespace
 
 CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
-  CLI::App* plan = app.add_subcommand("plan", "Find a path by which the held part comes out, or goes to a goal");
+  CLI::App* plan = app.add_subcommand("plan", "Find a path that brings the held part out, or to a goal");
   plan->add_option("SCENE", o.scene, "Scene file (TOML)")->required();
   CLI::Option* hold =
       plan->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
-  CLI::Option* goal = apps::add_pose_option(*plan, "--goal", o.goal, "Where the part is to go");
+  CLI::Option* goal = apps::add_pose_option(*plan, "--goal", o.goal, "Goal of the part");
   plan->add_flag("--out", o.out, "Out of all other parts (the default without --goal)")->excludes(goal);
-  CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whoever is held");
-  apps::add_length_option(*plan, "--clearance", o.clearance, "That the path is to leave at least");
+  CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whatever part is held");
+  apps::add_length_option(*plan, "--clearance", o.clearance, "Clearance that the path keeps at least");
   CLI::Option* band = review::add_band_option(*plan, o.band);
-  plan->add_option("--seed", o.seed, "Of all that is random; the same seed gives the same path")->type_name("N");
-  plan->add_option("--iterations", o.iterations, "Of the search, at most")
+  plan->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same path")->type_name("N");
+  plan->add_option("--iterations", o.iterations, "Most iterations of the search")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
       ->type_name("N");
-  CLI::Option* seconds = plan->add_option("--seconds", o.seconds,
-                                          "Of the search, at most (60, and with --seed or --iterations no such end)")
-                             ->check(CLI::Range(0.1, 1e6))
-                             ->type_name("S");
-  plan->add_option("--to", o.folder, "Folder for what it writes")->capture_default_str()->type_name("DIR");
-  CLI::Option* json = plan->add_flag("--json", o.json, "Print what came out as one line of JSON");
+  CLI::Option* seconds =
+      plan->add_option("--seconds", o.seconds, "Longest search (60; unbounded with --seed or --iterations)")
+          ->check(CLI::Range(0.1, 1e6))
+          ->type_name("S");
+  plan->add_option("--to", o.folder, "Folder for the results")->capture_default_str()->type_name("DIR");
+  CLI::Option* json = plan->add_flag("--json", o.json, "Print the result as one line of JSON");
   for (CLI::Option* one : {goal, hold, seconds, json, band}) all->excludes(one);
   return plan;
 }

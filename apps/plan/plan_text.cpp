@@ -28,8 +28,8 @@ std::string certificate(const PlanReport& r) {
     const std::string name = '"' + r.file.scene.parts[pair.part].name + '"';
     if (pair.state == InitialContactState::filtered) text += "; " + name + ", in which it starts, was not looked at";
     if (pair.state == InitialContactState::shrunk)
-      text +=
-          "; to a copy of " + name + format(" that is smaller by %.3g um, for it starts in contact", 1e6 * pair.relief);
+      text += "; to a copy of " + name +
+              format(" that is smaller by %.3g um, for it starts in contact", 1e6 * pair.inward_offset);
   }
   return text;
 }

@@ -90,7 +90,7 @@ std::vector<std::string> band_text(const BandFindings& found, const std::vector<
   if (spans.size() > kMaxSpans) {
     const auto tighter = [](const BandSpan& a, const BandSpan& b) { return a.tightest.distance < b.tightest.distance; };
     std::nth_element(spans.begin(), spans.begin() + kMaxSpans, spans.end(), tighter);
-    out.push_back(format("the tightest %zu of %zu stretches in it or below:", kMaxSpans, spans.size()));
+    out.push_back(format("the tightest %zu of %zu segments in it or below:", kMaxSpans, spans.size()));
     spans.resize(kMaxSpans);
     std::sort(spans.begin(), spans.end(),
               [](const BandSpan& a, const BandSpan& b) { return a.span.begin < b.span.begin; });

@@ -107,8 +107,8 @@ json notes(const Review& r) {
                 " of the recording; to parts that are not the nearest they are known below " +
                 length_text(r.scan.reach) + ".");
   out.push_back(
-      "Contacts are not in a recording: a contact loop is led along its poses and up to 50 µm on towards the "
-      "pen. In contact is a part nearer than what that loop counts as contact (" +
+      "A recording has no contacts: a contact loop follows its poses, and goes up to 50 µm on towards the "
+      "pen. A part is in contact when its gap is below the contact gap of that loop (" +
       length_text(r.scan.rows.front().contact_gap) +
       " at the start). Held from two sides: no translation "
       "leaves all contacts.");

@@ -144,7 +144,7 @@ json start(const Review& r) {
                          c.gap > 0  ? "gap " + length_text(c.gap)
                          : !c.depth ? "open surfaces cross"
                                     : "depth " + length_text(*c.depth),
-                         relieved ? length_text(f.pair.relief) : "–",
+                         relieved ? length_text(f.pair.inward_offset) : "–",
                          active                   ? "–"
                          : std::isfinite(f.until) ? seconds(f.until)
                                                   : "the end",

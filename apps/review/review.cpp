@@ -30,9 +30,9 @@ std::optional<Pose> recorded_goal(const Review& r) {
 
 /// The recording may be a part of a run only.
 void tell_scene_changes(const RecordingInfo& info, Review& r) {
-  if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.goes_on.empty()) {
+  if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.continued_by.empty()) {
     r.verdict.outcome = Outcome::open;
-    r.verdict.headline = "It had not got there when the scene was changed";
+    r.verdict.headline = "It had not arrived when the scene changed";
   }
   for (const std::string& text : view::scene_changes(info)) r.verdict.evidence.push_back({Evidence::Kind::plain, text});
 }
@@ -46,7 +46,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   if (rows.empty()) throw Error(path + ": has no rows");
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (rows[i].t < rows[i - 1].t)
-      throw Error(path + ": row " + std::to_string(i + 1) + ": its time is before that of the row before");
+      throw Error(path + ": row " + std::to_string(i + 1) + ": its time is earlier than that of the row before");
   r.scan = scan_path(r.file.scene, path, rows, progress, questions.band ? questions.band->high : 0);
   r.center = r.scan.center;
   r.file.scene.coupling = r.scan.coupling;
@@ -58,7 +58,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
     r.file.scene.scale = 1;
   }
   if (2 * r.scan.astray > rows.size())
-    throw Error(path + ": does not fit this scene: the part would stand in another one for " +
+    throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(r.scan.astray) + " of " + std::to_string(rows.size()) + " rows");
   if (progress) progress("asking for intersections", 0, 0);
   r.findings = find(r.file, rows, r.scan, r.center);

@@ -47,18 +47,19 @@ CLI::Option* add_band_option(CLI::App& app, std::optional<ClearanceBand>& band) 
       [&band](double low, double high) {
         band = ClearanceBand{low, high};
       },
-      "Also where the gap is below, inside and above this band, like 50um 0.2mm");
+      "Also report where the gap is below, inside and above this band, like 50um 0.2mm");
 }
 
 CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
-  CLI::App* review = app.add_subcommand("review", "Report on a recording: does it go, how close to what, how hard");
+  CLI::App* review =
+      app.add_subcommand("review", "Report on a recording: whether the part goes in, its clearances and its forces");
   review->add_option("RECORDING", o.recording, "What --record wrote")->required();
   review->add_option("SCENE", o.scene, "Its scene file (the one that the recording names)");
-  apps::add_pose_option(*review, "--goal", o.goal, "Where the part was to go (where the scene's script ends)");
+  apps::add_pose_option(*review, "--goal", o.goal, "Goal of the part (default: where the scene's script ends)");
   review->add_option("--out", o.out, "The report (RECORDING.review.html, beside it)")->type_name("FILE.html");
   review->add_option("--csv", o.csv, "Also write the path, with clearances and forces")->type_name("FILE.csv");
   review->add_option("--forces", o.forces, "Also write the force of the assembly over depth")->type_name("FILE.csv");
-  review->add_option("--mu", o.mu, "Also with coefficients of friction between these, by the same pen")
+  review->add_option("--mu", o.mu, "Also with friction, for coefficients between these and the same pen")
       ->type_name("LOW:HIGH");
   add_band_option(*review, o.band);
   review->add_option("--gltf", o.gltf, "Also write the path as an animation, binary when it ends in .glb")

@@ -90,7 +90,7 @@ class Starter {
     two.parts = {held_part(scene_), scene_.parts[pair.part]};
     if (pair.state == InitialContactState::shrunk) {
       std::shared_ptr<const TriangleMesh>& mesh = two.parts[1].mesh;
-      mesh = std::make_shared<TriangleMesh>(inward_offset(Surface(mesh), pair.relief));
+      mesh = std::make_shared<TriangleMesh>(inward_offset(Surface(mesh), pair.inward_offset));
     }
     PoseCheck check;
     for (std::size_t r = 0; r < end; ++r) check.add(rows_[r].x);

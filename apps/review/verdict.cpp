@@ -46,11 +46,11 @@ class Judge {
     const auto deeper = std::find_if(f_.start.pairs.begin(), f_.start.pairs.end(), is_too_deep);
     if (f_.start.intersecting > 0) {
       v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: no way for a rigid part";
+      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: impossible for a rigid part";
     } else if (deeper != f_.start.pairs.end()) {
       v_.outcome = Outcome::does_not_go;
       v_.headline = std::to_string(deeper->deeper) + " poses reach deeper into " + name(*deeper) +
-                    " than at the start: no way for a rigid part";
+                    " than at the start: impossible for a rigid part";
     } else if (!f_.goal) {
       v_.headline = "A way of " + length_text(f_.way) + " without a goal";
     } else if (f_.goal->reached) {
@@ -94,7 +94,7 @@ class Judge {
     if (f_.start.intersecting == 0)
       good(std::string("No pose intersects another part") +
            (std::all_of(pairs.begin(), pairs.end(), was_active) ? "" : " that was free of it") +
-           ", by their triangles and asked independently of the run.");
+           ", by their triangles, checked independently of the run.");
     else
       bad(format("%lld poses intersect another part.", static_cast<long long>(f_.start.intersecting)));
   }
@@ -105,7 +105,7 @@ class Judge {
       if (was_active(f)) touching.push_back(f.pair.part);
     if (!touching.empty())
       plain("Touching at the start: " + names_text(touching, scene_) +
-            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " off." : "."));
+            (f_.start.shift > 0 ? "; the part was moved by " + length_text(f_.start.shift) + " to part them." : "."));
     for (const StartFinding& f : f_.start.pairs) {
       const std::string until = std::isfinite(f.until) ? " until " + seconds_text(f.until) : " to the end";
       const std::string poses = format("%lld poses", static_cast<long long>(f.deeper));
@@ -114,8 +114,8 @@ class Judge {
                    until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
-            "Touching at the start, and relieved by " + length_text(f.pair.relief) + until + ": " + name(f) + "; " +
-                (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
+            "Touching at the start, and relieved by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
+                "; " + (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
     }
   }
 
@@ -135,7 +135,7 @@ class Judge {
     add(within ? Evidence::Kind::good : Evidence::Kind::bad, text);
     if (l.continuous > 0)
       add(l.running_rms <= 0.999 * l.continuous ? Evidence::Kind::good : Evidence::Kind::bad,
-          format("Running RMS over %.0f s at most %.2f N; the motors stand for %.2g N.", l.thermal_time, l.running_rms,
+          format("Running RMS over %.0f s at most %.2f N; the motors sustain %.2g N.", l.thermal_time, l.running_rms,
                  l.continuous));
   }
 

@@ -13,7 +13,7 @@ std::string place_text(const Vec3& p) {
 }
 
 std::string blocked_text(const std::string& part, const Vec3& place_W) {
-  if (part.empty()) return "nothing was in its way at the end, the hand did not bring it there";
+  if (part.empty()) return "nothing blocked it at the end; the hand did not bring it there";
   return "blocked by " + part + " at " + place_text(place_W);
 }
 

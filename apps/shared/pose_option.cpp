@@ -30,7 +30,7 @@ std::vector<double> numbers(const std::string& text) {
 
 std::string goal_error(const std::string& goal) {
   if (goal == kOut || !numbers(goal).empty()) return "";
-  return goal + " is no pose: X,Y,Z in m, or with a quaternion X,Y,Z,QW,QX,QY,QZ; or \"out\"";
+  return goal + " is not a pose: X,Y,Z in m, or with a quaternion X,Y,Z,QW,QX,QY,QZ; or \"out\"";
 }
 
 CLI::Option* add_goal_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help) {
@@ -40,14 +40,14 @@ CLI::Option* add_goal_option(CLI::App& app, const std::string& name, std::string
 CLI::Option* add_pose_option(CLI::App& app, const std::string& name, std::string& text, const std::string& help) {
   return app.add_option(name, text, help)
       ->check([](const std::string& pose) -> std::string {
-        return numbers(pose).empty() ? pose + " is no pose: X,Y,Z in m, or with a quaternion X,Y,Z,QW,QX,QY,QZ" : "";
+        return numbers(pose).empty() ? pose + " is not a pose: X,Y,Z in m, or with a quaternion X,Y,Z,QW,QX,QY,QZ" : "";
       })
       ->type_name("POSE");
 }
 
 Pose parse_pose(const std::string& text, const Scene& scene) {
   const std::vector<double> n = numbers(text);
-  if (n.empty()) throw Error(text + ": is no pose");
+  if (n.empty()) throw Error(text + ": is not a pose");
   Pose X;
   for (const Part& part : scene.parts)
     if (part.held) X = part.pose;

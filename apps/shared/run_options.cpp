@@ -49,8 +49,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--record", options.record,
                  "Write every pose and wrench to a file: MCAP when it ends in .mcap, else CSV")
       ->type_name("FILE");
-  app.add_flag("--check-all", options.check_all,
-               "Ask FCL about every pose, however long it takes (as many as a quarter of the run's time allows)");
+  app.add_flag(
+      "--check-all", options.check_all,
+      "Check every pose with FCL, however long it takes (default: as many as a quarter of the run's time allows)");
   app.add_flag("--json", options.json, "Print the summary as one line of JSON");
   auto* view = app.add_flag("--view", options.view, "Serve a page that shows the run, until Ctrl-C");
   const PageOptionNames page = add_page_options(app, options.page);

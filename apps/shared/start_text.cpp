@@ -34,7 +34,7 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   if (pair.state == InitialContactState::filtered)
     return text + "; SUSPENDED: until they have come free, nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; until they have come free, contact is felt " + length(pair.relief) + " inside its surface\n";
+    return text + "; until they have come free, contact is felt " + length(pair.inward_offset) + " inside its surface\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
@@ -52,7 +52,7 @@ nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene
                      {"gap_m", c.gap},
                      {"depth_m", c.depth ? nlohmann::ordered_json(*c.depth) : nlohmann::ordered_json()},
                      {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}},
-                     {"relief_m", pair.relief},
+                     {"relief_m", pair.inward_offset},
                      {"state", state_name(pair.state)}});
   }
   return {{"shift_m", start.shift}, {"pairs", pairs}, {"suspended", suspended}};
@@ -61,7 +61,8 @@ nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene
 std::string start_text(const InitialContactReport& start, const Scene& scene) {
   std::string text;
   for (const InitialContact& pair : start.pairs) text += line(pair, scene);
-  if (start.shift > 0) text += format("  %-12s moved by ", "start") + length(start.shift) + " off what it touches\n";
+  if (start.shift > 0)
+    text += format("  %-12s moved by ", "start") + length(start.shift) + " away from what it touches\n";
   return text;
 }
 
@@ -71,8 +72,8 @@ std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
   for (const InitialContact& pair : summary.start.pairs) {
     if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
     text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
-            " where its pen went " + length(h.pen) + "; it does not fit, even with contact felt " +
-            length(pair.relief) + " inside that part's surface\n";
+            " where its pen went " + length(h.pen) + "; the fit has no clearance, even with contact felt " +
+            length(pair.inward_offset) + " inside that part's surface\n";
   }
   return text;
 }

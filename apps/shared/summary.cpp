@@ -120,8 +120,8 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
     text += format("  %-12s lost %llu times; the part stayed where it was\n", "device",
                    static_cast<unsigned long long>(s.device_losses));
   if (s.ignored > 0)
-    text += format("  %-12s %lld ticks had a pose that no pen can have, or no time; the last good one stood in\n",
-                   "ignored", static_cast<long long>(s.ignored));
+    text += format("  %-12s %lld ticks had an invalid pen pose or time; the last valid pose replaced it\n", "ignored",
+                   static_cast<long long>(s.ignored));
   if (s.record_dropped > 0)
     text += format("  %-12s %llu rows were dropped: the disk could not keep up\n", "recording",
                    static_cast<unsigned long long>(s.record_dropped));

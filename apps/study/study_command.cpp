@@ -60,7 +60,7 @@ int run_shard(const StudyOptions& o) {
   const std::atomic<bool>& interrupted = apps::catch_interrupts();
   run_missing(s.study, *s.tasks, numbers, o.jobs, table, interrupted);
   if (interrupted) {
-    std::cout << "interrupted; the same command goes on from here" << std::endl;
+    std::cout << "interrupted; the same command continues from here" << std::endl;
     return apps::kRunFailed;
   }
   std::vector<Result> results;
@@ -122,7 +122,7 @@ int run_one(const StudyOptions& o) {
   Opened s;
   open(o, s);
   if (o.number >= case_count(s.study))
-    throw Error(o.study + format(": has no case %d, but 0 to %d", o.number, case_count(s.study) - 1));
+    throw Error(o.study + format(": has no case %d; its cases are 0 to %d", o.number, case_count(s.study) - 1));
   const Case c = make_case(s.study, o.number);
   const std::string folder = o.to.empty() ? s.out + "/case-" + std::to_string(o.number) : o.to;
   const std::size_t tasks = s.tasks->of(c).size();
@@ -168,15 +168,15 @@ CLI::App* add_study(CLI::App& app, StudyOptions& o) {
       ->type_name("J");
   add_out(*o.self, o);
   o.run = add_part(o, "run", "Run all cases with HyperShell, and merge");
-  o.run->add_option("--shards", o.shards, "Parts of the cases, a process each (8 for each processor)")
+  o.run->add_option("--shards", o.shards, "Number of shards, one process for each (8 for each processor)")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  o.run->add_option("--processors", o.processors, "At the same time (default: all)")
+  o.run->add_option("--processors", o.processors, "Shards at the same time (default: all processors)")
       ->check(CLI::Range(1, 1024))
       ->type_name("P");
   o.merge = add_part(o, "merge", "Make one table and the report of all parts");
   o.one = add_part(o, "case", "Make a case again, and record it");
-  o.one->add_option("NUMBER", o.number, "Of the case")->required()->check(CLI::NonNegativeNumber);
+  o.one->add_option("NUMBER", o.number, "Number of the case")->required()->check(CLI::NonNegativeNumber);
   o.one->add_option("--to", o.to, "Folder for scene and recording")->type_name("DIR");
   for (CLI::App* part : {o.run, o.merge, o.one}) add_out(*part, o);
   return o.self;

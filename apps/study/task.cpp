@@ -71,7 +71,7 @@ Tasks::Tasks(const Study& study, std::vector<SceneFile> files) : study_(study), 
     for (const Axis& axis : study.axes)
       if (axis.name.rfind("inward ", 0) == 0) check_name(axis.name.substr(7), file);
     if (study.goal.empty() && !(file.script.end() > file.script.begin()))
-      throw Error(file.path + ": its script goes nowhere; tell where the part is to go with " +
+      throw Error(file.path + ": its script does not move; give the part's goal with " +
                   (study.path.empty() ? "--goal" : "goal in " + study.path));
   }
 }

@@ -32,21 +32,21 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
   CLI::App* tries = app.add_subcommand("try", "Let modeled operators try to bring the held part to a goal");
   tries->add_option("SCENE", o.scene, "Scene file (TOML)")->required();
   apps::add_goal_option(*tries, "--goal", o.goal,
-                        "Where the part is to go, or out of all others (where the scene's script ends)");
+                        "Goal of the part, or \"out\": out of all others (default: where the scene's script ends)");
   tries->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
-  tries->add_option("--tries", o.tries, "How many")
+  tries->add_option("--tries", o.tries, "Number of tries")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->type_name("N");
-  tries->add_option("--jobs", o.jobs, "At the same time (default: all processors); no result depends on it")
+  tries->add_option("--jobs", o.jobs, "Tries at the same time (default: all processors); no result depends on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");
-  tries->add_option("--seed", o.seed, "Of all that is random")->capture_default_str()->type_name("N");
-  tries->add_option("--seconds", o.seconds, "That an operator has")
+  tries->add_option("--seed", o.seed, "Seed of all random choices")->capture_default_str()->type_name("N");
+  tries->add_option("--seconds", o.seconds, "Time that an operator has")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str()
       ->type_name("S");
-  tries->add_option("--out", o.out, "Folder for what it writes; tries that are there are not made again")
+  tries->add_option("--out", o.out, "Folder for the results; finished tries in it are not repeated")
       ->capture_default_str()
       ->type_name("DIR");
   return tries;
@@ -72,7 +72,7 @@ int run_tries(const TryOptions& o) {
   const Result* best = best_case(results);
   const RecordTo record_to = [&](SceneFile&, std::size_t) { return recording; };
   if (interrupted || !run_case(study, *tasks, make_case(study, best->number), interrupted, record_to)) {
-    std::cout << "interrupted; the same command goes on from here" << std::endl;
+    std::cout << "interrupted; the same command continues from here" << std::endl;
     return apps::kRunFailed;
   }
   std::cout << apps::format("best: try %d, %.2f s, recorded in ", best->number, best->time) << recording << "\n";

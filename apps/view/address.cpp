@@ -12,7 +12,8 @@ namespace tegotae::view {
 
 Address parse_address(const std::string& text) {
   const auto fail = [&] {
-    throw Error("\"" + text + "\" is no address to listen on; write an IP address and a port, like 127.0.0.1:8080 or " +
+    throw Error("\"" + text +
+                "\" is not an address to listen on; write an IP address and a port, like 127.0.0.1:8080 or " +
                 "[::1]:8080");
   };
   Address address;

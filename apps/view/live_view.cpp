@@ -272,7 +272,7 @@ void LiveView::edit(const json& command) {
 }
 
 void LiveView::restart() {
-  if (!restartable_) throw Error("a run that is recorded cannot start anew");
+  if (!restartable_) throw Error("a recorded run cannot restart");
   const std::lock_guard<std::mutex> lock(mutex_);
   requested_ = true;
   stop_ = true;

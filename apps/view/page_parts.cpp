@@ -53,7 +53,7 @@ void PageParts::edit(const nlohmann::json& command) {
     return;
   }
   if (removed_[i]) throw Error(part.name + " is not in the scene; add it first");
-  if (part.held) throw Error(part.name + " is held; the pen moves it, and another part must be held before it can go");
+  if (part.held) throw Error(part.name + " is held, so the pen moves it; hold another part first");
   if (what == "hold") {
     parts_[held()].held = false;
     part.held = true;

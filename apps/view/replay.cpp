@@ -69,10 +69,10 @@ class ReplaySource final : public ViewSource {
 
 std::string named_scene(const std::string& path, const RecordingInfo& info) {
   const std::string& scene = info.scene;
-  if (scene.empty()) throw Error(path + ": does not say which scene it is of; add the scene file to the command");
+  if (scene.empty()) throw Error(path + ": does not name its scene; add the scene file to the command");
   const std::filesystem::path beside = std::filesystem::path(path).parent_path() / scene;
   // That of a changed scene was written there.
-  const std::filesystem::path named = info.follows.empty() ? std::filesystem::path(scene) : beside;
+  const std::filesystem::path named = info.continues.empty() ? std::filesystem::path(scene) : beside;
   for (const std::filesystem::path& file : {named, beside})
     if (std::filesystem::exists(file)) return file.string();
   throw Error(path + ": its scene " + scene + " is gone; add the scene file to the command");
@@ -88,9 +88,9 @@ SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info
 
 std::vector<std::string> scene_changes(const RecordingInfo& info) {
   std::vector<std::string> texts;
-  if (!info.follows.empty()) texts.push_back("It goes on from " + info.follows + ", where the scene was changed.");
-  if (!info.goes_on.empty())
-    texts.push_back("At its end the scene was changed; the run goes on in " + info.goes_on + ".");
+  if (!info.continues.empty()) texts.push_back("It continues " + info.continues + ", where the scene changed.");
+  if (!info.continued_by.empty())
+    texts.push_back("At its end the scene changed; the run continues in " + info.continued_by + ".");
   return texts;
 }
 
@@ -120,13 +120,13 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
     append_forces(frame, forces);
   }
   if (2 * follower.strayed() > rows.size())
-    throw Error(path + ": does not fit this scene: the part would stand in another one for " +
+    throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(follower.strayed()) + " of " + std::to_string(rows.size()) + " rows");
   Bundle bundle;
   held_part(file.scene).pose = rows.front().x;
   add_scene(bundle, file.scene, follower.loop().center());
   // After a change of the scene the script may be of another part.
-  if (recording.info.follows.empty()) add_script(bundle, file.script);
+  if (recording.info.continues.empty()) add_script(bundle, file.script);
   bundle.about["mode"] = "replay";
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
@@ -136,13 +136,13 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   bundle.about["pair_begin"] = bundle.add(pair_begin);
   bundle.about["forces"] = bundle.add(forces);
   bundle.about["force_begin"] = bundle.add(force_begin);
-  nlohmann::json notes = nlohmann::json::array({"Contacts found anew from the recorded poses"});
+  nlohmann::json notes = nlohmann::json::array({"Contacts recomputed from the recorded poses"});
   const bool felt = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.contacts > 0; });
   if (felt && forces.empty()) notes.push_back("Contact forces are not in this recording (MCAP has those of qp)");
   if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
   if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
   for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);
-  if (!recording.info.suspended.empty()) notes.push_back("Suspended at the start: " + recording.info.suspended);
+  if (!recording.info.filtered.empty()) notes.push_back("Suspended at the start: " + recording.info.filtered);
   bundle.about["notes"] = notes;
   return bundle.bytes();
 }

@@ -25,7 +25,7 @@ bool same(std::string_view a, std::string_view b) {
 std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
   if (getrandom(random.data(), bytes, 0) != static_cast<ssize_t>(bytes))
-    throw Error("the system gives no random numbers");
+    throw Error("the system provides no random numbers");
   std::string text;
   for (const unsigned char byte : random) {
     text += "0123456789abcdef"[byte >> 4];
@@ -46,7 +46,7 @@ bool RequestGuard::knows_host(std::string_view host) const {
 }
 
 std::string RequestGuard::foreign(const RequestOrigin& request) const {
-  if (!knows_host(request.host)) return "this server is not called so";
+  if (!knows_host(request.host)) return "this server does not have that name";
   if (!request.origin.empty() && request.origin != "http://" + std::string(request.host)) return "this is not its page";
   if (!request.site.empty() && request.site != "same-origin" && request.site != "none") return "this is not its page";
   return "";

@@ -183,7 +183,7 @@ struct Server::Impl {
     } catch (const Error& e) {
       respond(connection, 400, "Bad Request", text, std::string(e.what()) + "\n");
     } catch (const nlohmann::json::exception&) {
-      respond(connection, 400, "Bad Request", text, "this is no command\n");
+      respond(connection, 400, "Bad Request", text, "this is not a command\n");
     } catch (const std::exception& e) {
       respond(connection, 500, "Internal Server Error", text, std::string(e.what()) + "\n");
     }
@@ -315,7 +315,7 @@ std::string Server::warning() const {
   const bool loopback = a.host.rfind("127.", 0) == 0 || a.host == "[::1]";
   if (loopback) return "";
   std::string text =
-      "Anybody who can reach this machine can reach the page, and who listens in on the way reads its token: it is "
+      "Anybody who can reach this machine can reach the page, and who listens on the network can read its token: it is "
       "plain "
       "HTTP. A tunnel is safer.";
   if (!a.wildcard()) return text;

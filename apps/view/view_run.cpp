@@ -19,10 +19,11 @@ constexpr auto kPoll = std::chrono::milliseconds(20);
 
 /// Or its beginning would be over when the page comes.
 void wait_for_page(const Server& server, const std::atomic<bool>& stop) {
-  std::cout << "The run starts when the page is there, or in " << kFirstPage.count() << " s" << std::endl;
+  std::cout << "The run starts when the page is connected, or in " << kFirstPage.count() << " s" << std::endl;
   const auto end = std::chrono::steady_clock::now() + kFirstPage;
   while (!stop && !server.watched() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kPoll);
-  if (!stop) std::cout << (server.watched() ? "The page is there" : "No page came") << "; the run starts" << std::endl;
+  if (!stop)
+    std::cout << (server.watched() ? "The page is connected" : "No page connected") << "; the run starts" << std::endl;
 }
 
 }  // namespace

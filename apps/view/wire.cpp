@@ -87,7 +87,7 @@ std::string status_message(std::string_view json) {
 
 nlohmann::json parse_command(std::string_view text) {
   const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    if (depth > kMaxDepth) throw Error("a command is too deep");
+    if (depth > kMaxDepth) throw Error("a command is nested too deeply");
     return true;
   };
   return nlohmann::json::parse(text, shallow);

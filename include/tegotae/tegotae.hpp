@@ -1,7 +1,7 @@
 #pragma once
 
-/// The door: a scene, a pen, and the Rig that brings them together, with what they need. Everything else has a header
-/// of its own (docs/api.md has a map by task).
+/// The main header: a scene, a pen, the Rig that connects them, and what they need. Everything else has a header of its
+/// own (docs/api.md has a map by task).
 
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"

@@ -22,8 +22,8 @@ constexpr int kPollMs = 50;
 
 std::string cause(int error) {
   // Of an open that does not wait; of a write that has waited.
-  if (error == ENXIO) return "it is a pipe that nobody reads";
-  if (error == EAGAIN) return "nobody reads from the pipe";
+  if (error == ENXIO) return "it is a pipe without a reader";
+  if (error == EAGAIN) return "the reader of the pipe does not read";
   return std::strerror(error);
 }
 

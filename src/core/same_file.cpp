@@ -42,7 +42,7 @@ void refuse_to_replace(const std::vector<std::string>& outputs, const std::vecto
     if (outputs[i].empty() || holds_nothing(outputs[i])) continue;
     for (std::size_t k = 0; k < i; ++k)
       if (!outputs[k].empty() && same(outputs[i], outputs[k]))
-        throw Error(outputs[i] + ": is to be written twice by the same command; give each output its own file");
+        throw Error(outputs[i] + ": the same command writes it twice; give each output its own file");
   }
 }
 

@@ -19,9 +19,9 @@ double coupling_radius(const CouplingSettings& settings, double scale) noexcept 
                             : std::clamp(scale * std::sqrt(square), kMinRadius, kMaxRadius);
 }
 
-double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept {
+double fitted_torsional_stiffness(double stiffness, double radius, double max_stiffness) noexcept {
   const double least = CouplingSettings().torsional_stiffness;
-  return std::clamp(stiffness * radius * radius, least, std::max(least, most));
+  return std::clamp(stiffness * radius * radius, least, std::max(least, max_stiffness));
 }
 
 Wrench coupling_wrench(const CouplingSettings& settings, const ProxyState& x, const Pose& Y, const Twist& Y_velocity,

@@ -64,7 +64,7 @@ bool LocalModel::set_rows(const ContactPlanes& planes, const Vec3& center_W) noe
       return row;
     };
     rows_.push_row(along(plane.normal));
-    bounds_[i] = -plane.room;
+    bounds_[i] = -plane.clearance;
     mu_[i] = plane.mu;
     if (!(plane.mu > 0)) continue;
     rubs_ = true;

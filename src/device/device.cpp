@@ -43,11 +43,11 @@ const char* to_string(ForceOff reason) noexcept {
     case ForceOff::clutched:
       return "the pen is clutched";
     case ForceOff::silent:
-      return "the pen has had no new sample for too long";
+      return "the pen has sent no new sample for too long";
     case ForceOff::device_fault:
       return "the device reports a fault";
     case ForceOff::force_exceeded:
-      return "the device was asked for more than it may render";
+      return "the application asked for more than the device may render";
     case ForceOff::no_force:
       return "the device renders no force";
   }

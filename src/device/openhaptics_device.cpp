@@ -172,7 +172,7 @@ struct OpenHapticsDevice::Impl {
     hd->get_integers(HdApi::kOutputFreedom, &info.force_freedom);
     hd->get_doubles(HdApi::kMaxForce, &info.limits.force);
     hd->get_doubles(HdApi::kContinuousForce, &info.continuous_force);
-    check("the device does not tell what it is");
+    check("the device does not report its properties");
     info.force_freedom = info.force_freedom >= 6 ? 6 : 3;
     info.motion_freedom = info.motion_freedom >= 6 ? 6 : 3;
     if (info.force_freedom == 3) info.limits.torque = 0;

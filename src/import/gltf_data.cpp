@@ -35,7 +35,7 @@ void require(const std::string& path, cgltf_result result) {
   if (result == cgltf_result_success) return;
   if (result == cgltf_result_out_of_memory) throw std::bad_alloc();
   if (result == cgltf_result_file_not_found)
-    throw Error(path + ": a buffer is missing, or no regular file in the folder of the glTF file");
+    throw Error(path + ": a buffer is missing, or is not a regular file in the folder of the glTF file");
   throw Error(path + ": truncated or damaged: cgltf: error " + std::to_string(static_cast<int>(result)));
 }
 
@@ -66,7 +66,7 @@ void decompress(const std::string& path, std::size_t i, cgltf_buffer_view& view)
   view.data = std::malloc(from.count * from.stride);  // cgltf frees it
   if (view.data == nullptr) throw std::bad_alloc();
   if (buffer == nullptr || decode(from, buffer + from.offset, view.data) != 0)
-    throw Error(path + ": damaged: bufferView " + std::to_string(i) + " is no stream of EXT_meshopt_compression");
+    throw Error(path + ": damaged: bufferView " + std::to_string(i) + " is not a stream of EXT_meshopt_compression");
   undo_filter(from, view.data);
 }
 
@@ -127,7 +127,7 @@ void for_changes(const std::string& path, const cgltf_accessor& accessor, const 
   for (std::size_t i = 0; i < changes.indices.count; ++i) {
     const std::size_t to = cgltf_accessor_read_index(&changes.indices, i);
     if (to >= accessor.count)
-      throw Error(path + ": index out of range: a sparse accessor changes an element that it has not");
+      throw Error(path + ": index out of range: a sparse accessor changes an element that it does not have");
     each(to, i);
   }
 }
@@ -147,7 +147,7 @@ void change(const std::string& path, const cgltf_accessor& accessor, std::vector
 
 std::vector<double> numbers_of(const std::string& path, const cgltf_accessor& accessor, std::size_t components) {
   if (cgltf_num_components(accessor.type) != components)
-    throw Error(path + ": damaged: an accessor has not the type that its use asks for");
+    throw Error(path + ": damaged: an accessor does not have the type that its use requires");
   cgltf_accessor dense = accessor;
   dense.is_sparse = 0;
   std::vector<float> numbers;

@@ -57,11 +57,11 @@ std::vector<Vec3> skinned(const std::string& path, const cgltf_node& node, const
     has_set = true;
     const std::vector<double> w = numbers_of(path, *weights, 4), of = numbers_of(path, *joints, 4);
     if (w.size() != 4 * points.size() || of.size() != w.size())
-      throw Error(path + ": damaged: a skinned mesh has not as many joints and weights as vertices");
+      throw Error(path + ": damaged: a skinned mesh does not have one set of joints and weights for each vertex");
     for (std::size_t i = 0; i < w.size(); ++i) {
       if (w[i] == 0) continue;
       if (!(of[i] >= 0 && of[i] < static_cast<double>(maps.size())))
-        throw Error(path + ": index out of range: a vertex names a joint that its skin has not");
+        throw Error(path + ": index out of range: a vertex names a joint that its skin does not have");
       const Matrix34& X = maps[static_cast<std::size_t>(of[i])];
       sums[i / 4] += w[i];
       moved[i / 4] += w[i] * (X.leftCols<3>() * points[i / 4] + X.col(3));

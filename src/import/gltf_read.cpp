@@ -120,7 +120,7 @@ class GltfReader {
       const std::vector<double> x = numbers_of(path_, accessor, components);
       if (nodes.empty()) nodes.resize(accessor.count);
       if (nodes.size() != accessor.count)
-        throw Error(path_ + ": damaged: the instances of a node have not as many of each attribute");
+        throw Error(path_ + ": damaged: the attributes of a node's instances differ in number");
       for (std::size_t i = 0; i < x.size(); ++i) {
         cgltf_node& of = nodes[i / components];
         (name == "ROTATION" ? of.has_rotation : name == "SCALE" ? of.has_scale : of.has_translation) = 1;
@@ -178,7 +178,7 @@ class GltfReader {
       if (target.attributes[a].type != cgltf_attribute_type_position) continue;
       const std::vector<Vec3> shift = points_of(path_, *target.attributes[a].data);
       if (shift.size() != points.size())
-        throw Error(path_ + ": damaged: a morph target has not as many vertices as its mesh");
+        throw Error(path_ + ": damaged: a morph target and its mesh differ in their number of vertices");
       for (std::size_t i = 0; i < points.size(); ++i) points[i] += weight * shift[i];
     }
   }

@@ -94,7 +94,7 @@ GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data
   buffer.Init(bytes, from.buffer_view->size);
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) throw fail(std::string("is no stream of it: ") + decoded.status().error_msg());
+  if (!decoded.ok()) throw fail(std::string("is not a stream of it: ") + decoded.status().error_msg());
   const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
   // What cgltf keeps as the accessor of that number is the attribute's number in the Draco stream.
   const auto id = static_cast<std::uint32_t>(cgltf_accessor_index(&data, position->data));

@@ -180,7 +180,7 @@ TriangleMesh received(Reader& reader, const std::string& path, const IsolatedLoa
   if (head.failed != 0) throw Error(ErrorKind::file, text, {path, 0, {}, {}});
   const double bytes = static_cast<double>(head.note_bytes) + 24.0 * static_cast<double>(head.vertices) +
                        12.0 * static_cast<double>(head.triangles);
-  if (bytes > 1e6 * bounds.megabytes) fail(path, "the loading process sent more than the memory it may have");
+  if (bytes > 1e6 * bounds.megabytes) fail(path, "the loading process sent more than its memory bound");
   TriangleMesh mesh;
   mesh.name = std::move(text);
   std::string notes(head.note_bytes, '\0');
@@ -198,8 +198,9 @@ TriangleMesh received(Reader& reader, const std::string& path, const IsolatedLoa
 }  // namespace
 
 TriangleMesh load_mesh_isolated(const std::string& path, double unit_in_m, const IsolatedLoad& bounds) {
-  if (!(bounds.seconds > 0 && bounds.seconds <= 1e6)) fail(path, "the time to load it in must be positive");
-  if (!(bounds.megabytes > 0 && bounds.megabytes <= 1e9)) fail(path, "the memory to load it in must be positive");
+  if (!(bounds.seconds > 0 && bounds.seconds <= 1e6)) fail(path, "the bound on its loading time must be positive");
+  if (!(bounds.megabytes > 0 && bounds.megabytes <= 1e9))
+    fail(path, "the bound on its loading memory must be positive");
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(path, std::string("no pipe to the loading process: ") + std::strerror(errno));
   const Descriptor in(ends[0]);

@@ -232,7 +232,7 @@ bool check_entities(const std::string& path, const Handle(XSControl_WorkSession)
     } else if (is_constructive(entity)) {
       throw Error(path + ": " + named(model, entity) + ", which is not read");
     } else {
-      throw Error(path + ": damaged: OpenCASCADE finds entities that cannot be: wrong or missing references (#" +
+      throw Error(path + ": damaged: OpenCASCADE finds impossible entities: wrong or missing references (#" +
                   std::to_string(model->IdentLabel(entity)) + ")");
     }
   }

@@ -159,8 +159,8 @@ std::string plain_stl(const std::string& path, std::string_view bytes) {
   if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
   // Bytes behind the last facet are padding, but for as many as a facet has: then the count is wrong.
   if (facets > 0 && room == facets) return std::string(bytes.substr(0, whole));
-  refuse(path, (facets > room ? "truncated: " : "damaged: ") + std::to_string(facets) +
-                   " triangles are announced, the file has room for " + std::to_string(room));
+  refuse(path, std::string(facets > room ? "truncated" : "damaged") + ": its header states " + std::to_string(facets) +
+                   " triangles, the file has bytes for " + std::to_string(room));
 }
 
 }  // namespace tegotae

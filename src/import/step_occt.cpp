@@ -153,7 +153,7 @@ class StepReader {
     face_names_.emplace(session);
     const bool has_colors = check_entities(path_, session);
     reader.SetColorMode(has_colors);
-    if (!has_colors) assembly_.notes.push_back("colors are not read: the entities that tell them are damaged");
+    if (!has_colors) assembly_.notes.push_back("colors are not read: their entities are damaged");
     for (const std::string& file : named_files(path_, session))
       assembly_.notes.push_back("the file \"" + file + "\" that it names is missing: its part is left out");
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");

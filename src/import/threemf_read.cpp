@@ -194,7 +194,7 @@ class ThreeMfReader {
         const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value());
         if (index != std::floor(index)) damaged("a triangle of \"" + name + "\" has an index that is no whole number");
         if (!(index >= 0 && index < static_cast<double>(out.vertices.size())))
-          throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it has not");
+          throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it does not have");
         corners[k] = static_cast<std::uint32_t>(index);
       }
       out.triangles.push_back(corners);

@@ -156,7 +156,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
-    report.pieces.push_back(X_);
+    report.substeps.push_back(X_);
     at_.contacts->clear();
     tracked_ = false;
     owed_.reset();
@@ -169,12 +169,12 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
       const double cap = std::min({trust_, piece_cap_, travel - made_});
       const double length = move_piece(Y, cap, report);
-      if (length > 0) report.pieces.push_back(X_);
+      if (length > 0) report.substeps.push_back(X_);
       // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
       if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
       made_ += length;
     }
-    if (report.pieces.empty()) report.pieces.push_back(X_);
+    if (report.substeps.empty()) report.substeps.push_back(X_);
     if (!late()) track();
   }
   at_.tell(keep_ / kKeepShare, report);

@@ -28,7 +28,7 @@ std::vector<double> friction_of_parts(const Scene& scene) {
   }
   const bool rubs = std::any_of(mu.begin(), mu.end(), [](double m) { return m > 0; });
   if (rubs && !scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
-    throw Error("friction: the resolver " + to_string(scene.contact.resolver) + " knows no friction; qp does");
+    throw Error("friction: the resolver " + to_string(scene.contact.resolver) + " does not support friction; qp does");
   return mu;
 }
 

@@ -45,7 +45,7 @@ struct HapticLoop::State {
       : now(std::make_unique<RunningScene>(scene)),
         changes(std::make_shared<SceneChanges>(*now)),
         Y(now->loop->pose()) {
-    report.pieces.reserve(kMaxPieces);
+    report.substeps.reserve(kMaxSubsteps);
     begin();
   }
 
@@ -84,7 +84,7 @@ struct HapticLoop::State {
   /// The report before the first tick with a held part.
   void begin() noexcept {
     reset(report);
-    report.pieces.push_back(now->loop->pose());
+    report.substeps.push_back(now->loop->pose());
     report.proxy.X = last_X = now->loop->pose();
     tell();
     for (const InitialContact& pair : now->loop->start().pairs) {

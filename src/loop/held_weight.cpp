@@ -12,7 +12,7 @@ namespace {
 // Beyond, numbers are no longer those of a part or a place (kg, m/s²).
 constexpr double kMaxMass = 1e6, kMaxGravity = 1e3;
 
-// Of what the motors stand for long; the rest is for contacts.
+// Of what the motors can sustain; the rest is for contacts.
 constexpr double kWeightShare = 0.5;
 
 }  // namespace
@@ -22,7 +22,7 @@ HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
   const WeightSettings& s = scene.weight;
   if (!s.on) return out;
   if (!scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
-    throw Error("weight: the resolver " + to_string(scene.contact.resolver) + " knows no weight; qp does");
+    throw Error("weight: the resolver " + to_string(scene.contact.resolver) + " does not support weight; qp does");
   if (!(s.gravity.norm() <= kMaxGravity)) throw Error("weight: gravity must be three numbers of up to 1000 m/s²");
   const Part& held = held_part(scene);
   out.mass = held.mass.value_or(mass.mass);
@@ -30,7 +30,7 @@ HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
     throw Error("part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " +
                 std::to_string(out.mass));
   const double newtons = out.mass * s.gravity.norm();
-  if (s.most && newtons > *s.most) out.share = std::max(0.0, *s.most) / newtons;
+  if (s.max_force && newtons > *s.max_force) out.share = std::max(0.0, *s.max_force) / newtons;
   out.force = out.share * out.mass * s.gravity;
   return out;
 }
@@ -46,7 +46,7 @@ std::string weight_text(const Scene& scene, const HapticLoop& loop) {
   char text[160];
   if (w.share < 1)
     std::snprintf(text, sizeof text,
-                  "%.3g N of the %.3g N that %.3g kg weigh (%.3g of it: half of what the device stands for long)",
+                  "%.3g N of the %.3g N that %.3g kg weigh (%.3g of it: half of what the device can sustain)",
                   w.force.norm(), w.force.norm() / w.share, w.mass, w.share);
   else
     std::snprintf(text, sizeof text, "%.3g N (%.3g kg)", w.force.norm(), w.mass);

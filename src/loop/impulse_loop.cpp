@@ -72,13 +72,13 @@ void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double wanted = size(displacement(X_, Y, mass_.center));
   if (h > 0) {
     const Twist pen{travel.dp / time, travel.dr / time};
-    for (int i = 1; i <= n && !late() && report.pieces.size() < kMaxPieces; ++i) {
+    for (int i = 1; i <= n && !late() && report.substeps.size() < kMaxSubsteps; ++i) {
       accelerate(displaced(last_Y_, mass_.center, (static_cast<double>(i) / n) * travel), pen, h);
       substep(h, report);
     }
   }
   last_Y_ = Y;
-  if (report.pieces.empty()) report.pieces.push_back(X_);
+  if (report.substeps.empty()) report.substeps.push_back(X_);
   gather(Y, wanted, report);
 }
 
@@ -111,7 +111,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
   report.candidate_parts = std::max(report.candidate_parts, static_cast<int>(near_.size()));
   if (near_.empty()) {
     X_ = displaced(X_, mass_.center, {h * V_.v, h * V_.w});
-    report.pieces.push_back(X_);
+    report.substeps.push_back(X_);
     at_.contacts->clear();
     tracked_ = false;
     return;
@@ -120,7 +120,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
   tracked_ = false;  // planes for motions of the last sub-step are of no more use
   double left = h;
   int impulses = 0, searches = 0;
-  while (left > 0 && !late() && report.pieces.size() < kMaxPieces) {
+  while (left > 0 && !late() && report.substeps.size() < kMaxSubsteps) {
     if (!tracked_) tracked_ = at_.contacts->track(X_, at_.reach, deadline_ns_);
     if (!tracked_) break;  // out of time
     Collision next;
@@ -205,7 +205,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport&
     const MotionAnswer answer = at_.check->check(X_, d, kGapFloor, blocking_);
     if (answer == MotionAnswer::free) {
       X_ = displaced(X_, mass_.center, d);
-      report.pieces.push_back(X_);
+      report.substeps.push_back(X_);
       tracked_ = false;
       return Advance::made;
     }

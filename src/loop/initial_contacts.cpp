@@ -107,11 +107,11 @@ std::vector<InitialContacts::Copy> InitialContacts::relieve(const Scene& scene, 
       copy.mesh = std::make_shared<TriangleMesh>(inward_offset(surface, by));
       copy.tree = cached_patch_tree(copy.mesh);
       found = tegotae::free_at_start(*held_tree, center, *copy.tree, X_BA);
-      pair.relief = by;
+      pair.inward_offset = by;
     }
     if (!found) {
-      pair.relief = 0;
-      suspend_or_refuse(scene, pair, ", and taking the fixed part smaller does not free them");
+      pair.inward_offset = 0;
+      suspend_or_refuse(scene, pair, ", and a smaller copy of the fixed part does not free them");
       waiting_.back().pair = i;
       continue;
     }

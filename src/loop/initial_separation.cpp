@@ -12,7 +12,7 @@ namespace {
 // Contacts are asked to leave this many times kGapFloor.
 constexpr double kMargin = 1.2;
 // Where a vertex of the copy went farther than its faces, its contacts must open by more: steps of this share of the
-// relief.
+// offset.
 constexpr double kStep = 0.25;
 constexpr int kMaxRounds = 60, kMaxCalls = 16;
 constexpr std::size_t kMaxBlocking = 256;
@@ -46,7 +46,7 @@ class InitialSeparation {
   struct Wanted {
     PartId id;
     std::uint32_t part, stand_in;
-    double relief, gap;  ///< gap (m) that contacts with the copy must leave
+    double offset, gap;  ///< gap (m) that contacts with the copy must leave
     bool blocked;        ///< the part is still nearer than kGapFloor
   };
 
@@ -59,7 +59,7 @@ class InitialSeparation {
       if (!relieved(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
       const InitialContact& pair = at_.start.report().pairs[w.pair];
       const PartId id{static_cast<std::uint32_t>(pair.part)};
-      list.push_back({id, w.part, w.stand_in, pair.relief, pair.relief + kMargin * kGapFloor, false});
+      list.push_back({id, w.part, w.stand_in, pair.inward_offset, pair.inward_offset + kMargin * kGapFloor, false});
     }
     return list;
   }
@@ -134,8 +134,8 @@ class InitialSeparation {
   static int ask_for_more(std::vector<Wanted>& list) {
     int more = 0;
     for (Wanted& w : list) {
-      if (!w.blocked || w.gap > 2 * w.relief + kMargin * kGapFloor) continue;
-      w.gap += kStep * w.relief;
+      if (!w.blocked || w.gap > 2 * w.offset + kMargin * kGapFloor) continue;
+      w.gap += kStep * w.offset;
       ++more;
     }
     return more;

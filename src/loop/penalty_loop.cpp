@@ -152,7 +152,7 @@ void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     if (length <= most || report.flags.timed_out) break;
   }
   collect(most, report);
-  report.pieces.push_back(X_);
+  report.substeps.push_back(X_);
   const double left = size(displacement(X_, Y, center_));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.lag_reason = left <= kRest         ? LagReason::none

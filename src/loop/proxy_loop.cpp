@@ -10,10 +10,10 @@
 namespace tegotae {
 
 void reset(TickReport& report) noexcept {
-  std::vector<Pose> pieces = std::move(report.pieces);
-  pieces.clear();
+  std::vector<Pose> substeps = std::move(report.substeps);
+  substeps.clear();
   report = {};
-  report.pieces = std::move(pieces);
+  report.substeps = std::move(substeps);
   report.gap = std::numeric_limits<double>::infinity();
 }
 

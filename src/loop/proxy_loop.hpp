@@ -9,11 +9,11 @@
 
 namespace tegotae {
 
-/// Pieces that a report has room for; no loop makes more in a tick.
-inline constexpr std::size_t kMaxPieces = 1024;
+/// Sub-steps for which a report has capacity; no loop makes more in a tick.
+inline constexpr std::size_t kMaxSubsteps = 1024;
 
 /// The report of a tick that has not done anything: its owner calls this before each tick, so that nothing is left of
-/// an earlier tick, resolver or scene. Keeps the room of `pieces`.
+/// an earlier tick, resolver or scene. Keeps the capacity of `substeps`.
 void reset(TickReport& report) noexcept;
 
 /// What turns the pen's pose into the held part's, tick by tick: one implementation a family of resolvers.

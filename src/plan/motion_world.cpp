@@ -64,7 +64,7 @@ MotionWorld::MotionWorld(Scene scene, double clearance, bool)
   for (const PartId id : parts.fixed_id) fixed_.push_back(id.index);
   near_.reserve(fixed_.size());
   blocking_.reserve(kMaxBlocking);
-  report_.pieces.reserve(kMaxPieces);
+  report_.substeps.reserve(kMaxSubsteps);
 }
 
 double MotionWorld::free_share(const Pose& from, const Pose& to, double clearance, int again) {
@@ -121,7 +121,7 @@ void MotionWorld::comply(const Pose& from, const Pose& target, double longest, s
     const double moved = size(X, report_.proxy.X);
     rest = moved < kRestShare * radius() ? rest + 1 : 0;
     if (rest == kRestTicks) break;
-    pieces.insert(pieces.end(), report_.pieces.begin(), report_.pieces.end());
+    pieces.insert(pieces.end(), report_.substeps.begin(), report_.substeps.end());
     X = report_.proxy.X;
     gone += moved;
   }

@@ -46,7 +46,7 @@ View view(const Mesh& mesh, const T* data, std::size_t rows) {
 std::vector<std::array<std::uint32_t, 3>> triangles_of(nb::handle value, std::size_t vertices) {
   const nb::object array = nb::module_::import_("numpy").attr("asarray")(value);
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
-  if (kind != "i" && kind != "u") throw Error(ErrorKind::setting, "triangles: indices are whole numbers");
+  if (kind != "i" && kind != "u") throw Error(ErrorKind::setting, "triangles: indices must be whole numbers");
   const auto block = nb::cast<nb::ndarray<const std::int64_t, nb::c_contig, nb::device::cpu>>(
       nb::module_::import_("numpy").attr("ascontiguousarray")(array, nb::arg("dtype") = "int64"));
   if (block.ndim() != 2 || block.shape(1) != 3) throw Error(ErrorKind::setting, "triangles: the shape is not (m, 3)");

@@ -106,7 +106,7 @@ void PythonDevice::ask_until_stopped() {
 }
 
 void PythonDevice::start() {
-  if (running_) throw Error(ErrorKind::device, "this PythonPen is another rig's until that one stops");
+  if (running_) throw Error(ErrorKind::device, "another rig uses this PythonPen until that rig stops");
   failed_ = false;
   failure_ = nullptr;
   samples_ = 0;

@@ -258,8 +258,9 @@ void bind_lifecycle(RigClass& c) {
           nb::rv_policy::reference)
       .def("__exit__", [](PythonRig& rig, nb::args) { rig.stop(); })
       .def("step", &PythonRig::step, nb::arg("count") = 1,
-           "`count` ticks: each reads the pen, moves the part as near to it as the others allow, and tells the servo.\n"
-           "Other Python threads go on meanwhile.")
+           "`count` ticks: each reads the pen, moves the part as near to it as the others allow, and publishes the "
+           "result.\n"
+           "Other Python threads continue meanwhile.")
       .def("run", &PythonRig::run, nb::arg("seconds"), nb::arg("callback") = nb::none(),
            nb::sig("def run(self, seconds: float, callback: collections.abc.Callable[[Rig], object] | None = None) -> "
                    "None"),

@@ -176,9 +176,9 @@ nb::dict info_of(const RecordingInfo& info) {
   d["held"] = info.held;
   d["resolver"] = info.resolver;
   d["program"] = info.program;
-  d["suspended"] = info.suspended;
-  d["follows"] = info.follows;
-  d["goes_on"] = info.goes_on;
+  d["suspended"] = info.filtered;
+  d["follows"] = info.continues;
+  d["goes_on"] = info.continued_by;
   d["goal"] = info.goal;
   return d;
 }

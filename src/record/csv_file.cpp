@@ -32,11 +32,11 @@ void CsvFile::flush() noexcept {
   if (!file_.failed()) written_ = frames_;
 }
 
-void CsvFile::close(const std::string& goes_on) {
+void CsvFile::close(const std::string& continued_by) {
   flush();
   file_.close();
-  info_.goes_on = goes_on;
-  if (!goes_on.empty()) write_info(info_, path_);
+  info_.continued_by = continued_by;
+  if (!continued_by.empty()) write_info(info_, path_);
 }
 
 }  // namespace tegotae

@@ -16,7 +16,7 @@ class CsvFile final : public RecordFile {
   void flush() noexcept override;
   void hurry() noexcept override { file_.hurry(); }
   std::uint64_t written() const noexcept override { return written_; }
-  void close(const std::string& goes_on) override;
+  void close(const std::string& continued_by) override;
 
  private:
   std::string path_;

@@ -119,7 +119,7 @@ class CsvReader {
     if (column < place_.size()) {
       int reason = 0;
       next(reason);
-      if (reason < 0 || reason >= kLagReasons) fail(kLagReasonColumn, std::to_string(reason) + " is no reason");
+      if (reason < 0 || reason >= kLagReasons) fail(kLagReasonColumn, std::to_string(reason) + " is not a lag reason");
       f.lag_reason = static_cast<LagReason>(reason);
     }
     return f;

@@ -66,7 +66,7 @@ LagReason lag_reason(const json& message) {
   const auto word = found->get<std::string>();
   for (int i = 0; i < kLagReasons; ++i)
     if (word == to_string(static_cast<LagReason>(i))) return static_cast<LagReason>(i);
-  throw json::type_error::create(302, "lag_reason: \"" + word + "\" is no reason", &message);
+  throw json::type_error::create(302, "lag_reason: \"" + word + "\" is not a lag reason", &message);
 }
 
 json pose_message(const RecordFrame& frame, const Pose& X) {

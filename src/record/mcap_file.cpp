@@ -183,11 +183,11 @@ void McapFile::write_summary() {
   file_.write(summary.text);
 }
 
-void McapFile::close(const std::string& goes_on) {
+void McapFile::close(const std::string& continued_by) {
   if (!file_.failed()) {
     write_chunk();
-    info_.goes_on = goes_on;
-    if (!goes_on.empty()) write_metadata();                                     // a reader takes the last one
+    info_.continued_by = continued_by;
+    if (!continued_by.empty()) write_metadata();                                // a reader takes the last one
     file_.write(Bytes().record(kDataEnd, Bytes().put(std::uint32_t{0})).text);  // 0: no checksum of all data
     write_summary();
   }

@@ -20,7 +20,7 @@ class McapFile final : public RecordFile {
   void flush() noexcept override {}  // a chunk leaves when it is full
   void hurry() noexcept override { file_.hurry(); }
   std::uint64_t written() const noexcept override { return written_; }
-  void close(const std::string& goes_on) override;
+  void close(const std::string& continued_by) override;
 
  private:
   using TimeAndOffset = std::pair<std::uint64_t, std::uint64_t>;

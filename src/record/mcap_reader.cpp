@@ -110,7 +110,7 @@ class McapReader {
     while (!inside.empty()) {
       const auto opcode = inside.take<std::uint8_t>();
       const std::string_view content = inside.take_bytes(inside.take<std::uint64_t>());
-      if (inside.failed() || opcode == kChunk) fail("a chunk whose records are wrong");
+      if (inside.failed() || opcode == kChunk) fail("a chunk with wrong records");
       take_record(opcode, content);
     }
     return true;

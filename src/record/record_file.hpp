@@ -18,8 +18,8 @@ class RecordFile {
   virtual void hurry() noexcept = 0;
   /// Frames of which the system has taken all.
   virtual std::uint64_t written() const noexcept = 0;
-  /// Writes what is left, with `goes_on` in the info where there is one, and throws the first failure, as Error.
-  virtual void close(const std::string& goes_on) = 0;
+  /// Writes what is left, with `continued_by` in the info where there is one, and throws the first failure, as Error.
+  virtual void close(const std::string& continued_by) = 0;
 };
 
 /// Creates or replaces the file; its ending chooses the format. Throws Error naming the path and the cause.

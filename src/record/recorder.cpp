@@ -43,7 +43,7 @@ struct Recorder::Impl {
     drain();
   }
 
-  void close(const std::string& goes_on) {
+  void close(const std::string& continued_by) {
     if (!open) return;
     open = false;
     if (writer.joinable()) {
@@ -53,7 +53,7 @@ struct Recorder::Impl {
       file->hurry();
     }
     try {
-      file->close(goes_on);
+      file->close(continued_by);
     } catch (const Error& e) {
       throw Error(e.what() + std::string("; it has the first ") + std::to_string(file->written()) + " of " +
                   std::to_string(rows.load(std::memory_order_relaxed)) + " rows");
@@ -88,8 +88,8 @@ void Recorder::push(const RecordFrame& frame) noexcept {
   impl_->rows.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Recorder::close(const std::string& goes_on) {
-  impl_->close(goes_on);
+void Recorder::close(const std::string& continued_by) {
+  impl_->close(continued_by);
 }
 
 std::uint64_t Recorder::rows() const noexcept {

@@ -99,7 +99,7 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     if (!names.insert(part.name).second) t.fail("name", "another part is named " + part.name);
     part.held = t.flag("held", false);
     if (!options.hold.empty()) part.held = part.name == options.hold;
-    if (part.held && !held.empty()) t.fail("held", "part " + held + " is held already; exactly one part is");
+    if (part.held && !held.empty()) t.fail("held", "part " + held + " is already held; exactly one part may be");
     if (part.held) held = part.name;
     part.pose = read_pose(t);
     part.path = t.texts("path");
@@ -198,11 +198,11 @@ void read_weight(const TomlTable& top, const SimulatedDeviceSettings& device, co
   scene.weight.on = top.flag("weight", scene.weight.on);
   if (top.has("gravity")) scene.weight.gravity = Vec3(top.numbers("gravity", 3).data());
   if (scene.weight.on && scene.contact.resolver != ResolverKind::qp)
-    top.fail("weight", "the resolver " + to_string(scene.contact.resolver) + " knows no weight; qp does");
+    top.fail("weight", "the resolver " + to_string(scene.contact.resolver) + " does not support weight; qp does");
   double stands = device_info(device).continuous_force;
   if (safety.continuous_force > 0)
     stands = stands > 0 ? std::min(stands, safety.continuous_force) : safety.continuous_force;
-  scene.weight.most = weight_bound(stands);
+  scene.weight.max_force = weight_bound(stands);
 }
 
 /// A script of a hand that stays where the held part starts.

@@ -32,7 +32,8 @@ void read_friction(const TomlTable& top, Scene& scene) {
     rubs |= scene.friction.pairs.back().mu > 0;
   }
   if (rubs && scene.contact.resolver != ResolverKind::qp)
-    t.fail(any ? "mu" : "pair", "the resolver " + to_string(scene.contact.resolver) + " knows no friction; qp does");
+    t.fail(any ? "mu" : "pair",
+           "the resolver " + to_string(scene.contact.resolver) + " does not support friction; qp does");
 }
 
 }  // namespace tegotae

@@ -34,7 +34,7 @@ CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept {
 MappingCommand mapping_of(const tegotae_shm_application& in) noexcept {
   return {in.scale,        static_cast<Clutch>(in.clutch),
           in.home_counter, {quaternion(in.home_orientation), vector(in.home_position)},
-          in.session,      vector(in.center)};
+          in.attachment,   vector(in.center)};
 }
 
 ProxyState proxy_of(const tegotae_shm_application& in) noexcept {
@@ -49,7 +49,7 @@ ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {
   if (in.plane_count > ContactPlanes::kMax || !placed(in.pen_position, in.pen_orientation)) return out;
   out.count = static_cast<int>(in.plane_count);
   for (std::size_t i = 0; i < in.plane_count; ++i)
-    out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].room, in.planes[i].mu};
+    out.planes[i] = {vector(in.planes[i].normal), vector(in.planes[i].point), in.planes[i].clearance, in.planes[i].mu};
   out.X = {quaternion(in.orientation), vector(in.position)};
   out.pen = {quaternion(in.pen_orientation), vector(in.pen_position)};
   return out;

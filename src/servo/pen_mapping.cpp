@@ -32,9 +32,9 @@ bool PenMapping::update(const DeviceState& pen, const Vec3& pen_center, const Ma
     pen_center_ = pen_center;
     center_ = command.center;
   }
-  const bool another = command.session != session_;
+  const bool another = command.attachment != attachment_;
   if (another) {
-    session_ = command.session;
+    attachment_ = command.attachment;
     home_counter_ = 0;
   }
   const bool home = command.home_counter != home_counter_;

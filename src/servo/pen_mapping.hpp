@@ -9,9 +9,9 @@ namespace tegotae {
 struct MappingCommand {
   double scale = 1;
   Clutch clutch = Clutch::none;
-  std::uint32_t home_counter = 0;  ///< a new value other than 0 in a session: Y jumps to `home`
+  std::uint32_t home_counter = 0;  ///< a new value other than 0 in an attachment: Y jumps to `home`
   Pose home;                       ///< of the held part's file frame
-  std::int64_t session = 0;
+  std::int64_t attachment = 0;
   Vec3 center = Vec3::Zero();  ///< of mass of the held part, file frame, m
 };
 
@@ -41,7 +41,7 @@ class PenMapping {
   double scale_ = 1;
   Clutch clutch_ = Clutch::none;
   std::uint32_t home_counter_ = 0;
-  std::int64_t session_ = 0;
+  std::int64_t attachment_ = 0;
   Vec3 pen_center_ = Vec3::Zero(), center_ = Vec3::Zero();
   // Where pen and part were together last.
   Vec3 pen_anchor_ = Vec3::Zero(), part_anchor_ = Vec3::Zero();

@@ -27,7 +27,7 @@ class SlewLimit {
   Wrench last_;
 };
 
-/// Keeps the running RMS of the force at what the motors stand for long. Its square m follows |F|² with the time
+/// Keeps the running RMS of the force at what the motors can sustain. Its square m follows |F|² with the time
 /// constant; the allowed peak P shrinks with it, P² = peak² - (peak² - c²) m / c², so that m settles at c² and never
 /// exceeds it, and nothing jumps.
 class ThermalBudget {

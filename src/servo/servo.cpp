@@ -132,7 +132,7 @@ Servo::~Servo() {
 }
 
 void Servo::start() {
-  if (impl_->thread.joinable()) throw Error("servo: it runs already");
+  if (impl_->thread.joinable()) throw Error("servo: it already runs");
   impl_->stopping.store(false, std::memory_order_release);
   std::promise<void> asked;
   std::future<void> answered = asked.get_future();
@@ -146,7 +146,7 @@ void Servo::start() {
   if (!impl_->realtime.missing.empty() && impl_->settings.realtime == RealtimeConfig::enforce) {
     impl_->thread.join();
     release_realtime(impl_->realtime);
-    throw Error("servo: real time was asked for and not granted: " + impl_->realtime.missing);
+    throw Error("servo: the system does not grant the required real time: " + impl_->realtime.missing);
   }
 }
 

@@ -208,7 +208,7 @@ void ServoTick::publish(const DeviceState& pen, const SafetyOutput& rendered, st
   out.home_counter = mapping_.home_counter();
   out.thermal_load = chain_.thermal_load();
   out.energy = passivity_.energy();
-  out.session = application_.session;
+  out.attachment = application_.attachment;
   describe_device(out);
   channel_.write(out);
 }

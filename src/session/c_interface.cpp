@@ -250,7 +250,7 @@ int tegotae_rig_part(const tegotae_rig* rig, double pose[7]) {
 int tegotae_rig_lead(tegotae_rig* rig, const double pose[7]) {
   return guarded(kFailed, [&] {
     tegotae_rig& r = required(rig, "rig");
-    if (!r.pen) throw Error("the pen is another process's; nobody but its hand leads it");
+    if (!r.pen) throw Error("the pen belongs to another process; only its own hand moves it");
     r.guide.lead(pose_of(pose));
     return 0;
   });
@@ -261,7 +261,7 @@ int tegotae_rig_change(tegotae_rig* rig, const tegotae_scene* scene, double seco
     SceneChange change = required(rig, "rig").rig->change(required(scene, "scene").scene);
     if (!(seconds > 0)) return 0;
     if (change.wait(seconds) == ChangeState::in_force || !change.cancel()) return 0;
-    throw Error("the held part is in the way of the change, or nobody steps the rig");
+    throw Error("the held part blocks the change, or no thread steps the rig");
   });
 }
 

@@ -39,7 +39,7 @@ class LocalPen final : public PenPort {
 
   bool read(PenSample& pen, std::int64_t) noexcept override {
     PenSample newest;
-    // Before the first hold() there is nothing to obey; a servo that has not heard of this application tells the pen
+    // Before the first grasp() there is nothing to obey; a servo that has not heard of this application tells the pen
     // too.
     if (!link_.read(newest) || (homed_ && !link_.obeyed(newest))) return false;
     pen = newest;
@@ -49,8 +49,8 @@ class LocalPen final : public PenPort {
                std::int64_t now_ns) noexcept override {
     link_.publish(proxy, tick, device_sequence, now_ns, planes);
   }
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
-    link_.hold(center, coupling, X);
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
+    link_.grasp(center, coupling, X);
     homed_ = true;
   }
 
@@ -93,8 +93,8 @@ class RemotePen final : public PenPort {
     attachment_.publish(proxy, tick, device_sequence, now_ns, planes);
   }
 
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
-    attachment_.hold(center, coupling, X);
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept override {
+    attachment_.grasp(center, coupling, X);
   }
 
   bool connected() const noexcept override { return attachment_.connected(); }

@@ -28,8 +28,8 @@ class PenPort {
   virtual void publish(const ProxyState& proxy, const ContactPlanes& planes, std::uint64_t tick,
                        std::uint64_t device_sequence, std::int64_t now_ns) noexcept = 0;
 
-  /// Another part is held from now on (see ContactLink::hold); there is no sample until the servo has heard of it.
-  virtual void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept = 0;
+  /// Another part is held from now on (see ContactLink::grasp); there is no sample until the servo has heard of it.
+  virtual void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept = 0;
 
   virtual bool connected() const noexcept = 0;
   virtual std::uint64_t losses() const noexcept = 0;

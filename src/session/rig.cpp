@@ -60,9 +60,9 @@ struct Rig::State {
   std::int64_t servo_period() const { return nanoseconds(settings.period) / servo_ticks; }
 
   /// Another part is held: the pen comes to mean it where it is.
-  void hold() noexcept {
+  void grasp() noexcept {
     const Pose& X = loop.report().proxy.X;
-    pen->hold(loop.center(), loop.coupling(), X);
+    pen->grasp(loop.center(), loop.coupling(), X);
     sample.state.pose = X;
     sample.state.velocity = {};
   }
@@ -73,7 +73,7 @@ struct Rig::State {
     if (connected) {
       loop.carry(carried.update(sample, dt));
       const TickReport& report = loop.step(sample.state.pose, dt);
-      if (report.flags.part_changed) hold();
+      if (report.flags.part_changed) grasp();
       pen->publish(report.proxy, report.planes, steps, sample.state.sequence, simulated() ? answered : monotonic_ns());
     } else {
       // There is no pen to follow: the part stays, and the servo hears that this loop lives.

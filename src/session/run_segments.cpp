@@ -103,11 +103,11 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
   if (segment.number > 0) {
     const fs::path first = settings_.record;
     if (!fs::is_regular_file(first))
-      throw Error(settings_.record + ": is no regular file, beside which recordings of other scenes could be");
+      throw Error(settings_.record + ": is not a regular file; a changed scene needs a recording beside it");
     segment.recording = numbered(first, segment.number + 1, first.extension()).string();
     segment.scene_file = numbered(first, segment.number + 1, ".toml").string();
     info.scene = fs::path(segment.scene_file).filename().string();
-    info.follows = fs::path(segments_.back()->recording).filename().string();
+    info.continues = fs::path(segments_.back()->recording).filename().string();
   }
   refuse_to_replace({segment.recording, recording_info_path(segment.recording), segment.scene_file}, file_.files);
   if (segment.number > 0)
@@ -169,7 +169,7 @@ std::vector<Part> RunSegments::change(std::vector<Part> parts, const std::functi
     segment.recorder.reset();
     if (!segment.recording.empty()) remove_files(segment);
     if (over_) throw Error("the run has ended");
-    throw Error("the held part has gone past what was added or moved, or there is no pen; try again");
+    throw Error("what was added or moved blocks the held part's path, or there is no pen; try again");
   }
   // What could not be taken back is in force, and followed in the same tick.
   while (followed_.load(std::memory_order_acquire) != change) std::this_thread::sleep_for(kPoll);
@@ -179,10 +179,10 @@ std::vector<Part> RunSegments::change(std::vector<Part> parts, const std::functi
   return segment.scene.parts;
 }
 
-void RunSegments::finish(RunSegment& segment, const std::string& goes_on) noexcept {
+void RunSegments::finish(RunSegment& segment, const std::string& continued_by) noexcept {
   if (!segment.recorder) return;
   try {
-    segment.recorder->close(goes_on);
+    segment.recorder->close(continued_by);
   } catch (const Error& e) {
     if (failure_.empty()) failure_ = e.what();
   }

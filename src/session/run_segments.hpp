@@ -69,7 +69,7 @@ class RunSegments {
   void begin(RunSegment& segment, const Scene& scene, const InitialContactReport& start);
   void record(RunSegment& segment, const InitialContactReport& start);
   bool wait_for(std::uint64_t change) const;
-  void finish(RunSegment& segment, const std::string& goes_on) noexcept;
+  void finish(RunSegment& segment, const std::string& continued_by) noexcept;
   void detach();
 
   const SceneFile& file_;

@@ -158,7 +158,7 @@ class Session {
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::string& held = segments_.now().held;
-    if (segments_.follow() && segments_.now().held != held) hold(pen);
+    if (segments_.follow() && segments_.now().held != held) grasp(pen);
     const std::uint64_t number = static_cast<std::uint64_t>(summary_.ticks++);
     pen_->publish(report.proxy, report.planes, number, pen.state.sequence, settings_.real_time ? monotonic_ns() : now);
     sequence_ = pen.state.sequence;
@@ -171,7 +171,7 @@ class Session {
     summary_.force_max_n = std::max(summary_.force_max_n, pen.wrench.force.norm());
     summary_.torque_max_nm = std::max(summary_.torque_max_nm, pen.wrench.torque.norm());
     RunSegment& segment = segments_.now();
-    for (const Pose& X : report.pieces) segment.check->add(X, static_cast<std::uint32_t>(segment.freed));
+    for (const Pose& X : report.substeps) segment.check->add(X, static_cast<std::uint32_t>(segment.freed));
     if (holds_first_) X_ = report.proxy.X;
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (segment.recorder) record(number, t, pen, report, tick_us);
@@ -187,10 +187,10 @@ class Session {
   }
 
   /// Another part is held: the pen comes to mean it where it is.
-  void hold(PenSample& pen) noexcept {
+  void grasp(PenSample& pen) noexcept {
     const Pose& X = loop_.report().proxy.X;
     watch_.begin(X);
-    pen_->hold(loop_.center(), loop_.coupling(), X);
+    pen_->grasp(loop_.center(), loop_.coupling(), X);
     pen.state.pose = X;
     pen.state.velocity = {};
     holds_first_ = segments_.now().held == held_part(file_.scene).name;
@@ -215,7 +215,7 @@ class Session {
     frame.tick_us = tick_us;
     frame.lag_reason = report.lag_reason;
     frame.forces = report.forces;
-    for (const Pose& X : report.pieces) {
+    for (const Pose& X : report.substeps) {
       frame.x = X;
       segments_.now().recorder->push(frame);
       ++frame.substep;

@@ -27,7 +27,7 @@ Scene bounded_by(Scene scene, const std::string& device) {
   ChannelReader::open(device.substr(std::string(kDeviceScheme).size())).read(told);
   if (scene.max_torsional_stiffness)
     scene.max_torsional_stiffness = torsional_stiffness_bound(told.torsional_stiffness_limit, told.torque_limit);
-  scene.weight.most = weight_bound(told.continuous_force);
+  scene.weight.max_force = weight_bound(told.continuous_force);
   return scene;
 }
 
@@ -37,8 +37,8 @@ std::string torsion_text(const Scene& scene, const HapticLoop& loop) {
   const double radius = loop.radius_of_gyration() / scene.scale;
   const double fitting = loop.coupling().stiffness * radius * radius;
   const std::string rule = format("stiffness x (radius of gyration, %.3g mm)^2 = %.3g N·m/rad", 1e3 * radius, fitting);
-  if (chosen > fitting) return format("%.3g N·m/rad, the least; ", chosen) + rule;
-  if (chosen < fitting) return format("%.3g N·m/rad, the most for this device; ", chosen) + rule;
+  if (chosen > fitting) return format("%.3g N·m/rad, the minimum; ", chosen) + rule;
+  if (chosen < fitting) return format("%.3g N·m/rad, the maximum for this device; ", chosen) + rule;
   return format("%.3g N·m/rad; ", chosen) + rule;
 }
 

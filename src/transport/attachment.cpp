@@ -76,10 +76,10 @@ void Attachment::publish(const ProxyState& proxy, std::uint64_t tick, std::uint6
   link_->publish(proxy, tick, device_sequence, now_ns, planes);
 }
 
-void Attachment::hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
+void Attachment::grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
   center_ = center;
   coupling_ = coupling;
-  link_->hold(center, coupling, X);
+  link_->grasp(center, coupling, X);
   homed_ = true;
 }
 

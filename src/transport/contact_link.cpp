@@ -16,7 +16,7 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
     const ContactPlane& plane = planes.planes[static_cast<std::size_t>(i)];
     store(plane.normal, out.planes[i].normal);
     store(plane.point, out.planes[i].point);
-    out.planes[i].room = plane.room;
+    out.planes[i].clearance = plane.clearance;
     out.planes[i].mu = plane.mu;
   }
 }
@@ -24,7 +24,7 @@ void store_planes(const ContactPlanes& planes, tegotae_shm_application& out) {
 }  // namespace
 
 ContactLink::ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center)
-    : channel_(channel), coupling_(coupling), center_(center), session_(monotonic_ns()) {}
+    : channel_(channel), coupling_(coupling), center_(center), attachment_(monotonic_ns()) {}
 
 bool ContactLink::read(PenSample& pen) const noexcept {
   tegotae_shm_device in;
@@ -45,7 +45,7 @@ bool ContactLink::read(PenSample& pen) const noexcept {
   pen.energy = in.energy;
   pen.heartbeat_ns = in.heartbeat_ns;
   pen.tick = in.tick;
-  pen.session = in.session;
+  pen.attachment = in.attachment;
   pen.home_counter = in.home_counter;
   return true;
 }
@@ -56,7 +56,7 @@ void ContactLink::set_scale(double scale) {
 }
 
 bool ContactLink::obeyed(const PenSample& pen) const noexcept {
-  return pen.session == session_ && pen.home_counter == home_counter_;
+  return pen.attachment == attachment_ && pen.home_counter == home_counter_;
 }
 
 void ContactLink::home(const Pose& X) noexcept {
@@ -65,7 +65,7 @@ void ContactLink::home(const Pose& X) noexcept {
   if (++home_counter_ == 0) ++home_counter_;
 }
 
-void ContactLink::hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
+void ContactLink::grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept {
   center_ = center;
   coupling_ = coupling;
   home(X);
@@ -77,7 +77,7 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   out.heartbeat_ns = now_ns;
   out.tick = tick;
   out.device_sequence = device_sequence;
-  out.session = session_;
+  out.attachment = attachment_;
   out.touching = proxy.touching ? 1 : 0;
   out.enable = enable_ ? 1 : 0;
   out.clutch = static_cast<std::uint32_t>(clutch_);

@@ -47,8 +47,8 @@ void allocate(int fd, const std::string& name) {
   int error = EINTR;
   while (error == EINTR) error = posix_fallocate(fd, 0, kSize);
   if (error != 0)
-    fail(name,
-         "no room for its " + std::to_string(kSize) + " bytes: " + std::strerror(error) + "; make room in /dev/shm");
+    fail(name, "no memory for its " + std::to_string(kSize) + " bytes: " + std::strerror(error) +
+                   "; free some memory of /dev/shm");
 }
 
 struct flock one_byte(short type, off_t byte) {

@@ -149,10 +149,10 @@ TEST_CASE("a recording that cannot go on ends no run, and what was lost is told"
     whole_run(shell(folder,
                     "mkfifo p; sleep 60 <p & $B/tegotae run scene.toml --fast --seconds 1 --json --record p; "
                     "code=$?; kill %1; exit $code"),
-              1000, "nobody reads");
+              1000, "the reader of the pipe does not read");
   }
   SECTION("no reader") {
-    check_named(shell(folder, "mkfifo p; $B/tegotae run scene.toml --fast --record p"), {"pipe that nobody reads"});
+    check_named(shell(folder, "mkfifo p; $B/tegotae run scene.toml --fast --record p"), {"pipe without a reader"});
     check_named(shell(folder, "mkfifo q; $B/tegotae replay r.csv --html q"), {"r.csv"});
   }
   SECTION("a full disk from the beginning") {

@@ -32,7 +32,7 @@ Vec6 brute_force(const ContactPlanes& planes, double radius, const Vec3& center_
   for (int i = 0; i < planes.count; ++i) {
     const ContactPlane& p = planes.planes[static_cast<std::size_t>(i)];
     J.row(i) << p.normal.transpose(), (p.point - center_W).cross(p.normal).transpose();
-    b[i] = -p.room;
+    b[i] = -p.clearance;
   }
   Vec6 best = Vec6::Constant(std::nan(""));
   double least = 1e300;
@@ -104,7 +104,7 @@ TEST_CASE("with room left, the part touches when the room is used up", "[couplin
   LocalModel model;
   ProxyState x;
   ContactPlanes planes = floor_under(x.X);
-  for (auto& plane : planes.planes) plane.room = 0.001;
+  for (auto& plane : planes.planes) plane.clearance = 0.001;
   REQUIRE(model.update(planes, kRadius, Vec3::Zero(), {Quat::Identity(), Vec3(0, 0, -0.0005)}, {}, x));
   CHECK_FALSE(x.touching);
   x = {};
@@ -151,7 +151,7 @@ TEST_CASE("for small turns the answer is that of every set of planes tried", "[c
     RandomCase c = random_case(rng, 1 + round % ContactPlanes::kMax, 1e-4);
     // A shift of a millimeter turns a part on one corner by 0.05 rad: all of it so small that flat is exact.
     c.error.dp *= 1e-3;
-    for (auto& plane : c.planes.planes) plane.room *= 1e-3;
+    for (auto& plane : c.planes.planes) plane.clearance *= 1e-3;
     c.Y = displaced(c.x.X, c.center, c.error);
     Vec6 e;
     e << c.error.dp, c.error.dr;
@@ -192,7 +192,7 @@ TEST_CASE("for large turns no neighbor that the planes allow stores less energy"
       bool allowed = true;
       for (int i = 0; i < c.planes.count; ++i) {
         const ContactPlane& p = c.planes.planes[static_cast<std::size_t>(i)];
-        allowed &= p.normal.dot(near.head<3>() + near.tail<3>().cross(p.point - center_W)) >= -p.room;
+        allowed &= p.normal.dot(near.head<3>() + near.tail<3>().cross(p.point - center_W)) >= -p.clearance;
       }
       if (allowed) REQUIRE(energy(c, near) > least - 1e-17);
     }
@@ -222,7 +222,7 @@ TEST_CASE("without planes, or with senseless ones, the part stays", "[coupling]"
   bad.planes[1].point.x() = std::nan("");
   CHECK(refused(bad, kRadius, Y));
   bad = good;
-  bad.planes[2].room = std::nan("");
+  bad.planes[2].clearance = std::nan("");
   CHECK(refused(bad, kRadius, Y));
   bad = good;
   bad.count = 7;

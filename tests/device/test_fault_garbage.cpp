@@ -250,7 +250,7 @@ TEST_CASE("garbage in the pen's slot moves no part through another", "[fault]") 
     REQUIRE(link.read(seen));
     CHECK(std::strlen(to_string(seen.reason)) > 0);
     CHECK(std::strlen(to_string(seen.status)) > 0);
-    for (const Pose& X : loop.step(seen.state.pose, 1e-3).pieces) {
+    for (const Pose& X : loop.step(seen.state.pose, 1e-3).substeps) {
       REQUIRE((X.p.allFinite() && X.q.coeffs().allFinite()));
       for (const Vec3& v : scene.parts[1].mesh->vertices) {
         const Vec3 corner = X * v;

@@ -192,7 +192,7 @@ TEST_CASE("an application notices that its device died, keeps the part, and take
     REQUIRE(back.what == "back");
     CHECK(back.place == lost.place);
     Observer next;
-    CHECK(next.wait(10, [&] { return next.pen().session != 0; }));
+    CHECK(next.wait(10, [&] { return next.pen().attachment != 0; }));
   }
   std::cout << TEGOTAE_FAULT_DEVICE_KILLS << " devices killed: noticed at most " << 1e-6 * static_cast<double>(latest)
             << " ms after the last heartbeat\n";

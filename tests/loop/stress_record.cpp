@@ -65,7 +65,7 @@ void StressRecord::add(int tick, const Pose& Y, const TickReport& report) {
   frame.y = Y;
   frame.contacts = report.contacts;
   frame.gap = report.gap;
-  for (const Pose& X : report.pieces) {
+  for (const Pose& X : report.substeps) {
     frame.x = X;
     recorder_.push(frame);
     ++frame.substep;

@@ -35,7 +35,7 @@ double radius(const TriangleMesh& mesh, const Vec3& center) {
 }  // namespace
 
 void StressResult::add(const StressResult& o) {
-  scripts += o.scripts, ticks += o.ticks, pieces += o.pieces, poses += o.poses, intersecting += o.intersecting;
+  scripts += o.scripts, ticks += o.ticks, substeps += o.substeps, poses += o.poses, intersecting += o.intersecting;
   touching += o.touching, cut += o.cut, overflow += o.overflow, infeasible += o.infeasible, stalled += o.stalled;
   out_of_time += o.out_of_time, out_of_capacity += o.out_of_capacity, unexplained += o.unexplained;
   late_unreported += o.late_unreported, seconds_loop += o.seconds_loop, seconds_check += o.seconds_check;
@@ -88,11 +88,11 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
         options.budget > 0 && !r.flags.timed_out && 1e-9 * static_cast<double>(took - kAfterLastLook) > options.budget;
     result.seconds_loop += 1e-9 * static_cast<double>(took);
     const std::int64_t checking = cpu_ns();
-    for (const Pose& X : r.pieces) {
-      ++result.pieces;
+    for (const Pose& X : r.substeps) {
+      ++result.substeps;
       if (travel(last, X, loop.center(), size) > kRestingPiece)
         for_poses_between(last, X, loop.center(), options.between + 1,
-                          result.pieces % 2 == 0 ? PathKind::center : PathKind::origin,
+                          result.substeps % 2 == 0 ? PathKind::center : PathKind::origin,
                           [&](const Pose& P) { ask(P, tick, "on the way"); });
       if (!(X.p == last.p && X.q.coeffs() == last.q.coeffs())) ask(X, tick, "committed");
       last = X;

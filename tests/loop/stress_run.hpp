@@ -20,7 +20,7 @@ struct StressOptions {
 
 /// What happened; sums over scripts.
 struct StressResult {
-  std::int64_t scripts = 0, ticks = 0, pieces = 0;
+  std::int64_t scripts = 0, ticks = 0, substeps = 0;
   std::int64_t poses = 0;                                                         ///< asked of FCL
   std::int64_t intersecting = 0;                                                  ///< of those
   std::int64_t touching = 0, cut = 0, overflow = 0, infeasible = 0, stalled = 0;  ///< ticks

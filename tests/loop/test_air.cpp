@@ -115,7 +115,7 @@ Scene random_scene(std::mt19937& rng, const std::shared_ptr<const TriangleMesh>&
 void look(const Hand& hand, const FclOracle& near, const FclOracle& oracle, bool keeps_out, Counts& counts, bool& air) {
   air = near.intersecting(hand.loop.latest()).empty();
   if (!keeps_out) return;
-  for (const Pose& X : hand.loop.report().pieces) counts.intersecting += oracle.intersecting(X).empty() ? 0 : 1;
+  for (const Pose& X : hand.loop.report().substeps) counts.intersecting += oracle.intersecting(X).empty() ? 0 : 1;
 }
 
 /// `ticks` in one run whose resolver and parts change every 50 ticks or so.
@@ -205,7 +205,7 @@ TEST_CASE("after a change of the resolver in contact nothing is felt in empty ai
         hand.loop.step(Y, 1e-3);
       }
       const TickReport &a = hand.loop.report(), &b = fresh.report();
-      CHECK(a.pieces.size() == b.pieces.size());
+      CHECK(a.substeps.size() == b.substeps.size());
       CHECK((a.proxy.X.p - b.proxy.X.p).norm() < 1e-7);
       CHECK(a.proxy.velocity.v.norm() < 1e-6);
       CHECK(a.proxy.touching == b.proxy.touching);

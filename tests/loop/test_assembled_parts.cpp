@@ -67,7 +67,7 @@ Outcome lead(const Scene& scene, HapticLoop& loop, const std::vector<Waypoint>& 
       // Turned about the part's center.
       const TickReport& r = loop.step({q, (1 - s) * way[k].p + s * way[k + 1].p + c - q * c}, kTick);
       out.touching += r.proxy.touching ? 1 : 0;
-      for (const Pose& X : r.pieces) {
+      for (const Pose& X : r.substeps) {
         if (n++ % 3 == 0 && !oracle.intersecting(X).empty()) ++out.intersecting;
         out.least = out.least.cwiseMin(X.p);
         out.most = out.most.cwiseMax(X.p);

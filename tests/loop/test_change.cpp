@@ -262,7 +262,7 @@ TEST_CASE("another part can be held", "[change]") {
   const TickReport& tick = loop.step(scene.parts[1].pose, 1e-3);
   CHECK(loop.change_in_force() == 1);
   CHECK(tick.proxy.X.p == scene.parts[2].pose.p);
-  CHECK(tick.pieces.size() == 1);
+  CHECK(tick.substeps.size() == 1);
   CHECK_FALSE(tick.proxy.touching);
   // And the block is in its way from now on.
   push(loop, Vec3(0, 0, 0.03), 300);
@@ -356,7 +356,7 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
     late += thread_seconds() - begin > kLong ? 1 : 0;
     const std::uint64_t now = loop.change_in_force();
     changes += now != before ? 1 : 0;
-    for (const Pose& X : loop.report().pieces) poses.push_back({now, X});
+    for (const Pose& X : loop.report().substeps) poses.push_back({now, X});
     const std::lock_guard<std::mutex> lock(mutex);
     lately = loop.report().proxy.X;
   }

@@ -66,7 +66,7 @@ TEST_CASE("a custom resolver that answers nonsense cannot make parts intersect",
                  Vec3(0.03 * std::sin(3 * t), 0.005 * std::sin(7 * t), 0.03 - 0.04 * std::sin(2 * t))};
     const TickReport& r = loop.step(Y, 1e-3);
     touching += r.constraints > 0;
-    for (const Pose& X : r.pieces) {
+    for (const Pose& X : r.substeps) {
       REQUIRE(X.p.allFinite());
       REQUIRE(X.q.coeffs().allFinite());
       REQUIRE(oracle.intersecting(X).empty());

@@ -46,7 +46,7 @@ TEST_CASE("a cube pushed into the floor stays on it and slides with the pen", "[
     const double down = 1e-4 * std::min(tick, 60), side = tick > 400 ? 1e-4 * (tick - 400) : 0;
     const Pose Y{Quat::Identity(), {side, 0, 0.021 - down}};
     const TickReport& r = loop.step(Y, 0.001);
-    for (const Pose& piece : r.pieces) REQUIRE(oracle.intersecting(piece).empty());
+    for (const Pose& piece : r.substeps) REQUIRE(oracle.intersecting(piece).empty());
     if (tick > 60) {
       REQUIRE(r.proxy.touching);
       // The lowest face hovers over the floor by no more than the contact gap.
@@ -69,7 +69,7 @@ TEST_CASE("a tilted cube pushed down is laid flat against a pen that stays tilte
   for (int tick = 0; tick < 1500; ++tick) {
     if (tick > 100 && tick < 350) Y.p.z() -= 1e-4;
     const TickReport& r = loop.step(Y, 0.001);
-    for (const Pose& piece : r.pieces) REQUIRE(oracle.intersecting(piece).empty());
+    for (const Pose& piece : r.substeps) REQUIRE(oracle.intersecting(piece).empty());
   }
   const ProxyState& x = loop.report().proxy;
   REQUIRE(rotation_vector(x.X.q).norm() < 1e-3);

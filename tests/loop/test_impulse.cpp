@@ -165,7 +165,7 @@ TEST_CASE("impulses never let the peg into the wall, and repeat bit for bit", "[
     REQUIRE(again.step(Y, 1e-3).proxy.X.p == r.proxy.X.p);
     touching += r.proxy.touching;
     if (tick % 5 == 0)
-      for (const Pose& X : r.pieces) REQUIRE(oracle.intersecting(X).empty());
+      for (const Pose& X : r.substeps) REQUIRE(oracle.intersecting(X).empty());
   }
   CHECK(touching > 2000);
   CHECK(loop.report().proxy.X.p.z() < 0.025 - 0.0399);  // the tip on the bottom, 40 mm down

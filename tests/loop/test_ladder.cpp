@@ -46,7 +46,7 @@ Insertion insert(const SceneFile& file, const LadderStart& start) {
     const double before = apart(loop.report().proxy.X, state.pose, loop.center());
     const TickReport& r = loop.step(state.pose, 1e-3);
     out.back = std::max(out.back, apart(r.proxy.X, state.pose, loop.center()) - before);
-    for (const Pose& X : r.pieces)
+    for (const Pose& X : r.substeps)
       if (++pieces % 20 == 0) out.penetrating += oracle.intersecting(X).empty() ? 0 : 1;
     pen.write(coupling_wrench(scene.coupling, r.proxy, state.pose, state.velocity, loop.center()));
     pen.advance(1e-3);

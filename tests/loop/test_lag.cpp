@@ -149,6 +149,6 @@ TEST_CASE("a pen that is not followed is said not to be", "[lag]") {
   const TickReport& tick = loop.step({Quat::Identity(), {NAN, 0, 0}}, 0.001);
   CHECK(tick.lag_reason == LagReason::suspended);
   CHECK(tick.proxy.velocity.v.isZero());
-  CHECK(tick.pieces.size() == 1);
+  CHECK(tick.substeps.size() == 1);
   CHECK(loop.step(at_height(0.014), 0.001).lag_reason == LagReason::none);
 }

@@ -66,9 +66,9 @@ bool is_pose(const Pose& X) {
 
 /// Whether each piece is a pose, and free where the resolver keeps it so.
 bool proper_pieces(const TickReport& report, const FclOracle* oracle) {
-  for (const Pose& X : report.pieces)
+  for (const Pose& X : report.substeps)
     if (!is_pose(X) || (oracle != nullptr && !oracle->intersecting(X).empty())) return false;
-  return !report.pieces.empty() && report.proxy.velocity.v.allFinite() && report.proxy.velocity.w.allFinite();
+  return !report.substeps.empty() && report.proxy.velocity.v.allFinite() && report.proxy.velocity.w.allFinite();
 }
 
 }  // namespace

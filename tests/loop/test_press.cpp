@@ -109,7 +109,7 @@ TEST_CASE("a block pressed into three walls rests, with the force of the springs
   const Quat q = rotation(3 * random_direction(rng));
   const Vec3 size(0.016, 0.022, 0.03), way(0.9 + 0.1 * seed, 0.7, 0.4);
   const Scene scene = corner(q, boards, size);
-  // 0.3 to 1.3 N, which the motors stand for as long as it lasts, and far more.
+  // 0.3 to 1.3 N, which the motors sustain as long as it lasts, and far more.
   const std::vector<double> deep = {1e-3, 4e-3, 16e-3};
   std::vector<Pose> poses;
   for (double d : deep) poses.push_back({q, q * Vec3(0.5 * size - d * way)});

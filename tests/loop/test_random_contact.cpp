@@ -37,7 +37,7 @@ TEST_CASE("random bodies pushed into each other never intersect, and follow the 
       const Vec3 goal(0.03 * std::sin(0.01 * tick), 0.03 * std::cos(0.013 * tick), -0.03);
       target += (goal - target).normalized() * std::min(2e-4, (goal - target).norm());
       const TickReport& r = loop.step({rotation(static_cast<double>(tick) * spin), target}, 0.001);
-      for (const Pose& piece : r.pieces) REQUIRE(oracle.intersecting(piece).empty());
+      for (const Pose& piece : r.substeps) REQUIRE(oracle.intersecting(piece).empty());
       REQUIRE(r.status != ResolveStatus::stalled);
       touching += r.proxy.touching ? 1 : 0;
       ++ticks;

@@ -125,7 +125,7 @@ void run_loop(const Fit& fit, double off, double tilt_deg, double ax, double ay,
   for (int i = 0; 1e-3 * i <= file.script.end(); ++i) {
     const Pose Y = file.script.pose(1e-3 * i);
     const TickReport& tick = loop.step(Y, 1e-3);
-    for (const Pose& X : tick.pieces)
+    for (const Pose& X : tick.substeps)
       if (!oracle.intersecting(X).empty()) ++intersecting;
     if (tick.contacts > 0) ++touching;
     if (tick.contacts > 0 && tick.proxy.X.p.z() < fit.rim - 2e-3) ++touching_inside;

@@ -33,7 +33,7 @@ struct Run {
     for (int i = 1; i <= ticks + 40; ++i) {
       const double s = std::min(1.0, static_cast<double>(i) / ticks);
       const TickReport& r = loop.step({from.q.slerp(s, to.q), (1 - s) * from.p + s * to.p}, 1e-3);
-      for (const Pose& X : r.pieces) look(X);
+      for (const Pose& X : r.substeps) look(X);
     }
     return loop.report().proxy.X;
   }

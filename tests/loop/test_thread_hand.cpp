@@ -88,7 +88,7 @@ void check_hand(int ticks, int sampled) {
   int pressed = 0;
   for (int k = 0; k < ticks; ++k) {
     const TickReport& r = loop.step(hand.next(), kPeriod);
-    for (const Pose& X : r.pieces) {
+    for (const Pose& X : r.substeps) {
       // The turn about the axis, whole turns counted.
       const double angle = 2 * std::atan2(X.q.z(), X.q.w());
       turned += std::remainder(angle - before, 2 * kPi);
@@ -97,7 +97,7 @@ void check_hand(int ticks, int sampled) {
     }
     pressed += r.contacts > 0;
     if (k % (ticks / sampled) == 0)
-      for (const Pose& X : r.pieces) judge.add(X);
+      for (const Pose& X : r.substeps) judge.add(X);
   }
   CHECK(judge.count_intersecting(t.scene) == 0);
   // A flank farther would be half of a pitch and more; what is over the play is the lean of the nut.

@@ -93,7 +93,7 @@ TEST_CASE("from nearly touching, exactly aligned starts the way out is open and 
       const TickReport& r = loop.step(Y, 1e-3);
       REQUIRE(r.status != ResolveStatus::infeasible);
       REQUIRE(r.status != ResolveStatus::stalled);
-      for (const Pose& X : r.pieces) {
+      for (const Pose& X : r.substeps) {
         const auto look = [&](const Pose& P) {
           REQUIRE(oracle.intersecting(P).empty());
           if (stays_above) REQUIRE(lowest(s.held, P) > 0);

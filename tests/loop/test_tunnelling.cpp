@@ -101,7 +101,7 @@ class Watched {
 
   const TickReport& step(const Pose& Y) {
     const TickReport& r = loop.step(Y, kTick);
-    for (const Pose& X : r.pieces) {
+    for (const Pose& X : r.substeps) {
       const double way = travel(last_, X, loop.center(), radius_);
       const int parts = std::clamp(static_cast<int>(std::ceil(way / kSubPoseStep)), 1, kMaxSubPoses);
       const auto look = [&](const Pose& P) {

@@ -132,7 +132,7 @@ TEST_CASE("a part that lies on its own is held by friction under its own weight"
 TEST_CASE("a weight that the device does not stand for is made smaller, and the loop says by how much",
           "[sim][weight]") {
   Scene scene = block_in_air(2);
-  scene.weight.most = 0.7;
+  scene.weight.max_force = 0.7;
   const HapticLoop loop(scene);
   CHECK(loop.weight().mass == 2);
   CHECK(loop.weight().force.norm() == Approx(0.7));
@@ -152,5 +152,5 @@ TEST_CASE("a weight that cannot be is refused", "[sim][weight]") {
   CHECK_THROWS_AS(HapticLoop(scene), Error);
   Scene lp = block_in_air(1);
   lp.contact.resolver = ResolverKind::lp;
-  CHECK_THROWS_WITH(HapticLoop(lp), Catch::Contains("knows no weight"));
+  CHECK_THROWS_WITH(HapticLoop(lp), Catch::Contains("does not support weight"));
 }

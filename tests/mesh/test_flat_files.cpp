@@ -121,7 +121,7 @@ TEST_CASE("STL: binary files may say solid, have attributes, and be padded by le
     check_tetrahedron(folder, "solid_pad.stl", binary_stl("solid part") + std::string(pad, '\n'));
   }
   CHECK_THAT(refusal(folder, "more.stl", binary_stl("x") + std::string(50, '\0')),
-             Catch::Contains("damaged: 4 triangles are announced"));
+             Catch::Contains("damaged: its header states 4 triangles"));
 }
 
 TEST_CASE("STL: facets of other than three corners, and text that is none, are refused", "[flat]") {

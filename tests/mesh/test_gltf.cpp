@@ -365,7 +365,7 @@ TEST_CASE("glTF: Draco (KHR_draco_mesh_compression)", "[gltf]") {
   morphed.j["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", morphed.corners()}}};
   refused_for(morphed);
   doc.j["bufferViews"][view]["byteLength"] = packed.size() / 2;
-  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("Draco is no stream of it"));
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("Draco is not a stream of it"));
 }
 
 TEST_CASE("glTF: integers compressed by Draco stand for what their accessor says", "[gltf]") {
@@ -454,7 +454,7 @@ TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
   }
   GltfDoc damaged = file(plain, "NONE", triangles, "TRIANGLES");
   damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteLength"] = plain.size() - 1;
-  CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no stream of EXT_meshopt_compression"));
+  CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("not a stream of EXT_meshopt_compression"));
   for (const auto& [key, value] : {std::pair("byteStride", 13), {"count", 5}, {"byteLength", 4000}}) {
     damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;
     CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));

@@ -194,7 +194,7 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
     for (const StartFinding& s : f.start.pairs) {
       CHECK(s.pair.state == InitialContactState::shrunk);
       CHECK(s.pair.clash.depth.value() == Approx(3e-6).epsilon(1e-6));
-      CHECK(s.pair.relief == Approx(relief).epsilon(1e-6));
+      CHECK(s.pair.inward_offset == Approx(relief).epsilon(1e-6));
     }
     return judge(f, scene, false, scan, "");
   };

@@ -130,7 +130,7 @@ TEST_CASE("an interrupted call keeps its tries and goes on") {
   ::waitpid(child, &status, 0);
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 1);
-  CHECK_THAT(read_text(folder / "log"), Contains("interrupted; the same command goes on from here"));
+  CHECK_THAT(read_text(folder / "log"), Contains("interrupted; the same command continues from here"));
   const std::string kept = read_text(out + "/tries.csv");
   REQUIRE(lines(kept) >= 5);
   CHECK(lines(kept) < 5000);
@@ -153,7 +153,7 @@ TEST_CASE("bad input of try is one line") {
     CHECK_THAT(o.err, Contains(why));
   };
   refused("", "its script goes nowhere");
-  refused("--goal 1", "is no pose");
+  refused("--goal 1", "is not a pose");
   refused("--goal 0,0,0.03", "the goal is where the held part starts");
   refused("--goal 0,0,0.02 --tries 0", "--tries");
   std::filesystem::create_directories(folder / "t");

@@ -186,7 +186,7 @@ TEST_CASE("friction and weight arrive, and what of them cannot be is named", "[s
       folder.load("weight = true\ngravity = [0, -9.8, 0]\n" + parts + "[friction]\nmu = 0.3\n" + pair + kDevice);
   CHECK(file.scene.weight.on);
   CHECK(file.scene.weight.gravity == Vec3(0, -9.8, 0));
-  CHECK(*file.scene.weight.most == Approx(0.7));  // half of what the pen stands for long
+  CHECK(*file.scene.weight.max_force == Approx(0.7));  // half of what the pen stands for long
   CHECK(*file.scene.parts[1].mass == 0.25);
   CHECK(file.scene.friction.mu == 0.3);
   REQUIRE(file.scene.friction.pairs.size() == 1);
@@ -215,8 +215,8 @@ TEST_CASE("friction and weight arrive, and what of them cannot be is named", "[s
   named("[[friction.pair]]\nparts = [\"peg\"]\nmu = 0.1\n", "two parts");
   named("[[friction.pair]]\nparts = [\"peg\", \"nobody\"]\nmu = 0.1\n", "nobody");
   named("[[friction.pair]]\nparts = [\"peg\", \"block\"]\n", "mu");
-  named("[friction]\nmu = 0.1\n[contact]\nresolver = \"lp\"\n", "knows no friction");
-  CHECK(folder.error("weight = true\n" + kParts + "[contact]\nresolver = \"lp\"\n").find("knows no weight") !=
+  named("[friction]\nmu = 0.1\n[contact]\nresolver = \"lp\"\n", "does not support friction");
+  CHECK(folder.error("weight = true\n" + kParts + "[contact]\nresolver = \"lp\"\n").find("does not support weight") !=
         std::string::npos);
   CHECK(folder.error(replaced(kParts, "held = true", "held = true\nmass = 0")).find("mass") != std::string::npos);
 }
@@ -294,7 +294,7 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       // Parts.
       {kDevice, "scene.toml:1: part: the scene has no [[part]]"},
       {replaced(good, "held = true", "held = false"), "scene.toml:2: part: no part is held"},
-      {replaced(good, "\"block\"", "\"block\"\nheld = true"), "scene.toml:9: part.held: part block is held already"},
+      {replaced(good, "\"block\"", "\"block\"\nheld = true"), "scene.toml:9: part.held: part block is already held"},
       {replaced(good, "\"peg\"", "\"block\""), "scene.toml:6: part.name: another part is named block"},
       {replaced(good, "name = \"block\"", ""), "scene.toml:2: part.name: missing"},
       {replaced(good, "mesh = \"tet.obj\"", ""), "scene.toml:2: part.mesh: missing"},

@@ -100,12 +100,12 @@ TEST_CASE("a clutch holds the part, or its place, while the pen moves on", "[ser
 TEST_CASE("a new application starts with no home, and its first one counts", "[servo]") {
   PenMapping mapping({});
   MappingCommand command;
-  command.session = 1;
+  command.attachment = 1;
   command.home_counter = 1;
   command.home.p = Vec3(1, 0, 0);
   mapping.update(pen_at(Vec3::Zero()), Vec3::Zero(), command);
   CHECK(mapping.Y().p == Vec3(1, 0, 0));
-  command.session = 2;
+  command.attachment = 2;
   command.home_counter = 0;
   mapping.update(pen_at(Vec3::Zero()), Vec3::Zero(), command);
   CHECK(mapping.Y().p == Vec3(1, 0, 0));

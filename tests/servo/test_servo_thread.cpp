@@ -25,7 +25,7 @@ TEST_CASE("the thread ticks on its schedule, counts, and leaves no force", "[ser
   Servo servo(device, channel, settings);
   const std::int64_t begin = monotonic_ns();
   servo.start();
-  CHECK_THROWS_WITH(servo.start(), Catch::Contains("runs already"));
+  CHECK_THROWS_WITH(servo.start(), Catch::Contains("already runs"));
   PenSample pen;
   std::uint64_t rendered = 0;
   // A machine that holds this loop up for 20 ms turns the force off: then it lets go and presses again.

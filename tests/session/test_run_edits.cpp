@@ -198,7 +198,7 @@ TEST_CASE("a pen that takes another part tells nothing until its servo has heard
   CHECK(sample.state.pose.p.isApprox(proxy.X.p, 1e-2));
 
   proxy.X.p = Vec3(0.08, 0, 0.04);
-  pen->hold(loop.center(), loop.coupling(), proxy.X);
+  pen->grasp(loop.center(), loop.coupling(), proxy.X);
   CHECK(!pen->read(sample, now));
   servo();  // it has not heard yet
   CHECK(!pen->read(sample, now));

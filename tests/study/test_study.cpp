@@ -131,7 +131,7 @@ TEST_CASE("what is wrong in a study file is told with line and key") {
   refused("scenes = [\"no.toml\"]\n", ":1: scenes: ");
   refused(good + "repeat = 3\n", ":2: repeat: unknown key");
   refused(good + "repeats = 2.5\n", ":2: repeats: must be a whole number");
-  refused(good + "goal = \"up\"\n", ":2: goal: up is no pose");
+  refused(good + "goal = \"up\"\n", ":2: goal: up is not a pose");
   refused(good + "[parameters]\ntilt_deg = [90]\n", ":3: parameters.tilt_deg: 90 is not from 0 to 45");
   refused(good + "[parameters]\nmu = { uniform = [2, 1] }\n", "mu.uniform: the first number must be less");
   refused(good + "[parameters]\nmu = { normal = [0, 1] }\n", "mu.normal: unknown key");

@@ -197,7 +197,7 @@ TEST_CASE("bad commands of study are one line") {
   refused(file + " --shard 1/4x", "is not I/N");
   refused("case " + file + " 1", "has no case 1, but 0 to 0");
   folder.write("study.toml", "scenes = [\"scene.toml\"]\n");
-  refused(file, "its script goes nowhere; tell where the part is to go with goal in ");
+  refused(file, "its script does not move; give the part's goal with goal in ");
   folder.write("study.toml",
                "scenes = [\"scene.toml\"]\ngoal = \"out\"\n[[parameters.inward]]\npart = \"lid\"\nby = [0]\n");
   refused(file, "has no part lid, which the study names (there are floor, block)");

@@ -151,8 +151,8 @@ std::vector<Stretch> recordings(const TempFolder& folder, std::size_t count, con
     const auto held = std::find_if(scene.scene.parts.begin(), scene.scene.parts.end(), [](auto& p) { return p.held; });
     CHECK(info.held == held->name);
     // They name each other, without folders.
-    CHECK(info.follows == (k == 1 ? "" : numbered(folder, k - 1, extension).substr((folder / "").size())));
-    CHECK(info.goes_on == (k == count ? "" : numbered(folder, k + 1, extension).substr((folder / "").size())));
+    CHECK(info.continues == (k == 1 ? "" : numbered(folder, k - 1, extension).substr((folder / "").size())));
+    CHECK(info.continued_by == (k == count ? "" : numbered(folder, k + 1, extension).substr((folder / "").size())));
     all.push_back({std::move(recording), std::move(scene)});
   }
   CHECK_FALSE(std::filesystem::exists(numbered(folder, count + 1, extension)));

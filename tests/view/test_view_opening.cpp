@@ -100,7 +100,7 @@ TEST_CASE("on a terminal the browser is opened, once, and the run waits for its 
   const TempFolder folder;
   write_opener(folder);
   OnTerminal run(folder, {});
-  REQUIRE(run.shows("The run starts when the page is there"));
+  REQUIRE(run.shows("The run starts when the page is connected"));
   CHECK_THAT(run.out(), Contains("Your browser opens it"));
   const Place printed(run.url()), given(opened(folder));
   CHECK(given.port == printed.port);
@@ -118,18 +118,18 @@ TEST_CASE("on a terminal the browser is opened, once, and the run waits for its 
 
   const Connection watcher(printed.port);
   REQUIRE(watcher.send(text_of(printed.stream())));
-  CHECK(run.shows("The page is there; the run starts"));
+  CHECK(run.shows("The page is connected; the run starts"));
 }
 
 TEST_CASE("it is not opened where that is not wanted") {
   const TempFolder folder;
   write_opener(folder);
   OnTerminal run(folder, {"--no-browser"});
-  REQUIRE(run.shows("The run starts when the page is there"));
+  REQUIRE(run.shows("The run starts when the page is connected"));
   const Place printed(run.url());
   const Connection watcher(printed.port);
   REQUIRE(watcher.send(text_of(printed.stream())));
-  CHECK(run.shows("The page is there; the run starts"));
+  CHECK(run.shows("The page is connected; the run starts"));
   CHECK_THAT(run.out(), !Contains("Your browser"));
   CHECK(::access((folder / "opened").c_str(), F_OK) != 0);
 }

@@ -9,8 +9,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// A place where the held part A touches a fixed part B: their surfaces are no farther apart there than
-/// TickReport::contact_gap. Part and features are its identity from tick to tick.
+/// Place where the held part A touches a fixed part B: the gap of their surfaces there is at most
+/// TickReport::contact_gap. Part and features identify the contact from tick to tick.
 struct ContactPoint {
   PartId part;                   ///< B
   Feature feature_a;             ///< nearest feature of A's mesh
@@ -21,18 +21,18 @@ struct ContactPoint {
   double gap = 0;                ///< m; negative where the resolver "penalty" lets A into B
   std::optional<double> force;   ///< N, on A along `normal`, 0 or positive; none: see TickReport::forces
   Vec3 friction = Vec3::Zero();  ///< N, on A across `normal`, world
-  bool slides = false;           ///< A's point has slid in the tick, where there is friction
-  std::int64_t ticks = 0;        ///< for so many ticks before this one it has been in contact; 0: it has just begun
+  bool slides = false;           ///< A's point slid in the tick, where there is friction
+  std::int64_t ticks = 0;  ///< number of ticks before this one for which the contact has lasted; 0: it has just begun
 };
 
-/// That a contact began or ended in the last tick. Where the scene changes, contacts end without an event: their part
-/// is of a scene that is gone.
+/// A contact that began or ended in the last tick. When the scene changes, contacts end without an event, because their
+/// part belongs to a scene that is gone.
 struct ContactEvent {
   /// What happened.
   enum class Kind : std::uint8_t { began, ended };
 
   Kind kind = Kind::began;  ///< what happened
-  ContactPoint contact;     ///< as it is; one that ended: as it was in the tick before
+  ContactPoint contact;     ///< its present state; of one that ended, its state in the tick before
 };
 
 }  // namespace tegotae

@@ -4,8 +4,9 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Faces whose normals differ by less are one plane (rad). Larger: curved surfaces lose the edges that contacts slide
-/// over. Smaller: planes of float-precision files fall apart into creases. 512 facets a turn differ by 0.012 rad.
+/// The library treats neighboring faces whose normals differ by less than this angle (rad) as one plane. A larger value
+/// would erase the edges of curved surfaces, over which contacts slide. A smaller value would split planes of
+/// single-precision files into creases. For scale: the facets of a cylinder with 512 of them differ by 0.012 rad.
 inline constexpr double kFlatAngle = 1e-4;
 
 }  // namespace tegotae

@@ -10,16 +10,16 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What kind of thing is wrong.
+/// Category of an error.
 enum class ErrorKind : std::uint8_t {
   other,    ///< none of the following
-  file,     ///< a file is absent, damaged, or says what cannot be
+  file,     ///< a file is absent, damaged, or has impossible content
   setting,  ///< a value is out of range
   overlap,  ///< parts intersect at the start
-  device    ///< a device cannot be reached, or is another application's
+  device    ///< a device cannot be reached, or another application uses it
 };
 
-/// Where it is wrong, beside Error::what(), as far as it is known.
+/// Place of an error, as far as it is known. It complements Error::what().
 struct ErrorPlace {
   std::string file = {};  ///< path; empty: none
   int line = 0;           ///< in the file, from 1 on; 0: none
@@ -27,17 +27,17 @@ struct ErrorPlace {
   std::string part = {};  ///< name of the part; empty: none
 };
 
-/// Bad input or a failed set-up step (a file, a scene, a setting, a device). `what()` is one line that names the file,
-/// line, key or part, what is wrong with it and, where it helps, what to do. Never thrown from a tick or the servo.
+/// Bad input or a failed set-up step (a file, a scene, a setting, a device). `what()` is one line. It names the file,
+/// line, key or part, says what is wrong and, where it helps, what to do. Neither a tick nor the servo throws it.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-  /// `text` for people, `kind` and `place` for programs.
+  /// `text` is for people; `kind` and `place` are for programs.
   Error(ErrorKind kind, const std::string& text, ErrorPlace place = {})
       : std::runtime_error(text), kind_(kind), place_(std::make_shared<const ErrorPlace>(std::move(place))) {}
 
-  ErrorKind kind() const noexcept { return kind_; }  ///< of what
-  /// Where.
+  ErrorKind kind() const noexcept { return kind_; }  ///< category
+  /// Returns the place of the error.
   ErrorPlace place() const { return place_ ? *place_ : ErrorPlace(); }
 
  private:

@@ -4,6 +4,6 @@
 /// The library. SI units everywhere: m, kg, s, N, N·m, rad. `X_WF` is the pose of frame F in the world W, `p_WA` a
 /// point A and `n_BA_W` a unit normal from B to A, both expressed in W. A part's *file frame* is that of its mesh file.
 
-/// Marks what the shared library shows. Every public header says `namespace tegotae TEGOTAE_EXPORT {`: that shows what
-/// is declared in this one block; everything else is compiled with hidden visibility.
+/// Marks what the shared library exports. Every public header opens `namespace tegotae TEGOTAE_EXPORT {`, which exports
+/// the declarations of that block. All other code is compiled with hidden visibility.
 #define TEGOTAE_EXPORT __attribute__((visibility("default")))

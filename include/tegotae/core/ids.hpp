@@ -6,8 +6,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// A part of a scene: its index into Scene::parts, whether the part is held or not. After a change of the scene the ids
-/// are those of the new one.
+/// Identifies a part of a scene, held or fixed, by its index into Scene::parts. After a scene change, ids refer to the
+/// new scene.
 struct PartId {
   std::uint32_t index = 0;  ///< into Scene::parts
 
@@ -16,14 +16,14 @@ struct PartId {
   bool operator<(PartId other) const noexcept { return index < other.index; }    ///< by index
 };
 
-/// What a feature of a mesh is.
+/// Kind of a mesh feature.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 
 /// A vertex, edge or face of a mesh.
 struct Feature {
-  FeatureKind kind = FeatureKind::vertex;  ///< what it is
-  /// Into TriangleMesh::vertices or TriangleMesh::triangles; edges are numbered by the library, the same way each time
-  /// for the same mesh.
+  FeatureKind kind = FeatureKind::vertex;  ///< vertex, edge or face
+  /// Index into TriangleMesh::vertices or TriangleMesh::triangles. The library numbers the edges itself, always in the
+  /// same way for the same mesh.
   std::uint32_t index = 0;
 
   bool operator==(const Feature& o) const noexcept { return kind == o.kind && index == o.index; }  ///< the same one

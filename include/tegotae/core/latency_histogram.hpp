@@ -7,15 +7,15 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Counts durations from 0 to hours in bins of at most 1/32 of their value, without allocation.
+/// Histogram of durations from 0 to hours. A bin is at most 1/32 of its value wide. It never allocates.
 class LatencyHistogram {
  public:
-  /// A negative duration counts as 0.
+  /// Adds a duration, ns; a negative one counts as 0.
   void add(std::int64_t ns) noexcept;
   std::uint64_t count() const noexcept { return count_; }  ///< durations added
   std::int64_t max_ns() const noexcept { return max_; }    ///< exact; 0 when empty
-  /// The smallest duration that at least the part `p` (in [0, 1]) of all does not exceed, in ns: exact or up to 1/32
-  /// too large, never above max_ns(); 0 when empty.
+  /// Returns the smallest duration (ns) that at least the fraction `p` (in [0, 1]) of all durations does not exceed. It
+  /// is exact or up to 1/32 too large, never above max_ns(), and 0 when the histogram is empty.
   std::int64_t percentile_ns(double p) const noexcept;
 
  private:
@@ -26,14 +26,14 @@ class LatencyHistogram {
   std::int64_t max_ = 0;
 };
 
-/// Of many durations, in microseconds; zeros when there are none.
+/// Summary of many durations, in microseconds; zeros when there are none.
 struct LatencySummary {
   double p50 = 0;   ///< median
   double p99 = 0;   ///< 99 of 100 are not longer
   double p999 = 0;  ///< 999 of 1000 are not longer
   double max = 0;   ///< the longest
 };
-/// The figures of `histogram`, each as its percentile_ns() and max_ns().
+/// Returns the summary of `histogram`, from its percentile_ns() and max_ns().
 LatencySummary summary(const LatencyHistogram& histogram) noexcept;
 
 }  // namespace tegotae

@@ -10,14 +10,14 @@ namespace tegotae TEGOTAE_EXPORT {
 using Vec3 = Eigen::Vector3d;              ///< x, y, z
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< linear part first, then angular
 using Mat3 = Eigen::Matrix3d;              ///< rows and columns x, y, z
-/// Written w, x, y, z; of unit length wherever it is a rotation. Not aligned, because Eigen aligns by the flags of the
-/// compiler: a Pose would have another layout in a program that is built with -mavx2.
+/// In the order w, x, y, z; of unit length wherever it is a rotation. It is not aligned, because Eigen aligns by the
+/// flags of the compiler: a Pose would have another layout in a program that is built with -mavx2.
 using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// Rigid pose X_WB: maps coordinates in frame B to frame W, p_W = q * p_B + p. Lengths in m, `q` a unit quaternion.
 struct Pose {
   Quat q = Quat::Identity();  ///< R_WB
-  Vec3 p = Vec3::Zero();      ///< p_WB: where B's origin is in W, m
+  Vec3 p = Vec3::Zero();      ///< p_WB: position of B's origin in W, m
 
   /// The point `p_B` (m, frame B) expressed in W.
   Vec3 operator*(const Vec3& p_B) const { return q * p_B + p; }
@@ -53,17 +53,18 @@ struct Displacement {
   Vec3 dr = Vec3::Zero();  ///< rad
 };
 
-/// Rotation vector (rad, angle in [0, π]) of `q`.
+/// Returns the rotation vector (rad, angle in [0, π]) of `q`.
 Vec3 rotation_vector(const Quat& q);
-/// Unit quaternion of the rotation vector `r` (rad).
+/// Returns the unit quaternion of the rotation vector `r` (rad).
 Quat rotation(const Vec3& r);
 
-/// `X` after the displacement `d` of the body point `center_B` (m, body frame): the center moves by `d.dp` and the body
-/// turns by `d.dr` about it.
+/// Returns the pose `X` after the displacement `d` of the body point `center_B` (m, body frame): the center moves by
+/// `d.dp`, and the body rotates by `d.dr` about it.
 Pose displaced(const Pose& X, const Vec3& center_B, const Displacement& d);
-/// The displacement of `center_B` that takes `from` to `to`: displaced(from, center_B, d) == to up to rounding.
+/// Returns the displacement of `center_B` that takes `from` to `to`: displaced(from, center_B, d) == to up to rounding.
 Displacement displacement(const Pose& from, const Pose& to, const Vec3& center_B);
-/// `d` scaled by `s`; the path s -> displaced(X, c, s·d), s in [0, 1], has a linear center and constant angular rate.
+/// Returns `d` scaled by `s`. On the path s -> displaced(X, c, s·d), s in [0, 1], the center moves linearly and the
+/// angular rate is constant.
 inline Displacement operator*(double s, const Displacement& d) {
   return {s * d.dp, s * d.dr};
 }

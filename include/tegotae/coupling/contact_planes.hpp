@@ -7,24 +7,26 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// A limit on the held part's motion near its pose X: the point `point` of it may move against `normal` by `room`.
+/// Constraint on the held part's motion near its pose X: the part's point `point` may move against `normal` by at most
+/// `clearance`.
 struct ContactPlane {
   Vec3 normal = Vec3::Zero();  ///< unit, out of the obstacle, world
   Vec3 point = Vec3::Zero();   ///< of the held part at X, m, world
-  double room = 0;             ///< m; below 0: the point should move out by so much
-  double mu = 0;               ///< coefficient of friction while the point is held there
+  double clearance = 0;        ///< m; negative: the point should move out by this much
+  double mu = 0;               ///< coefficient of friction while the plane holds the point
 };
 
-/// What the contact loop knows about the held part's next millimeter, for a servo that is faster: the limits that held
-/// it in its last tick, and after them the nearest others. A free body needs no more than six.
+/// What the contact loop knows about the held part's next millimeter, for the faster servo: the constraints that held
+/// the part in the last tick, then the nearest others. A free body needs no more than six.
 struct ContactPlanes {
   static constexpr int kMax = 6;          ///< degrees of freedom of a free body
-  std::array<ContactPlane, kMax> planes;  ///< the first `count` of them hold
-  int count = 0;                          ///< 0: nothing is known, X stays where it is until the next tick
-  Pose X;                                 ///< of the held part's file frame, where they were taken
+  std::array<ContactPlane, kMax> planes;  ///< the first `count` of them are valid
+  int count = 0;                          ///< 0: none is known, and X stays where it is until the next tick
+  Pose X;                                 ///< pose of the held part's file frame at which they were taken
   Pose pen;                               ///< Y that the tick answered
 
-  /// Whether they were taken at `pose`, bit for bit: planes of another pose would pull the part where no contact is.
+  /// Returns whether the planes were taken at `pose`, bit for bit. Planes of another pose would pull the part where no
+  /// contact is.
   bool taken_at(const Pose& pose) const noexcept { return X.p == pose.p && X.q.coeffs() == pose.q.coeffs(); }
 };
 

@@ -14,23 +14,23 @@ struct CouplingSettings {
   double torsional_damping = 0.004;  ///< N·m·s/rad
 };
 
-/// How much a turn weighs against a shift in the springs' energy, as a length (m): √(k_t / k), 19 mm by default, in the
-/// lengths of the world when the part moves `scale` meters for a meter of the pen. The held part goes where this energy
-/// is least, which is why what the hand feels is the sum of the contact forces. Within 0.1 mm to 10 m whatever the
-/// stiffnesses are (one of them may be zero).
+/// Returns the length (m) that weighs a rotation against a translation in the springs' energy: √(k_t / k), 19 mm by
+/// default. It is a length of the world, in which the part moves `scale` meters for a meter of the pen. The held part
+/// goes where this energy is least; that is why the hand feels the sum of the contact forces. The result is within 0.1
+/// mm to 10 m whatever the stiffnesses are (one of them may be zero).
 double coupling_radius(const CouplingSettings& settings, double scale = 1) noexcept;
 
-/// The torsional stiffness (N·m/rad) that fits a part whose radius of gyration is `radius` (m, in the pen's lengths):
-/// stiffness × radius², so that turning it and shifting it feel equally hard; at least the default of
-/// CouplingSettings, which small parts need no less of, and at most `most`, what device and stability allow
-/// (torsional_stiffness_bound()).
-double fitted_torsional_stiffness(double stiffness, double radius, double most) noexcept;
+/// Returns the torsional stiffness (N·m/rad) that fits a part with a radius of gyration of `radius` (m, in the pen's
+/// lengths): stiffness × radius², so that rotating it and moving it feel equally hard. The result is at least the
+/// default of CouplingSettings, which is enough for small parts, and at most `max_stiffness`, which device and
+/// stability allow (torsional_stiffness_bound()).
+double fitted_torsional_stiffness(double stiffness, double radius, double max_stiffness) noexcept;
 
-/// What the coupling needs of the held part: its pose `X` and the velocity of its center of mass, in the world.
+/// State of the held part that the coupling needs: its pose `X` and the velocity of its center of mass, in the world.
 struct ProxyState {
   Pose X;                 ///< X_WF of its file frame
   Twist velocity;         ///< `v` of its center of mass
-  bool touching = false;  ///< held back, by contacts or because the contact loop lags
+  bool touching = false;  ///< contacts hold it back, or the contact loop lags
   /// N, world: of the held part as the hand carries it, on the pen at the center of mass. The part then hangs below the
   /// pen by weight / stiffness.
   Vec3 weight = Vec3::Zero();

@@ -9,30 +9,30 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How stiff a coupling may be so that a sampled wall never gives a hand energy, whatever the hand does. With b the
-/// damping of the device, B that of the coupling, T the period, f_c the Coulomb friction and Δ the position resolution:
-/// b > K T / 2 + |B| (Colgate and Schenkel, "Passivity of a class of sampled-data systems", 1997) and
-/// K <= 2 f_c / Δ (Abbott and Okamura, "Effects of position quantization and sampling rate on virtual-wall passivity",
-/// 2005). A hand that holds the pen adds damping: couplings above the limit can be stable in a hand, none below it is
-/// unstable.
+/// Upper bounds of a coupling's stiffness. Below them a sampled wall never gives energy to a hand, whatever the hand
+/// does. With b the damping of the device, B that of the coupling, T the period, f_c the Coulomb friction and Δ the
+/// position resolution: b > K T / 2 + |B| (Colgate and Schenkel, "Passivity of a class of sampled-data systems", 1997)
+/// and K <= 2 f_c / Δ (Abbott and Okamura, "Effects of position quantization and sampling rate on virtual-wall
+/// passivity", 2005). A hand that holds the pen adds damping: couplings above the limit can be stable in a hand, none
+/// below it is unstable.
 struct StabilityReport {
   double rate_hz = 0;                               ///< of the servo
-  CouplingSettings coupling;                        ///< what is asked for
+  CouplingSettings coupling;                        ///< the requested one
   std::optional<double> sampling_limit;             ///< N/m, 2 (b - |B|) / T; none when b is not known
   double quantization_limit = 0;                    ///< N/m, 2 f_c / Δ; infinite without quantization
   std::optional<double> stiffness_limit;            ///< N/m, the smaller one; none when not known
   std::optional<double> torsional_stiffness_limit;  ///< N·m/rad, by sampling alone; none when not known
-  /// In one line, for people.
+  /// Returns the report in one line, for people.
   std::string text() const;
 };
 
-/// Of `coupling` on `device` at `rate_hz`.
+/// Reports on `coupling` with `device` at `rate_hz`.
 StabilityReport stability(const DeviceInfo& device, const CouplingSettings& coupling, double rate_hz);
 
-/// The most that fitted_torsional_stiffness() should choose (N·m/rad) for a device of which `limit` is
-/// StabilityReport::torsional_stiffness_limit and `torque` its peak (N·m): half of the limit, and not so stiff that the
-/// peak is reached within 0.05 rad, where a step of the pen's angle would be felt. Where the limit is not known (none
-/// or 0), the default of CouplingSettings.
+/// Returns the upper bound (N·m/rad) for fitted_torsional_stiffness(). `limit` is
+/// StabilityReport::torsional_stiffness_limit of the device, `torque` its peak (N·m). The bound is half of the limit.
+/// It is also low enough that an error of 0.05 rad does not reach the peak; beyond that, a hand would feel a step of
+/// the pen's angle. Where the limit is not known (none or 0), it is the default of CouplingSettings.
 double torsional_stiffness_bound(std::optional<double> limit, double torque) noexcept;
 
 }  // namespace tegotae

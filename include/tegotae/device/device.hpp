@@ -10,13 +10,13 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What a device is, as far as its vendor tells. The defaults are those of a PHANTOM Premium 1.5/6DOF.
+/// Properties of a device, as far as its vendor states them. The defaults are those of a PHANTOM Premium 1.5/6DOF.
 struct DeviceInfo {
-  std::string name = "pen";           ///< at most TEGOTAE_SHM_NAME - 1 bytes are told to applications
-  int motion_freedom = 6;             ///< degrees of freedom that it senses: 3 or 6
-  int force_freedom = 6;              ///< degrees of freedom that it renders: 0 (input only), 3 or 6
+  std::string name = "pen";           ///< applications see at most TEGOTAE_SHM_NAME - 1 bytes of it
+  int motion_freedom = 6;             ///< sensed degrees of freedom: 3 or 6
+  int force_freedom = 6;              ///< rendered degrees of freedom: 0 (input only), 3 or 6
   WrenchLimits limits;                ///< peak
-  double continuous_force = 1.4;      ///< N, what its motors stand for long; 0: not limited
+  double continuous_force = 1.4;      ///< N, which its motors can sustain; 0: unbounded
   double damping = 0;                 ///< N·s/m, of the device alone; 0: not known
   double torsional_damping = 0;       ///< N·m·s/rad; 0: not known
   double friction = 0.04;             ///< Coulomb, N
@@ -25,14 +25,14 @@ struct DeviceInfo {
 
 /// One snapshot of the pen.
 struct DeviceState {
-  Pose pose;                   ///< X_WF: the pen's frame in the device's own space, whose axes are those of the world
-  Twist velocity;              ///< of the pen's body; `v` is that of Device::reference_point()
-  std::uint32_t buttons = 0;   ///< bit i: button i is pressed
-  std::int64_t time_ns = 0;    ///< when it was sampled: the monotonic clock, or the device's own in virtual time
+  Pose pose;                  ///< X_WF: the pen's frame in the device's own space, whose axes are those of the world
+  Twist velocity;             ///< of the pen's body; `v` is that of Device::reference_point()
+  std::uint32_t buttons = 0;  ///< bit i: button i is pressed
+  std::int64_t time_ns = 0;  ///< time of sampling: of the monotonic clock, or in virtual time of the device's own clock
   std::uint64_t sequence = 0;  ///< number of the sample
 };
 
-/// What a device can do now.
+/// What a device can do at present.
 enum class DeviceStatus : std::uint32_t {
   uninitialized = TEGOTAE_SHM_STATUS_UNINITIALIZED,  ///< not started: no pose, no force
   ready = TEGOTAE_SHM_STATUS_READY,                  ///< the pose is good, the force is off
@@ -50,56 +50,60 @@ enum class ForceOff : std::uint32_t {
   dead_man = TEGOTAE_SHM_REASON_DEAD_MAN,              ///< the dead-man switch is released
   not_finite = TEGOTAE_SHM_REASON_NOT_FINITE,          ///< a pose, velocity or setting is not finite
   workspace = TEGOTAE_SHM_REASON_WORKSPACE,            ///< the pen left its workspace
-  energy = TEGOTAE_SHM_REASON_ENERGY,                  ///< the coupling gave the hand more energy than it may
+  energy = TEGOTAE_SHM_REASON_ENERGY,                  ///< the coupling gave the hand more energy than allowed
   thermal = TEGOTAE_SHM_REASON_THERMAL,                ///< the motors are too warm
   engage = TEGOTAE_SHM_REASON_ENGAGE,                  ///< waits until the wanted force is small, then ramps in
   clutched = TEGOTAE_SHM_REASON_CLUTCHED,              ///< the pen moves without the part
-  silent = TEGOTAE_SHM_REASON_SILENT,                  ///< the pen has had no new sample for too long
+  silent = TEGOTAE_SHM_REASON_SILENT,                  ///< the pen has sent no new sample for too long
   device_fault = TEGOTAE_SHM_REASON_DEVICE_FAULT,      ///< the device reports a fault
-  force_exceeded = TEGOTAE_SHM_REASON_FORCE_EXCEEDED,  ///< more was asked of the device than it may render
+  force_exceeded = TEGOTAE_SHM_REASON_FORCE_EXCEEDED,  ///< the application asked for more than the device may render
   no_force = TEGOTAE_SHM_REASON_NO_FORCE,              ///< the device is an input only
 };
 
-/// For people, e.g. "the contact loop's heartbeat is too old".
+/// Returns a text for people, e.g. "the contact loop's heartbeat is too old".
 const char* to_string(DeviceStatus status) noexcept;
 const char* to_string(ForceOff reason) noexcept;  ///< the same
 
-/// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. Called from one
-/// thread, the servo's, but for info().
+/// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. One thread makes all
+/// calls, the servo's; any thread may call info().
 class Device {
  public:
   virtual ~Device() = default;
 
-  /// What it is; does not change while the device is started.
+  /// Returns the device's properties. They do not change while the device is started.
   virtual DeviceInfo info() const = 0;
 
   /// Connects and makes the device ready or enabled. Throws Error with the cause.
   virtual void start() = 0;
-  /// Force off, disconnects. Throws Error when the device cannot be left in a safe state.
+  /// Switches the force off and disconnects. Throws Error when the device cannot be left in a safe state.
   virtual void stop() = 0;
 
-  /// The newest state. Never waits. When the device does not answer: the last state, and reason() says so.
+  /// Returns the newest state. Never waits. When the device does not answer, it returns the last state, and reason()
+  /// says so.
   virtual DeviceState read() noexcept = 0;
   /// Renders `wrench` (on the pen, at reference_point(), in the axes of the world) until the next call.
   virtual void write(const Wrench& wrench) noexcept = 0;
 
-  virtual DeviceStatus status() const noexcept = 0;  ///< now
+  virtual DeviceStatus status() const noexcept = 0;  ///< its present status
   virtual ForceOff reason() const noexcept = 0;      ///< why it renders no force; ForceOff::none when it does
 
-  /// The device's own point, in the pen's frame, m: DeviceState::velocity is its velocity, and wrenches act at it. The
-  /// servo lets it carry the held part's center of mass. The default is the origin of the pen's frame.
+  /// Returns the device's reference point, in the pen's frame, m. DeviceState::velocity is the velocity of this point,
+  /// and wrenches act at it. The servo maps it to the held part's center of mass. The default is the origin of the
+  /// pen's frame.
   virtual Vec3 reference_point() const noexcept { return Vec3::Zero(); }
-  /// The held part's center of mass, m, file frame, each time that another part is held. Only a pen whose body is the
-  /// part itself takes it for its reference point, as SimulatedDevice does; other drivers ignore it.
+  /// Receives the held part's center of mass, m, file frame, each time that another part is held. Only a pen whose body
+  /// is the part itself uses it as its reference point, as SimulatedDevice does; other drivers ignore it.
   virtual void set_held_center(const Vec3&) noexcept {}
 
-  /// Before start(): whether the device moves with the clock (hardware always does) or by advance() alone.
+  /// Sets whether the device moves with the clock (hardware always does) or by advance() alone. Called before start().
   virtual void use_wall_clock(bool) noexcept {}
-  /// Moves a device that does not move with the clock on by `dt` seconds of virtual time. Between two calls of read().
+  /// Advances a device that does not move with the clock by `dt` seconds of virtual time. Called between two calls of
+  /// read().
   virtual void advance(double) noexcept {}
 
-  /// How far the pen is ahead of the part: from the part's pose to where the pen wants it. The servo tells it before
-  /// read() while an application is attached; an input that is integrated stays near the part by it.
+  /// Receives the tracking error: the displacement from the part's pose to the pose where the pen wants it. The servo
+  /// calls it before read() while an application is attached. An input that is integrated uses it to stay near the
+  /// part.
   virtual void set_tracking_error(const Displacement&) noexcept {}
 };
 

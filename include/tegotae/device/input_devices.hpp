@@ -7,27 +7,27 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How the deflection of an input that springs back to its middle moves the pen. Speeds grow with the square of the
-/// deflection beyond the dead zone.
+/// How the deflection of a self-centering input moves the pen. Speeds grow with the square of the deflection beyond the
+/// dead zone.
 struct RateControlSettings {
   double speed = 0.05;      ///< m/s at full deflection
   double turn_rate = 0.8;   ///< rad/s at full deflection
-  double dead_zone = 0.1;   ///< of the full deflection, from 0 to below 1
-  double reach = 0.01;      ///< m: the pen waits when it is so far ahead of a part that cannot follow
+  double dead_zone = 0.1;   ///< fraction of the full deflection, from 0 to below 1
+  double reach = 0.01;      ///< m: the pen waits when it is this far ahead of a part that cannot follow
   double turn_reach = 0.2;  ///< rad, the same
 };
 
 /// Inputs that move the part without force, so that anyone can try the library. Their pen moves only while an
-/// application is attached. A thread of their own listens to them; read() never waits. Where an input is lost, the pen
-/// rests, reason() is `disconnected`, and twice a second it is looked for again.
+/// application is attached. Each reads its hardware in a thread of its own, so that read() never waits. When an input
+/// is lost, the pen rests, reason() is `disconnected`, and the thread searches for the input twice a second.
 ///
-/// These throw Error for a setting out of range, and where the build has no such backend; start() throws when there is
-/// no such device.
+/// The functions throw Error for a setting out of range, and when the build has no such backend. start() throws Error
+/// when there is no such device.
 
-/// A SpaceMouse through the daemon spacenavd and libspnav; one in a process.
+/// Makes a pen of a SpaceMouse, through the daemon spacenavd and libspnav; a process can have one.
 std::unique_ptr<Device> make_spacemouse(const RateControlSettings& settings = {});
-/// The first gamepad that SDL2 finds. Left stick: right and away; triggers: down (right one) and up; right stick: turn
-/// about the vertical and tilt; shoulder buttons: roll.
+/// Makes a pen of the first gamepad that SDL2 finds. Left stick: right and away; triggers: down (right one) and up;
+/// right stick: turn about the vertical and tilt; shoulder buttons: roll.
 std::unique_ptr<Device> make_gamepad(const RateControlSettings& settings = {});
 
 }  // namespace tegotae

@@ -7,13 +7,13 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Where somebody (a mouse, a test) leads the hand of a simulated pen. One thread leads, the servo's looks; neither
-/// waits for the other.
+/// The pose to which a mouse or a test leads the hand of a simulated pen. One thread sets it, the servo's thread reads
+/// it, and neither waits for the other.
 class InputGuide {
  public:
-  /// The hand shall carry the held part's file frame to `hand`, as fast as a hand can.
+  /// Makes the hand carry the held part's file frame to `hand`, as fast as a hand can.
   void lead(const Pose& hand) noexcept;
-  /// Where the hand is led; false, and `hand` untouched, as long as nobody has led it.
+  /// Reads into `hand` where the hand is led. Returns false, and leaves `hand` unchanged, before the first lead().
   bool target(Pose& hand) const noexcept;
 
  private:

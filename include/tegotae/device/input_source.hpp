@@ -11,17 +11,17 @@ struct HandTarget {
   Twist velocity;  ///< of the file frame (`v` of its origin), world
 };
 
-/// What moves the hand that holds a simulated pen: a script, or a model of an operator.
+/// Source of the motion of the hand that holds a simulated pen: a script or a model of an operator.
 class InputSource {
  public:
   virtual ~InputSource() = default;
 
-  /// The time at which it begins, s.
+  /// Returns the time at which the motion begins, s.
   virtual double begin() const noexcept = 0;
-  /// Where the hand is then, at rest.
+  /// Returns where the hand rests at that time.
   virtual Pose start() const noexcept = 0;
-  /// What the hand wants at `t` (s). `pen` is where the pen is, the file frame's pose: what the hand itself feels of
-  /// it. Asked with times that never decrease. Never allocates or throws.
+  /// Returns what the hand wants at `t` (s). `pen` is the pen's pose, as that of the file frame: what the hand itself
+  /// feels of it. Calls come with times that never decrease. Never allocates or throws.
   virtual HandTarget target(double t, const Pose& pen) noexcept = 0;
 };
 

@@ -5,14 +5,14 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// The most that is rendered. The defaults are the peak figures of a PHANTOM Premium 1.5/6DOF.
+/// Upper bounds of a rendered wrench. The defaults are the peak figures of a PHANTOM Premium 1.5/6DOF.
 struct WrenchLimits {
   double force = 8.5;     ///< N
   double torque = 0.188;  ///< N·m
 };
 
-/// `wrench` scaled down as a whole, so that neither its force nor its torque exceeds its limit: the direction of both
-/// and their ratio stay. Zero when an entry is not finite.
+/// Returns `wrench` scaled down as a whole, so that neither its force nor its torque exceeds its limit; the directions
+/// of both and their ratio stay. Returns zero when an entry is not finite.
 Wrench saturated(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
 }  // namespace tegotae

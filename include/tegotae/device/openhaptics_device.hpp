@@ -8,28 +8,30 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// The device's axes (right, up, toward the user) as those of a world whose z points up and y away from the user.
+/// Returns the rotation from the device's axes (right, up, toward the user) to those of a world whose z points up and y
+/// away from the user.
 Quat desktop_axes();
 
-/// Which device of the vendor, and how it stands.
+/// Which of the vendor's devices to use, and how it stands.
 struct OpenHapticsSettings {
   std::string library = "libHD.so";  ///< of the vendor's runtime; loaded by start()
   std::string device;                ///< its name in the vendor's set-up; empty: the default device
   Quat axes = desktop_axes();        ///< from the device's axes to the world's
 };
 
-/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, found at run time. Its
+/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, which is loaded at run time. Its
 /// reference point is the gimbal, the origin of the pen's frame.
 ///
-/// The vendor's scheduler calls back at its own rate (1 kHz); read() and write() meet it in mailboxes and never wait.
-/// A command that is older than 20 ms is not rendered, and after an error of the device nothing is for half a second.
+/// The vendor's scheduler calls back at its own rate (1 kHz). read() and write() exchange data with it through
+/// mailboxes and never wait. A command that is older than 20 ms is not rendered. After an error of the device no force
+/// is rendered for half a second.
 class OpenHapticsDevice final : public Device {
  public:
-  /// Nothing is loaded or connected before start().
+  /// Loads and connects nothing yet; start() does.
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings = {});
   ~OpenHapticsDevice() override;  ///< stops
 
-  /// What the vendor's library tells of the device; the defaults before start().
+  /// Returns what the vendor's library reports of the device; the defaults before start().
   DeviceInfo info() const override;
   /// Throws Error when the library or a function of it is missing, or when the device cannot be used.
   void start() override;

@@ -18,14 +18,15 @@ class StylusScript {
   };
 
   /// Throws Error when `keys` is empty, a value is not finite, a quaternion is zero, the times do not increase, or the
-  /// way from one key to the next is faster than 1e12 m/s (the message counts keys from 1). Quaternions are normalized.
+  /// path from one key to the next is faster than 1e12 m/s (the message counts keys from 1). Normalizes the
+  /// quaternions.
   explicit StylusScript(std::vector<Key> keys);
 
-  /// Between two keys the position of the file frame goes linearly and the rotation at a constant rate on the shorter
-  /// way (slerp); before the first and after the last key it rests there.
+  /// Returns the pose at `t` (s). Between two keys the position of the file frame moves linearly, and the rotation at a
+  /// constant rate along the shorter arc (slerp). Before the first and after the last key the file frame rests there.
   Pose pose(double t) const noexcept;
-  /// The velocity of the file frame at `t` (`v` of its origin); at a key that of the interval that begins there, zero
-  /// outside.
+  /// Returns the velocity of the file frame at `t` (`v` is that of its origin). At a key it is the velocity of the
+  /// interval that begins there. Outside the keys it is zero.
   Twist velocity(double t) const noexcept;
 
   double begin() const noexcept { return keys_.front().t; }  ///< s

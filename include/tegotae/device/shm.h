@@ -1,23 +1,25 @@
 /** @file
  * Shared-memory protocol between a haptic device (with its servo loop) and an application (with its contact loop).
- * Plain C11, also valid C++17; no dependency but the C library and the __atomic builtins of GCC and Clang.
+ * Plain C11, also valid C++17; it depends only on the C library and the __atomic builtins of GCC and Clang.
  *
- * One segment a device: a POSIX shared-memory object of exactly sizeof(struct tegotae_shm_segment) bytes, owned by the
- * user and with permission 0600, in the machine's byte order. Whoever attaches checks owner, permission, size, magic
- * and version before use. While they live, the device's process and the application hold a write lock (F_OFD_SETLK) on
- * a byte of the object: a device that cannot lock its byte finds the name in use; one that can takes over what a dead
- * process left, by unlinking it and creating anew. Units: m, rad, s, N, N*m; times are CLOCK_MONOTONIC in ns;
- * quaternions are w, x, y, z and of unit length; all vectors are expressed in the world.
+ * There is one segment for each device: a POSIX shared-memory object of exactly sizeof(struct tegotae_shm_segment)
+ * bytes, owned by the user and with permission 0600, in the machine's byte order. A process that attaches checks owner,
+ * permission, size, magic and version before use. While they live, the device's process and the application each hold a
+ * write lock (F_OFD_SETLK) on a byte of the object. A device that cannot lock its byte finds the name in use. A device
+ * that can replaces what a dead process left: it unlinks the object and creates it anew. Units: m, rad, s, N, N*m;
+ * times are CLOCK_MONOTONIC in ns; quaternions are w, x, y, z and of unit length; all vectors are expressed in the
+ * world.
  *
- * Every slot has one writer and any number of readers, and is guarded by a sequence counter (a seqlock):
- *   0 = never written, odd = a write is going on, even = whole. Neither side ever waits for the other.
+ * Every slot has one writer and any number of readers. A sequence counter guards it (a seqlock): 0 = never written, odd
+ * = being written, even = complete. Neither side ever waits for the other.
  *
  * Memory order. The writer makes the counter odd, stores the payload word by word with release, and stores the even
  * counter with release. The reader loads the counter with acquire, the words with acquire, and the counter again.
  *  - Not older than announced: an even value read first synchronizes with its store, so every word is at least as new.
  *  - Not newer: if any word comes from a later write, its acquire load synchronizes with that word's release store,
- *    before which the counter had been made odd; the second load of the counter must then see that or a later value,
- *    which differs from the first, and the read is rejected.
+ *    before which the counter had been made odd. The second load of the counter must then see that or a later value,
+ *    which differs from the first, and the reader rejects the read.
+ *
  * All shared accesses are atomic, so there is no data race in the sense of the language, and no fence is needed. */
 #pragma once
 
@@ -26,7 +28,7 @@
 #include <string.h>
 
 /** @def TEGOTAE_SHM_ALIGN
- * On a cache line of its own, so that one slot's writer does not slow down another's readers. */
+ * Gives a member a cache line of its own, so that one slot's writer does not slow down another's readers. */
 /** @def TEGOTAE_SHM_ASSERT
  * Fails to compile, with `text`, unless `condition` holds. */
 #ifdef __cplusplus
@@ -42,8 +44,8 @@
 /** Changes with every change of the layout or of a field's meaning. */
 #define TEGOTAE_SHM_VERSION UINT32_C(5)
 
-/** Bytes of the object that are locked, by the device's process and by the application: the kernel ends a lock of an
- * open file description with the process that holds it, so the lock is the proof that it lives. */
+/** Bytes of the object that the device's process and the application lock. The kernel ends a lock of an open file
+ * description with the process that holds it, so the lock proves that the process lives. */
 enum { TEGOTAE_SHM_LOCK_DEVICE = 0, TEGOTAE_SHM_LOCK_APPLICATION = 1 };
 
 /** tegotae_shm_device.status */
@@ -62,36 +64,37 @@ enum {
   TEGOTAE_SHM_REASON_SOFTWARE = 4,        /**< no application asks for force */
   TEGOTAE_SHM_REASON_DISCONNECTED = 5,    /**< the device does not answer */
   TEGOTAE_SHM_REASON_DEAD_MAN = 6,        /**< the dead-man switch is released */
-  TEGOTAE_SHM_REASON_NOT_FINITE = 7,      /**< a pose, velocity or setting is not finite or no number that can be */
+  TEGOTAE_SHM_REASON_NOT_FINITE = 7,      /**< a pose, velocity or setting is not finite, or impossible */
   TEGOTAE_SHM_REASON_WORKSPACE = 8,       /**< the pen left its workspace */
-  TEGOTAE_SHM_REASON_ENERGY = 9,          /**< the coupling gave the hand more energy than it may: unstable */
+  TEGOTAE_SHM_REASON_ENERGY = 9,          /**< the coupling gave the hand more energy than allowed: unstable */
   TEGOTAE_SHM_REASON_THERMAL = 10,        /**< the device's motors are too warm */
   TEGOTAE_SHM_REASON_ENGAGE = 11,         /**< waits until the wanted force is small, then ramps in */
   TEGOTAE_SHM_REASON_CLUTCHED = 12,       /**< the pen is clutched and moves without the part */
-  TEGOTAE_SHM_REASON_SILENT = 13,         /**< the pen has had no new sample for too long */
+  TEGOTAE_SHM_REASON_SILENT = 13,         /**< the pen has sent no new sample for too long */
   TEGOTAE_SHM_REASON_DEVICE_FAULT = 14,   /**< the device reports a fault */
-  TEGOTAE_SHM_REASON_FORCE_EXCEEDED = 15, /**< the device says that more was asked of it than it may render */
+  TEGOTAE_SHM_REASON_FORCE_EXCEEDED = 15, /**< the device reports a request above what it may render */
   TEGOTAE_SHM_REASON_NO_FORCE = 16        /**< the device is an input only and renders no force */
 };
-/** Room for reasons in tegotae_shm_statistics.force_off: those above and more to come. */
+/** Capacity for reasons in tegotae_shm_statistics.force_off: those above and later ones. */
 #define TEGOTAE_SHM_REASONS 24
 
 /** tegotae_shm_device.flags: what the safety chain does to a force that is on */
 enum {
-  TEGOTAE_SHM_FLAG_SATURATED = 1,  /**< cut to the limits */
-  TEGOTAE_SHM_FLAG_SLEW = 2,       /**< changes as fast as it may, and lags what is wanted */
+  TEGOTAE_SHM_FLAG_SATURATED = 1,  /**< scaled down to the limits */
+  TEGOTAE_SHM_FLAG_SLEW = 2,       /**< changes as fast as allowed, and lags the wanted force */
   TEGOTAE_SHM_FLAG_RAMP = 4,       /**< ramps in after it was enabled */
-  TEGOTAE_SHM_FLAG_THERMAL = 8,    /**< scaled down to what the motors stand for long */
+  TEGOTAE_SHM_FLAG_THERMAL = 8,    /**< scaled down to what the motors can sustain */
   TEGOTAE_SHM_FLAG_WORKSPACE = 16, /**< fades at the border of the workspace */
   TEGOTAE_SHM_FLAG_DAMPED = 32,    /**< the passivity controller takes energy out */
-  TEGOTAE_SHM_FLAG_LOCAL = 64      /**< the part's pose was brought up to date on the contact planes */
+  TEGOTAE_SHM_FLAG_LOCAL = 64      /**< the servo updated the part's pose on the contact planes */
 };
 
-/** tegotae_shm_application.clutch and tegotae_shm_device.clutch: what of the pen's motion the part does not follow */
+/** tegotae_shm_application.clutch and tegotae_shm_device.clutch: which part of the pen's motion the held part does not
+ * follow */
 enum {
   TEGOTAE_SHM_CLUTCH_NONE = 0,        /**< it follows all of it */
   TEGOTAE_SHM_CLUTCH_TRANSLATION = 1, /**< turns with the pen, stays in its place */
-  TEGOTAE_SHM_CLUTCH_ALL = 2          /**< stays as it is */
+  TEGOTAE_SHM_CLUTCH_ALL = 2          /**< does not move */
 };
 
 /** tegotae_shm_statistics.realtime: what the system granted to the servo's thread */
@@ -104,11 +107,12 @@ enum {
 
 /** Bytes of tegotae_shm_device.name. */
 #define TEGOTAE_SHM_NAME 32
-/** Most contact planes in tegotae_shm_application.planes: a free body has six degrees of freedom. */
+/** Largest number of contact planes in tegotae_shm_application.planes: a free body has six degrees of freedom. */
 #define TEGOTAE_SHM_PLANES 6
 
-/** Written by the device's side, once a servo tick. The pen moves in the device's own space: meters, placed so that its
- * axes are those of the world. The mapping (scale, clutch, home) makes of it Y, where the pen wants the held part. */
+/** The device's side writes this once a servo tick. The pen moves in the device's own space, in meters; the axes of
+ * that space are those of the world. The mapping (scale, clutch, home) turns the pen's pose into Y, where the pen wants
+ * the held part. */
 struct tegotae_shm_device {
   int64_t heartbeat_ns;             /**< time of the servo tick */
   uint64_t tick;                    /**< number of the servo tick, from 0 */
@@ -131,41 +135,41 @@ struct tegotae_shm_device {
   double raw_orientation[4];        /**< of the same */
   double scale;                     /**< meters of the world for a meter of the pen */
   uint32_t clutch;                  /**< TEGOTAE_SHM_CLUTCH_...: by the application or by a button */
-  uint32_t home_counter;            /**< the application's last home command that was obeyed */
-  double force_limit;               /**< N, the most that is rendered */
-  double torque_limit;              /**< N*m, the most that is rendered */
-  double continuous_force;          /**< N, what the motors stand for long; 0: not limited */
+  uint32_t home_counter;            /**< the application's last home command that the servo executed */
+  double force_limit;               /**< N, upper bound of the rendered force */
+  double torque_limit;              /**< N*m, upper bound of the rendered torque */
+  double continuous_force;          /**< N, which the motors can sustain; 0: unbounded */
   double stiffness_limit;           /**< N/m, the stiffest passive coupling of this device and rate; 0: not known */
   double torsional_stiffness_limit; /**< N*m/rad, the same */
   double thermal_load;              /**< running RMS of the force over continuous_force, 1: all that is allowed; or 0 */
   double energy;                    /**< J that the hand has put into the coupling, less what it got back */
-  int64_t session;                  /**< of the application that the servo listens to; 0: none yet */
+  int64_t attachment;               /**< that of the application that the servo serves; 0: none yet */
 };
 
-/** What holds the part back: the point `point` of it may move against `normal` by `room` and no farther. */
+/** A constraint that holds the part back: its point `point` may move against `normal` by at most `clearance`. */
 struct tegotae_shm_plane {
   double normal[3]; /**< unit, out of the obstacle, world */
   double point[3];  /**< of the held part when it is at tegotae_shm_application.position, world, m */
-  double room;      /**< m; below 0: the point should move out by so much */
-  double mu;        /**< coefficient of friction while the point is held there, 0 to 10 */
+  double clearance; /**< m; negative: the point should move out by this much */
+  double mu;        /**< coefficient of friction while the plane holds the point, 0 to 10 */
 };
 
-/** Written by the application, once a tick of its contact loop. */
+/** The application writes this once a tick of its contact loop. */
 struct tegotae_shm_application {
   int64_t heartbeat_ns;     /**< time of writing */
   uint64_t tick;            /**< number of the contact loop's tick */
   uint64_t device_sequence; /**< the pen's sample that this tick answered */
-  int64_t session;          /**< when this application attached, monotonic ns: another value is another application */
+  int64_t attachment;       /**< when this application attached, monotonic ns: another value is another application */
   uint32_t touching;        /**< nonzero: at least one contact; otherwise the wrench is the weight */
-  uint32_t enable;          /**< nonzero: force is asked for */
-  uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: what the part shall not follow now */
-  uint32_t home_counter;    /**< a new value other than 0: Y shall jump to the home pose; begins at 0 in each session */
-  double position[3];       /**< of the held part's file frame (the proxy X) */
-  double orientation[4];    /**< of the same */
-  double velocity[3];       /**< of the held part's center of mass */
+  uint32_t enable;          /**< nonzero: the application asks for force */
+  uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: what the part does not follow now */
+  uint32_t home_counter; /**< a new value other than 0 makes Y jump to the home pose; begins at 0 in each attachment */
+  double position[3];    /**< of the held part's file frame (the proxy X) */
+  double orientation[4]; /**< of the same */
+  double velocity[3];    /**< of the held part's center of mass */
   double angular_velocity[3]; /**< of the same */
   double center[3];           /**< center of mass of the held part, in its file frame */
-  double stiffness;           /**< N/m, as the hand feels it whatever the scale */
+  double stiffness;           /**< N/m, which the hand feels at any scale */
   double damping;             /**< N*s/m */
   double torsional_stiffness; /**< N*m/rad */
   double torsional_damping;   /**< N*m*s/rad */
@@ -175,21 +179,21 @@ struct tegotae_shm_application {
   double weight[3];           /**< N, of the held part, on the pen at the center of mass; 0: not felt */
   double pen_position[3];     /**< Y that this tick answered */
   double pen_orientation[4];  /**< of the same */
-  uint32_t plane_count;       /**< contact planes that hold, up to TEGOTAE_SHM_PLANES; 0: X stays until the next tick */
+  uint32_t plane_count;       /**< number of valid planes, up to TEGOTAE_SHM_PLANES; 0: X stays until the next tick */
   uint32_t reserved;          /**< 0 */
   struct tegotae_shm_plane planes[TEGOTAE_SHM_PLANES]; /**< the first plane_count of them */
 };
 
-/** Written by the servo a few times a second. Times in microseconds; lateness is wake-up minus schedule. */
+/** The servo writes this a few times a second. Times are in microseconds; lateness is wake-up minus schedule. */
 struct tegotae_shm_statistics {
-  uint64_t ticks;                          /**< made since the servo was made */
+  uint64_t ticks;                          /**< ticks since the servo was made */
   uint64_t missed;                         /**< periods of the schedule that had no tick */
   double set_rate_hz;                      /**< of the schedule */
   double rate_hz;                          /**< achieved, mean */
   double late_us[4];                       /**< p50, p99, p99.9, maximum */
   double compute_us[4];                    /**< the servo's own work in a tick: p50, p99, p99.9, maximum */
   uint32_t realtime;                       /**< TEGOTAE_SHM_REALTIME_..., added */
-  int32_t cpu;                             /**< that the thread is bound to; -1: none */
+  int32_t cpu;                             /**< CPU to which the thread is bound; -1: none */
   uint64_t force_off[TEGOTAE_SHM_REASONS]; /**< by reason: how often the force went off, or stayed off for it */
   double recent_late_us;                   /**< the largest lateness since the statistics before these */
 };
@@ -204,7 +208,7 @@ struct tegotae_shm_segment {
   uint32_t size;        /**< bytes of the whole segment */
   uint64_t owner_pid;   /**< the process that created it */
   int64_t created_ns;   /**< when */
-  uint64_t owner_start; /**< when that process started, so that a process id used again is told apart: clock ticks since
+  uint64_t owner_start; /**< when that process started, to tell a reused process id apart: clock ticks since
                            boot (field 22 of /proc/PID/stat); 0: not known */
 
   TEGOTAE_SHM_ALIGN uint64_t device_counter;              /**< sequence counter of the slot that follows */
@@ -225,7 +229,7 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, position) == 88, "layout 
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, force) == 192, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, raw_position) == 240, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, scale) == 296, "layout of tegotae_shm_device");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, session) == 368, "layout of tegotae_shm_device");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, attachment) == 368, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_plane) == 64, "layout of tegotae_shm_plane");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 744, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, touching) == 32, "layout of tegotae_shm_application");
@@ -239,8 +243,8 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, application_counter) == 
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1216, "layout of tegotae_shm_segment");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1536, "layout of tegotae_shm_segment");
 
-/** Attempts of a read before it gives up. A write takes well under a microsecond; a reader that still fails has met a
- * writer that was preempted or killed in the middle, and goes on with what it read last. */
+/** Attempts of a read before it gives up. A write takes well under a microsecond. A reader that still fails has met a
+ * writer that was preempted or killed in the middle, and continues with what it read last. */
 #define TEGOTAE_SHM_READ_ATTEMPTS 64
 
 /** Writes `bytes` (a multiple of 8) of `payload` into a slot. Only the slot's one writer may call it. */
@@ -257,8 +261,8 @@ static inline void tegotae_shm_write(uint64_t* counter, uint64_t* slot, const vo
   __atomic_store_n(counter, busy + 1, __ATOMIC_RELEASE);
 }
 
-/** Reads a slot into `payload`. Returns 1 when `payload` holds one whole write, 0 when nothing was ever written or the
- * writer is stuck in a write; `payload` is then undefined. */
+/** Reads a slot into `payload`. Returns 1 when `payload` holds one complete write. Returns 0 when the slot was never
+ * written or its writer is stuck in a write; `payload` is then undefined. */
 static inline int tegotae_shm_read(const uint64_t* counter, const uint64_t* slot, void* payload, size_t bytes) {
   for (int attempt = 0; attempt < TEGOTAE_SHM_READ_ATTEMPTS; ++attempt) {
     const uint64_t before = __atomic_load_n(counter, __ATOMIC_ACQUIRE);

@@ -12,8 +12,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// The hand that holds the pen: springs and dampers from the script's pose to the pen's, and the effective mass of the
-/// hand, which moves with the pen. The defaults are a relaxed pen grip, near critical damping.
+/// The hand that holds the pen. Springs and dampers pull the pen to the script's pose, and the effective mass of the
+/// hand moves with the pen. The defaults are a relaxed pen grip, near critical damping.
 struct HandSettings {
   double stiffness = 400.0;          ///< N/m
   double damping = 24.0;             ///< N·s/m, on the difference to the script's velocity
@@ -23,36 +23,37 @@ struct HandSettings {
   double inertia = 2e-4;             ///< kg·m², about the held part's center of mass, any axis
 };
 
-/// A PHANTOM Premium 1.5/6DOF-like pen. Apparent mass, friction, force limits and position resolution are the vendor's;
-/// the rotational inertia and resolution and the velocity filter are assumed.
+/// Settings of a pen like the PHANTOM Premium 1.5/6DOF. Apparent mass, friction, force limits and position resolution
+/// are the vendor's figures; the rotational inertia and resolution and the velocity filter are assumed.
 struct SimulatedDeviceSettings {
-  HandSettings hand;                            ///< that holds it
+  HandSettings hand;                            ///< the hand that holds it
   double mass = 0.075;                          ///< apparent, kg
   Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
   double friction = 0.04;                       ///< Coulomb, N
-  WrenchLimits limits;                          ///< of what is rendered, whatever is asked for
-  double continuous_force = 1.4;                ///< what the motors stand for long, N; 0: not limited
+  WrenchLimits limits;                          ///< bounds of the rendered wrench, whatever the application asks for
+  double continuous_force = 1.4;                ///< N, which the motors can sustain; 0: unbounded
   double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
   double rotation_resolution = 1e-4;            ///< rad; 0 for none
-  double velocity_cutoff_hz = 50.0;             ///< of the low-pass on what the steps of the pose tell
+  double velocity_cutoff_hz = 50.0;  ///< of the low-pass filter on the velocity that follows from the steps of the pose
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
-  bool wait_for_application = false;  ///< on the wall clock: the hand waits at the script's first pose for one
+  /// On the wall clock: the hand waits at the script's first pose until an application attaches.
+  bool wait_for_application = false;
 };
 
-/// What a SimulatedDevice with these settings says of itself.
+/// Returns DeviceInfo of a SimulatedDevice with these settings.
 DeviceInfo device_info(const SimulatedDeviceSettings& settings);
 
-/// A pen without hardware: a rigid body pushed by a hand, which follows a script or an operator's intent, and by the
-/// rendered wrench. Same settings, script and calls give the same bits.
+/// A pen without hardware: a rigid body that a hand and the rendered wrench push. The hand follows a script or an
+/// operator's intent. The same settings, script and calls give the same bits.
 class SimulatedDevice final : public Device {
  public:
-  /// At rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
+  /// Starts at rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
-  /// At rest where `hand` begins. Keeps a reference to it, which must outlive the device.
+  /// Starts at rest where `hand` begins. Keeps a reference to it, which must outlive the device.
   SimulatedDevice(const SimulatedDeviceSettings& settings, InputSource& hand, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
-  /// Its damping is the hand's, which it has for good.
+  /// Returns its properties. The damping is the hand's, because the hand never lets go.
   DeviceInfo info() const override;
   void start() override;
   void stop() override;
@@ -60,19 +61,21 @@ class SimulatedDevice final : public Device {
   void write(const Wrench& wrench) noexcept override;
   DeviceStatus status() const noexcept override;
   ForceOff reason() const noexcept override;
-  Vec3 reference_point() const noexcept override;                       ///< the held part's center of mass
-  void set_held_center(const Vec3& center) noexcept override;           ///< keeps pose and motion
-  void set_tracking_error(const Displacement& lead) noexcept override;  ///< an application is there
-  void use_wall_clock(bool on) noexcept override;                       ///< sets SimulatedDeviceSettings::wall_clock
+  Vec3 reference_point() const noexcept override;              ///< the held part's center of mass
+  void set_held_center(const Vec3& center) noexcept override;  ///< pose and motion stay
+  void set_tracking_error(
+      const Displacement& lead) noexcept override;  ///< a call shows that an application is attached
+  void use_wall_clock(bool on) noexcept override;   ///< sets SimulatedDeviceSettings::wall_clock
 
-  /// From when `guide` first leads, the hand goes where it leads and no longer follows the script. Call before start();
-  /// keeps a reference.
+  /// Makes the hand follow `guide` from its first InputGuide::lead() on, and no longer the script. Call it before
+  /// start(); keeps a reference.
   void follow(const InputGuide& guide) noexcept;
-  /// Moves on by `dt` seconds (rounded to 1 ns) of virtual time. Before start() too: the hand is there.
+  /// Advances by `dt` seconds (rounded to 1 ns) of virtual time. It does so before start() too, because the hand is
+  /// there.
   void advance(double dt) noexcept override;
-  /// The hand's time, s: begin of the script plus the time advanced. May be called from any thread.
+  /// Returns the hand's time, s: the begin of the script plus the time advanced. Any thread may call it.
   double script_time() const noexcept;
-  /// The exact pose and velocity (v of the center of mass), before resolution and filter.
+  /// Return the exact pose and velocity (v of the center of mass), before resolution and filter.
   Pose true_pose() const noexcept;
   Twist true_velocity() const noexcept;  ///< m/s and rad/s, world
 

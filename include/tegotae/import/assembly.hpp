@@ -14,47 +14,47 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// A leaf of an assembly: one placed instance of a shape.
+/// Leaf of an assembly: one placed instance of a shape.
 struct AssemblyPart {
   std::string name;               ///< UTF-8; unique in the assembly
-  std::vector<std::string> path;  ///< the groups that it is in, the outermost first
+  std::vector<std::string> path;  ///< the groups that contain it, the outermost first
   std::size_t shape = 0;          ///< index into Assembly::shapes
   Pose pose;                      ///< X_WF of the shape's frame
-  std::optional<Color> color;     ///< as the file has it; none: it has none
+  std::optional<Color> color;     ///< color in the file; none: the file gives none
 };
 
-/// What a file of parts holds.
+/// Contents of a file of parts.
 struct Assembly {
   std::vector<std::shared_ptr<const TriangleMesh>> shapes;  ///< distinct; named for people, welded, m, own frame
   std::vector<AssemblyPart> parts;                          ///< leaves of the tree, in the order of the file
-  std::string unit;                ///< of the file, or the one its lengths were read in: "m", "mm", ...
-  std::vector<std::string> notes;  ///< what is not as the file says, a line each
+  std::string unit;                ///< unit of the file, or the one in which its lengths were read: "m", "mm", ...
+  std::vector<std::string> notes;  ///< deviations of the assembly from its file, one line each
 };
 
-/// How a file becomes an assembly.
+/// Options of read_assembly().
 struct AssemblyOptions {
-  /// Unit of the lengths of a file that does not say it (STL, OBJ, PLY, OFF), or that says m and is wrong (glTF).
-  /// None: m, and a file that is more than 20 m across is refused, for it is most often in mm.
+  /// Unit of a file that does not state its own (STL, OBJ, PLY, OFF), or that states m wrongly (glTF). None: m; then a
+  /// file more than 20 m across is refused, because it is most often in mm.
   std::optional<std::string> unit;
-  double chord = 5e-6;          ///< m: how far a facet of a STEP file's mating face may be from the face
+  double chord = 5e-6;          ///< m: largest distance of a facet from its face, for mating faces of a STEP file
   double coarse_chord = 50e-6;  ///< m: the same for other curved faces; less in a small part that is alone in its file
-  bool split = false;           ///< every connected piece of a surface is a part
-  /// Called now and then: what is done, and how many of how many are done (of 0: not known).
+  bool split = false;           ///< makes a part of every connected component of a surface
+  /// Called now and then with the present step, and with how much of how much of it is done (of 0: not known).
   std::function<void(const char* what, std::size_t done, std::size_t total)> progress;
 };
 
 /// Reads glTF/GLB, 3MF and STEP (AP203, AP214, AP242) with their tree, or STL, OBJ, PLY and OFF as one part.
 ///
-/// Every leaf of the tree is a part; instances share a shape, placed by a rotation and a translation (a scale or a
-/// mirroring is in the shape). A shape that lies farther from its origin than it is large gets an origin at the middle
-/// of its box, so that files of floats keep its digits. A STEP file's round holes are tessellated from outside and its
-/// round shafts from inside, so that no facet reaches into a clearance between them.
+/// Every leaf of the tree is a part. Instances share a shape; a rotation and a translation place each (a scale or a
+/// mirroring is in the shape). A shape that lies farther from its origin than it is large gets an origin at the center
+/// of its box, so that single-precision files keep its digits. The reader tessellates the round holes of a STEP file
+/// from outside and its round shafts from inside, so that no facet reaches into a clearance between them.
 ///
-/// Throws Error with the file and the reason when it cannot be used: also for STEP when the library was built without
-/// OpenCASCADE (see reads_step), and for a unit that is given for STEP or 3MF, which say theirs.
+/// Throws Error with the file and the reason when the file cannot be used: also for STEP when the library was built
+/// without OpenCASCADE (see reads_step), and when a unit is given for STEP or 3MF, which state their own.
 Assembly read_assembly(const std::string& path, const AssemblyOptions& options = {});
 
-/// Whether the library was built with OpenCASCADE.
+/// Returns whether the library was built with OpenCASCADE.
 bool reads_step();
 
 }  // namespace tegotae

@@ -20,134 +20,138 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What a tick met that its user may want to know.
+/// Events of a tick that its user may want to know.
 struct TickFlags {
-  bool timed_out = false;      ///< time or work ran out before the wanted motion was decided
+  bool timed_out = false;      ///< time or work ran out before the tick decided on the wanted motion
   bool overflow = false;       ///< a capacity was exceeded; the motion is still free
-  bool input_ignored = false;  ///< the pen's pose or the time was out of range (see HapticLoop::step) and left out
-  bool scene_changed = false;  ///< it is the first tick in a changed scene
-  bool part_changed = false;   ///< in which another part is held; the tick did not follow the pen
+  bool input_ignored = false;  ///< the tick ignored an invalid pen pose or time (see HapticLoop::step)
+  bool scene_changed = false;  ///< first tick in a changed scene
+  bool part_changed = false;   ///< that scene holds another part; the tick did not follow the pen
 };
 
-/// What one tick of the contact loop did.
+/// Report of one tick of the contact loop.
 struct TickReport {
-  std::vector<Pose> pieces;  ///< the free poses that X went through, in order; the last one is X (never empty)
-  ProxyState proxy;          ///< X, its velocity, and whether it touches
-  ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
-  /// What the contacts exert on the held part at the end of the tick: with `forces.lag` it is the wrench of the
-  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's newer
-  /// Y and the safety chain. Of resolvers that project (Resolver::projects, "qp"), and only while it touches; of others
-  /// none is available.
+  std::vector<Pose> substeps;  ///< free poses through which X went, in order; the last one is X (never empty)
+  ProxyState proxy;            ///< X, its velocity, and whether it touches
+  ContactPlanes planes;        ///< for a servo that updates X between two ticks
+  /// What the contacts exert on the held part at the end of the tick. Together with `forces.lag` it is the wrench of
+  /// the coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's
+  /// newer Y and the safety chain. Only resolvers that project (Resolver::projects, "qp") report forces, and only while
+  /// the part touches.
   ContactForces forces;
   int contacts = 0;         ///< feature pairs with a gap of at most contact_gap
-  double contact_gap = 0;   ///< what counts as contact in this tick, m
-  int constraints = 0;      ///< feature pairs that limited the motion, contacts included
+  double contact_gap = 0;   ///< largest gap of a contact in this tick, m
+  int constraints = 0;      ///< feature pairs that constrained the motion, contacts included
   double gap = 0;           ///< smallest known gap, m; +inf when nothing is within reach; negative where penetrating
-  double depth = 0;         ///< of the vertex that is deepest inside another part, m; only "penalty" penetrates
+  double depth = 0;         ///< depth of the vertex that is deepest inside another part, m; only "penalty" penetrates
   int candidate_parts = 0;  ///< fixed parts that passed the broad phase
   int resolves = 0;         ///< programs solved (penalty: Newton steps)
   int iterations = 0;       ///< pivots of all programs (impulse: impulses)
   ResolveStatus status = ResolveStatus::not_needed;  ///< of the last program or step of the tick
-  double fraction = 1;                               ///< part of the wanted motion made, in [0, 1]
-  TickFlags flags;                                   ///< what it met
-  int filtered = 0;  ///< pairs that overlapped at the start and have not come free: nothing keeps them apart
-  int shrunk = 0;    ///< pairs that touched at the start and have not come free (InitialContact::relief)
-  /// How far X is behind the pen after the tick: distance of the two centers of mass plus the held part's radius times
-  /// the angle between them, m.
+  double fraction = 1;                               ///< fraction of the wanted motion that the tick made, in [0, 1]
+  TickFlags flags;                                   ///< events of the tick
+  int filtered = 0;  ///< pairs that overlapped at the start and have not separated yet: nothing keeps them apart
+  int shrunk = 0;    ///< pairs that touched at the start and have not separated yet (InitialContact::inward_offset)
+  /// How far X lags the pen after the tick, m: the distance of the two centers of mass plus the held part's radius
+  /// times the angle between the two poses.
   double lag = 0;
-  LagReason lag_reason = LagReason::none;  ///< why
-  /// Ticks since the loop began in which X was held back without a contact that explains it: the lag was over
-  /// kMaxUnexplainedLag (scaled, see lag_bound) for a reason other than contact, and the part came less far than that
-  /// in the tick, as it had been in the kLagPatience ticks before without a break.
+  LagReason lag_reason = LagReason::none;  ///< its reason
+  /// Number of ticks in which something other than a contact held X back, since the loop began. Such a tick meets three
+  /// conditions: the lag is over kMaxUnexplainedLag (scaled, see lag_bound), its reason is neither `none` nor
+  /// `contact`, and the part moved no farther than that bound. The tick counts when each of the kLagPatience ticks
+  /// before it met them too.
   std::int64_t unexplained_lag_ticks = 0;
 };
 
-/// The weight of the held part (Scene::weight).
+/// Weight of the held part (Scene::weight).
 struct HeldWeight {
-  double mass = 0;            ///< kg, as given or by volume and density; 0: no weight is asked for
-  double share = 1;           ///< of mass × gravity that the hand carries: below 1 where it is more than `most`
+  double mass = 0;            ///< kg, as given or from volume and density; 0: the scene has no weight
+  double share = 1;           ///< fraction of mass × gravity that the hand carries (WeightSettings::max_force)
   Vec3 force = Vec3::Zero();  ///< N, world: share × mass × gravity
 };
 
-/// Lag (m) that needs a reason in contact, of a part with a radius of at least kLagRadius (m) about its center of mass;
-/// a smaller part's is smaller in proportion.
+/// Largest lag (m) that needs no contact to explain it, of a part with a radius of at least kLagRadius (m) about its
+/// center of mass. For a smaller part it is smaller in proportion.
 inline constexpr double kMaxUnexplainedLag = 3e-4;
-/// Radius (m) of a part from which on kMaxUnexplainedLag holds unscaled.
+/// Smallest radius (m) of a part for which kMaxUnexplainedLag is not scaled.
 inline constexpr double kLagRadius = 0.03;
-/// Ticks in a row for which a lag may be over that.
+/// Number of consecutive ticks for which a lag may exceed that.
 inline constexpr int kLagPatience = 20;
-/// The bound (m) for a part of `radius` (m) about its center of mass: 0.3 mm, or 1 % of the radius where that is less.
+/// Returns the bound (m) for a part of `radius` (m) about its center of mass: 0.3 mm, or 1 % of the radius where that
+/// is less.
 constexpr double lag_bound(double radius) {
   return kMaxUnexplainedLag * (radius < kLagRadius ? radius / kLagRadius : 1.0);
 }
 
-/// The contact loop: follows the pen with the held part so that it never intersects a fixed part, but for pairs that
-/// start() names.
+/// The contact loop. It makes the held part follow the pen, and keeps it from intersecting a fixed part, except for
+/// pairs that start() names.
 class HapticLoop {
  public:
-  /// Builds everything a tick needs. Throws Error when the scene cannot be held: not exactly one held part, a pose or
-  /// setting that cannot be used, an unknown resolver, or parts that overlap at the start (the message names the pair,
-  /// depth and place; see ContactSettings::initial_overlap). Where parts only touch, the held part may start a few
-  /// micrometers beside its pose in the scene: see start().
+  /// Builds everything that a tick needs. Throws Error when the loop cannot hold the scene: there is not exactly one
+  /// held part, a pose or setting cannot be used, a resolver is unknown, or parts overlap at the start (the message
+  /// names the pair, depth and place; see ContactSettings::initial_overlap). Where parts only touch, the held part may
+  /// start a few micrometers beside its pose in the scene: see start().
   explicit HapticLoop(const Scene& scene);
   ~HapticLoop();
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;
 
-  /// One tick: `Y` is where the pen wants the held part's file frame, `dt` the time since the last tick (s). Never
+  /// Runs one tick. `Y` is where the pen wants the held part's file frame, `dt` the time since the last tick (s). Never
   /// throws. The report is valid until the next call.
   ///
-  /// Taken are poses that are finite, of unit length (within 5e-4) and no farther than 10 km from the origin in any
-  /// coordinate; for another one the last pose that was taken stands in. Times are 0 (nothing has a velocity then) or
-  /// from a microsecond on; for another one 0 stands in. TickFlags::input_ignored tells both.
+  /// A valid pose is finite, of unit length (within 5e-4) and no farther than 10 km from the origin in any coordinate;
+  /// for another one the tick uses the last valid pose. A valid time is 0 (nothing has a velocity then) or at least a
+  /// microsecond; for another one the tick uses 0. TickFlags::input_ignored reports both.
   const TickReport& step(const Pose& Y, double dt) noexcept;
 
-  /// How much of the weight the hand carries from the next tick on, from 0 (as it begins) to 1. Whoever sets it lets it
-  /// grow over some 0.3 s once the force is on: the part sinks by weight / stiffness, and a force that jumped would be
-  /// waited out by the safety chain.
+  /// Sets the share of the weight that the hand carries from the next tick on, from 0 (initially) to 1. Raise it over
+  /// some 0.3 s once the force is on, because the part sinks by weight / stiffness and the safety chain waits until a
+  /// force that jumps is over.
   void carry(double share) noexcept;
 
-  /// Continues in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be
-  /// called from any thread while step() runs; it builds here what is new (parts that share a mesh with the scene so
-  /// far share its hierarchy), and step() goes over to it between two ticks, without waiting, allocating or freeing. A
-  /// later change replaces an earlier one that is not in force yet. Nothing of the old scene's contacts is kept.
+  /// Continues in another scene: parts are added, removed, hidden (left out), moved, or another one is held. Any thread
+  /// may call it while step() runs. The call builds what is new (parts that share a mesh with the present scene share
+  /// its hierarchy), and step() switches to it between two ticks, without waiting, allocating or freeing. A later
+  /// change replaces one that is still pending. The loop keeps nothing of the old scene's contacts.
   ///
-  /// `next` places the held part where it was lately (TickReport::proxy), and must be free of the others there. If it
-  /// has gone on since, the straight way from there to where it is must be free of what was added or moved: until it
-  /// is, the change waits and the old scene stays in force. A part that was not held before starts where `next` has it:
-  /// the first tick with it does not follow the pen, so that the pen can be brought there first (ContactLink::home).
+  /// `next` must place the held part at a recent pose of it (TickReport::proxy), free of the others there. If the part
+  /// has moved since, the straight path from there to its present pose must be free of what was added or moved. Until
+  /// it is, the change waits and the old scene stays in force. A part that was not held before starts at its pose in
+  /// `next`. The first tick with it does not follow the pen, so that the caller can re-reference the pen first
+  /// (ContactLink::home).
   ///
-  /// `ready` is told the change's number and how the held part starts in it, in this thread and before step() may go
-  /// over to it. Throws Error as the constructor does, and what `ready` throws; nothing changes then.
+  /// The call passes the change's number, and how the held part starts in it, to `ready`: in this thread, before step()
+  /// may switch. Throws Error as the constructor does, and what `ready` throws; then nothing changes.
   SceneChange change(const Scene& next,
                      const std::function<void(std::uint64_t number, const InitialContactReport& start)>& ready = {});
-  /// Number of the change that the last tick ran in, 0 before the first; from any thread.
+  /// Returns the number of the change in which the last tick ran, 0 before the first. Any thread may call it.
   std::uint64_t change_in_force() const noexcept;
 
-  /// Name of the part that is held in the scene in force; from any thread.
+  /// Returns the name of the part that the scene in force holds. Any thread may call it.
   std::string held() const;
 
-  /// Where the held part was after the last tick; from any thread, to draw it and for change().
+  /// Returns the pose of the held part after the last tick, to draw it and for change(). Any thread may call it.
   Pose latest() const noexcept;
 
-  /// Of the last step(); before the first one, of the start.
+  /// Returns the report of the last step(); before the first one, of the start.
   const TickReport& report() const;
-  /// What the held part touched or overlapped at the start, and what has become of it by the last tick.
+  /// Returns what the held part touched or overlapped at the start, and the state of these pairs after the last tick.
   const InitialContactReport& start() const;
-  /// The contacts of the held part at X, sorted by part and features: what is in contact (TickReport::contacts) or
-  /// carries force; of more than 1024 the nearest. Valid until the next call of step().
+  /// Returns the contacts of the held part at X, sorted by part and features: pairs that are in contact
+  /// (TickReport::contacts) or carry force; of more than 1024 the nearest ones. Valid until the next call of step().
   const std::vector<ContactPoint>& contacts() const;
-  /// Which of them began and which ended in the last tick, in the same order. Valid until the next call of step().
+  /// Returns which contacts began and which ended in the last tick, in the same order. Valid until the next call of
+  /// step().
   const std::vector<ContactEvent>& contact_events() const;
-  /// The nearest-feature pairs that limited the last tick's motion, as they are at X (at the pose before the last piece
-  /// when the tick was cut). Valid until the next call of step().
+  /// Returns the nearest-feature pairs that constrained the last tick's motion, as they are at X (when the tick timed
+  /// out: at the pose before the last sub-step). Valid until the next call of step().
   const std::vector<Contact>& constraints() const;
   const Vec3& center() const;                ///< center of mass of the held part, m, file frame
   double radius_of_gyration() const;         ///< of the held part about that center, the mean over three axes, m
-  const CouplingSettings& coupling() const;  ///< in use: give these to the servo (ContactLink); see Scene
-  const ContactSettings& contact() const;    ///< the settings in use, nothing left open
-  const HeldWeight& weight() const;          ///< of the held part, whatever of it is carried now
-  double lag_bound() const;                  ///< lag_bound() of the held part, m
+  const CouplingSettings& coupling() const;  ///< settings in use: give these to the servo (ContactLink); see Scene
+  const ContactSettings& contact() const;  ///< settings in use, with a value for everything that the scene leaves open
+  const HeldWeight& weight() const;        ///< of the held part, whatever share of it is carried now
+  double lag_bound() const;                ///< lag_bound() of the held part, m
 
  private:
   struct State;

@@ -6,24 +6,25 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// The two tangents of a contact: row · z is how far its point slides along each (m).
+/// The two tangents of a contact. row · z is how far its point slides along each (m).
 struct TangentRows {
-  Vec6 row[2];  ///< in the coordinates of the row of the normal, of two directions perpendicular to it and each other
+  /// In the coordinates of the normal's row; for two directions perpendicular to the normal and to each other.
+  Vec6 row[2];
 };
 
 /// Coulomb's law for one small motion z of a body that springs pull by `wanted`:
 ///   z = wanted + Σ N_iᵀ ν_i + T_iᵀ τ_i,   0 <= ν_i ⊥ N_i z - b_i >= 0,   |τ_i| <= μ_i ν_i,
-/// and where a contact slides τ_i = -μ_i ν_i T_i z / |T_i z|. Coordinates are those in which the springs' energy is
-/// half of the squared length of what is left of `wanted`; forces are in the same unit (m), times the stiffness in N.
+/// and where a contact slides τ_i = -μ_i ν_i T_i z / |T_i z|. In these coordinates the springs' energy is half of the
+/// squared length of what remains of `wanted`. Forces have the same unit (m); times the stiffness they are in N.
 struct FrictionProblem {
   const LowRankMatrix& normals;  ///< rows N_i
-  const double* bounds;          ///< b_i, m, at most 0: standing still is allowed
+  const double* bounds;          ///< b_i, m, at most 0, so that rest is allowed
   const TangentRows* tangents;   ///< T_i, one for each normal; read only where μ_i > 0
   const double* mu;              ///< μ_i >= 0, one for each normal
   Vec6 wanted;                   ///< the motion that the springs ask for, m
 };
 
-/// The force of one contact, in the unit of its FrictionProblem.
+/// Force of one contact, in the unit of its FrictionProblem.
 struct FrictionForce {
   int row = 0;                    ///< of the problem
   double normal = 0;              ///< ν > 0

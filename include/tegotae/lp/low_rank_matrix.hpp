@@ -8,31 +8,31 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Rows that one pricing step takes together; also the padding of every per-row array.
+/// Number of rows that one pricing step processes together. Every per-row array is padded to a multiple of it.
 inline constexpr int kRowLanes = 8;
 
-/// Eight rows of six, coefficient by coefficient, so that wide instructions work across rows.
+/// Eight rows of six numbers, stored coefficient by coefficient, so that wide instructions work across rows.
 struct alignas(64) RowBlock {
   double g[6][kRowLanes];  ///< coefficient, then row
 };
 
-/// Eight numbers, one a row.
+/// Eight numbers, one for each row.
 struct alignas(64) LaneBlock {
   double v[kRowLanes];  ///< by row
 };
 
-/// N×6 matrix G with a fixed capacity: the rows of G x >= d, in the metric in which the length of x counts. For a rigid
-/// body with contact Jacobian J and mass matrix M, G = J M^(-1/2) and x = M^(1/2) δ. Filling never allocates.
+/// N×6 matrix G of fixed capacity: the rows of G x >= d. The length of x counts in the metric of x: for a rigid body
+/// with contact Jacobian J and mass matrix M, G = J M^(-1/2) and x = M^(1/2) δ. Filling the matrix never allocates.
 class LowRankMatrix {
  public:
-  /// Empty, with room for `capacity` rows; the only call that allocates.
+  /// Makes an empty matrix for up to `capacity` rows. No other call allocates.
   explicit LowRankMatrix(int capacity)
       : capacity_(capacity), blocks_(static_cast<std::size_t>((capacity + kRowLanes - 1) / kRowLanes)) {}
 
-  /// Takes all rows out; the capacity stays.
+  /// Removes all rows; the capacity stays.
   void clear() noexcept { rows_ = 0; }
 
-  /// Appends the row `g`; false, and nothing happens, when the matrix is full.
+  /// Appends the row `g`. Returns false, and changes nothing, when the matrix is full.
   bool push_row(const Vec6& g) noexcept {
     if (rows_ == capacity_) {
       return false;
@@ -46,11 +46,11 @@ class LowRankMatrix {
   }
 
   int rows() const noexcept { return rows_; }          ///< N
-  int capacity() const noexcept { return capacity_; }  ///< the most that rows() can be
-  /// Rows by eights; what is beyond rows() in the last block is of no meaning.
+  int capacity() const noexcept { return capacity_; }  ///< largest possible rows()
+  /// Returns the rows in blocks of eight. Entries beyond rows() in the last block have no meaning.
   const RowBlock* blocks() const noexcept { return blocks_.data(); }
 
-  /// Row `i` of rows().
+  /// Returns row `i` of rows().
   Vec6 row(int i) const noexcept {
     const RowBlock& block = blocks_[static_cast<std::size_t>(i / kRowLanes)];
     Vec6 g;

@@ -7,22 +7,24 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What a surface is like, counted after welding (see load.hpp).
+/// Properties of a surface, counted after welding (see load.hpp).
 struct MeshReport {
   std::size_t vertices = 0;            ///< all; weld() drops those that no triangle uses
   std::size_t triangles = 0;           ///< all, degenerate and duplicate ones too
   std::size_t components = 0;          ///< sets of triangles joined over shared edges, collapsed ones left out
   std::size_t boundary_edges = 0;      ///< edges of one face
-  std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two that turn against each other
-  std::size_t degenerate_faces = 0;    ///< collapsed, or lower than 8 steps of single precision (normals not used)
-  std::size_t duplicate_faces = 0;     ///< the same three vertices as an earlier face, in any order; none collapsed
-  std::size_t inverted_shells = 0;     ///< closed meshes: components that look in where they should look out, or out
-  bool closed = false;                 ///< every edge joins exactly two faces that turn the same way
-  Vec3 box_min = Vec3::Zero();         ///< m, file frame
-  Vec3 box_max = Vec3::Zero();         ///< m, file frame
+  std::size_t non_manifold_edges = 0;  ///< edges of more than two faces, or of two faces with opposite orientation
+  /// Collapsed, or with a height below 8 steps of single precision (their normals are not used).
+  std::size_t degenerate_faces = 0;
+  std::size_t duplicate_faces = 0;  ///< the same three vertices as an earlier face, in any order; none collapsed
+  /// Closed meshes: components whose faces point inward where they should point outward, or the reverse.
+  std::size_t inverted_shells = 0;
+  bool closed = false;          ///< every edge joins exactly two faces with the same orientation
+  Vec3 box_min = Vec3::Zero();  ///< m, file frame
+  Vec3 box_max = Vec3::Zero();  ///< m, file frame
 };
 
-/// Looks at `mesh` as it is: weld it first (load_mesh does), or every edge is a boundary.
+/// Analyzes `mesh` unmodified. Weld it first (load_mesh does), or every edge is a boundary.
 MeshReport report(const TriangleMesh& mesh);
 
 }  // namespace tegotae

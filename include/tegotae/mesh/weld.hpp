@@ -5,8 +5,9 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Welds bit-equal vertices, then those within one step of single precision at the largest coordinate (3 nm at 25 mm),
-/// and drops unused ones. Face count and face order stay: a face whose corners became one vertex is still there.
+/// Returns `mesh` welded: merges bit-equal vertices, then those within one step of single precision at the largest
+/// coordinate (3 nm at 25 mm), and drops unused ones. Count and order of the faces stay; a face whose corners merged is
+/// still there.
 TriangleMesh weld(const TriangleMesh& mesh);
 
 }  // namespace tegotae

@@ -6,13 +6,13 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Folder in which hierarchies of large meshes are kept, so that a later start need not build them; empty (the
-/// default): nowhere. Call before threads that build loops start. A file in it is used only when it is whole and was
-/// made for the same mesh, bit for bit, by the same way of building; otherwise the hierarchy is built anew. A folder
-/// that cannot be written is no error.
+/// Sets the folder in which the library keeps the hierarchies of large meshes, so that a later start need not build
+/// them. An empty name (the default) disables the cache. Call it before starting threads that build loops. The library
+/// uses a file of the cache only when it is whole and was made for the same mesh, bit for bit, by the same method of
+/// building; otherwise it builds the hierarchy again. A folder that cannot be written is no error.
 void set_hierarchy_cache(const std::string& folder);
 
-/// $XDG_CACHE_HOME/tegotae, else ~/.cache/tegotae; empty when neither is known.
+/// Returns $XDG_CACHE_HOME/tegotae, else ~/.cache/tegotae; empty when neither is known.
 std::string default_cache_folder();
 
 }  // namespace tegotae

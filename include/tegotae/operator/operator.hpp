@@ -11,8 +11,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How an operator works. Where no source is named the figure is an assumption of ours, chosen so that the three
-/// profiles span what people do with a pen.
+/// How an operator works. A figure without a named source is an assumption of ours, chosen so that the three profiles
+/// span what people do with a pen.
 struct OperatorProfile {
   std::string name;   ///< "careful", "average", "hasty"
   HandSettings hand;  ///< mass, stiffness and damping of the grip
@@ -20,44 +20,45 @@ struct OperatorProfile {
   /// hands peaks at 0.0015 to 0.035 g (Arch. Neurol. 39, 1982, 97 subjects), which at 10 Hz is 4 to 90 µm.
   double tremor;
   double tremor_angle;  ///< rad
-  /// From seeing to correcting, s: 0.15 to 0.25 (Keele & Posner, J. Exp. Psychol. 77, 1968; Carlton 1981).
+  /// Delay from seeing to correcting, s: 0.15 to 0.25 (Keele & Posner, J. Exp. Psychol. 77, 1968; Carlton 1981).
   double visual_delay;
   double carry_speed;      ///< mean speed of carrying the part to the hole, m/s
   double insertion_speed;  ///< mean speed of pushing it in while nothing resists, m/s
-  double aim_error;        ///< standard deviation of where the tip is first brought to, each direction, m
-  double tilt_error;       ///< of how the part is first held, each direction, rad
-  double eye_error;        ///< of the offset that the eye sees, each direction, m
-  double eye_tilt_error;   ///< of the tilt that the eye sees, each direction, rad
+  double aim_error;        ///< standard deviation of the tip's first target, in each direction, m
+  double tilt_error;       ///< standard deviation of the part's first orientation, in each direction, rad
+  double eye_error;        ///< standard deviation of the offset that the eye sees, in each direction, m
+  double eye_tilt_error;   ///< standard deviation of the tilt that the eye sees, in each direction, rad
   double press;            ///< force with which the hand pushes against resistance, N
-  double patience;         ///< time without progress after which it wiggles, s
-  double wiggle;           ///< tilt of the first wiggle, rad; it grows from there
+  double patience;         ///< time without progress before the hand wiggles, s
+  double wiggle;           ///< tilt of the first wiggle, rad; later ones grow
 };
 
 /// The three profiles: "careful", "average", "hasty".
 const std::vector<OperatorProfile>& operator_profiles();
-/// Throws Error for an unknown name.
+/// Returns the profile of that name. Throws Error for an unknown one.
 const OperatorProfile& operator_profile(const std::string& name);
 
-/// What an operator is to do: bring the tip of the held part to a hole and push the part in along the hole's axis.
+/// Task of an operator: bring the tip of the held part to a hole, and push the part in along the hole's axis.
 struct InsertionTask {
   Pose start;                    ///< X_WF where the hand begins, at rest
-  Pose goal;                     ///< X_WF of the part when it is all the way in
+  Pose goal;                     ///< X_WF of the part when it is fully inserted
   Vec3 tip = Vec3::Zero();       ///< of the part, m, file frame
   Vec3 inward = -Vec3::UnitZ();  ///< unit vector along the hole, world
   double depth = 0;              ///< of the goal's tip below the surface that the hole is in, m
-  double hover = 4e-3;           ///< height over the surface from which the tip is brought down, m
-  Vec3 offset = Vec3::Zero();    ///< added to where the tip is first brought to, m, world, across `inward`
-  Vec3 tilt = Vec3::Zero();      ///< added to how the part is first held, rotation vector, rad, world
+  double hover = 4e-3;           ///< height over the surface from which the operator brings the tip down, m
+  Vec3 offset = Vec3::Zero();    ///< added to the tip's first target, m, world, across `inward`
+  Vec3 tilt = Vec3::Zero();      ///< added to the part's first orientation, rotation vector, rad, world
   bool own_errors = true;        ///< whether the profile's aim_error and tilt_error are added to those two
 };
 
-/// A model of a person at a simulated pen: carries the part over the hole on a minimum-jerk path, brings it down, sees
-/// offset and tilt late and not exactly and aims again about five times a second, feels how far the pen stays behind
-/// and pushes no harder than it means to, and when nothing goes on wiggles: small circles and tilts that grow while it
-/// straightens the part. With a tremor throughout. The same profile, task, seed and calls give the same bits.
+/// A model of a person at a simulated pen. The model carries the part over the hole on a minimum-jerk path and brings
+/// it down. It sees offset and tilt late and inexactly, and aims again about five times a second. It feels how far the
+/// pen lags and pushes no harder than it intends. When it makes no progress it wiggles: it moves in small circles and
+/// tilts that grow, while it straightens the part. Its hand trembles throughout. The same profile, task, seed and calls
+/// give the same bits.
 class Operator final : public InputSource {
  public:
-  /// Throws Error for a task or a profile that cannot be.
+  /// Throws Error for an impossible task or profile.
   Operator(const OperatorProfile& profile, const InsertionTask& task, std::uint64_t seed);
   ~Operator() override;
 
@@ -68,7 +69,7 @@ class Operator final : public InputSource {
   Pose start() const noexcept override;
   HandTarget target(double t, const Pose& pen) noexcept override;
 
-  /// Whether it is wiggling because nothing goes on.
+  /// Returns whether it wiggles because it makes no progress.
   bool stuck() const noexcept;
 
  private:

@@ -8,20 +8,20 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How contacts are resolved. qp and lp solve a problem over all contacts at once; impulse and penalty are baselines to
-/// compare with, loops of their own that solve none.
+/// Method that resolves contacts. qp and lp solve a program over all contacts at once. impulse and penalty are
+/// baselines for comparison; each is a loop of its own and solves no program.
 enum class ResolverKind : std::uint8_t {
   qp,       ///< least energy of the coupling's springs
   lp,       ///< the paper's linear program: least sum of contact forces
   impulse,  ///< collisions one at a time
-  penalty   ///< springs in proportion to penetration; the only one that lets parts interpenetrate
+  penalty   ///< springs in proportion to penetration; the only one in which parts interpenetrate
 };
 
-/// Their names in scene files, recordings and on command lines: "qp", "lp", "impulse", "penalty".
+/// Returns the names of the kinds in scene files, recordings and on command lines: "qp", "lp", "impulse", "penalty".
 const std::vector<std::string>& resolver_names();
-/// The name of `kind`.
+/// Returns the name of `kind`.
 const std::string& to_string(ResolverKind kind);
-/// The kind of that name. Throws Error for another name, with those that are known.
+/// Returns the kind of that name. For an unknown name it throws Error, which lists the known ones.
 ResolverKind resolver_kind(const std::string& name);
 
 }  // namespace tegotae

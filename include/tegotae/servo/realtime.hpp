@@ -9,7 +9,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// What to do when the system does not grant real-time scheduling.
 enum class RealtimeConfig {
   enforce,  ///< refuse to start, with the reason
-  ignore,   ///< run as well as it goes; RealtimeReport tells what is missing
+  ignore,   ///< run as well as possible; RealtimeReport names what is missing
 };
 
 /// What the system granted to the servo's thread.
@@ -17,15 +17,15 @@ struct RealtimeReport {
   bool fifo = false;           ///< SCHED_FIFO
   bool memory_locked = false;  ///< mlockall: no page of the process is swapped out
   bool timer_slack = false;    ///< wake-ups are not batched
-  int cpu = -1;                ///< that the thread is bound to; -1: none
-  std::string missing;         ///< what was refused and why, in one line; empty when all was granted
+  int cpu = -1;                ///< CPU to which the thread is bound; -1: none
+  std::string missing;         ///< what the system refused and why, in one line; empty when it granted everything
 };
 
-/// Asks for all of it for the calling thread (memory: for the process as it is now), and to bind it to `cpu` unless
-/// that is negative.
+/// Requests real time for the calling thread: SCHED_FIFO, a lock on the memory that the process has now, no timer
+/// slack. Binds the thread to `cpu` unless that is negative.
 RealtimeReport make_realtime(int cpu = -1);
-/// Gives back, once, what was granted to the process and not to the thread: the lock on memory, which goes when nobody
-/// else has asked for it.
+/// Releases, once, what was granted to the process and not to the thread: the lock on memory. The lock ends with its
+/// last user.
 void release_realtime(const RealtimeReport& granted) noexcept;
 
 }  // namespace tegotae

@@ -16,39 +16,40 @@ namespace tegotae TEGOTAE_EXPORT {
 /// How a servo runs.
 struct ServoSettings {
   double rate_hz = 1000.0;                           ///< up to 4000
-  RealtimeConfig realtime = RealtimeConfig::ignore;  ///< what start() does without real time
-  int cpu = -1;             ///< that the thread is bound to; negative: wherever the system puts it
-  SafetySettings safety;    ///< of the chain that every wrench passes
-  MappingSettings mapping;  ///< buttons
-  bool local_model = true;  ///< bring the proxy up to date on the contact planes between two ticks of the contact loop
+  RealtimeConfig realtime = RealtimeConfig::ignore;  ///< what start() does when the system refuses real time
+  int cpu = -1;                                      ///< CPU to which the thread is bound; negative: the system chooses
+  SafetySettings safety;                             ///< of the safety chain
+  MappingSettings mapping;                           ///< buttons
+  bool local_model = true;  ///< update the proxy on the contact planes between two ticks of the contact loop
 };
 
-/// The fast loop: pen in, mapping, coupling to the newest proxy, safety chain, wrench out, pen state to the
-/// application. Either as a thread of its own (start, stop) or driven by the caller (tick), e.g. in virtual time.
+/// The fast loop. A tick reads the pen, maps it, couples it to the newest proxy, passes the wrench through the safety
+/// chain to the device, and publishes the pen's state to the application. The servo runs in a thread of its own (start,
+/// stop), or the caller drives it (tick), e.g. in virtual time.
 class Servo {
  public:
-  /// Keeps references to both; they must outlive the servo. What the device is (Device::info) is asked here: a device
-  /// that learns it when it starts must have been started. Throws Error for a setting out of range.
+  /// Keeps references to both; they must outlive the servo. Reads Device::info() here, so a device that learns its
+  /// properties when it starts must have been started. Throws Error for a setting out of range.
   Servo(Device& device, Channel& channel, const ServoSettings& settings = {});
   ~Servo();  ///< stops
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
-  /// Runs tick() in a thread at the set rate on an absolute schedule of the monotonic clock. The device must have been
-  /// started. Throws Error when real time is enforced and not granted.
+  /// Runs tick() in a thread of its own at the set rate, on an absolute schedule of the monotonic clock. The device
+  /// must have been started. Throws Error when the servo already runs, and when real time is enforced and not granted.
   void start();
-  /// Ends the thread, after which the force is zero. No effect when it does not run.
+  /// Ends the thread; afterwards the force is zero. No effect when the thread does not run.
   void stop() noexcept;
 
-  /// One tick at the time `now_ns`; heartbeats are compared with it, so give ContactLink the same clock. Never
-  /// allocates, waits, locks or throws. Not while the thread runs.
+  /// Runs one tick at the time `now_ns`. The servo compares heartbeats with this time, so give ContactLink the same
+  /// clock. Never allocates, waits, locks or throws. Do not call it while the thread runs.
   void tick(std::int64_t now_ns) noexcept;
 
-  /// What the system granted to the thread of the last start().
+  /// Returns what the system granted to the thread of the last start().
   const RealtimeReport& realtime() const noexcept;
-  /// While the thread runs: as of at most a tenth of a second ago.
+  /// Returns the statistics. While the thread runs they are at most a tenth of a second old.
   ServoStatistics statistics() const noexcept;
-  /// How late the thread's newest tick woke up, ns.
+  /// Returns how late the thread's newest tick woke up, ns.
   std::int64_t newest_late_ns() const noexcept;
 
  private:

@@ -19,48 +19,51 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What a running session shows to another thread. Every value is the newest one; together they are no snapshot.
+/// Progress of a run, for another thread to read. Each value is the newest one; together they are no snapshot.
 struct RunProgress {
   std::atomic<double> t{0};                            ///< s since the start
-  std::atomic<double> duration{0};                     ///< s the run will take; infinite: until it is ended
+  std::atomic<double> duration{0};                     ///< s that the run will take; infinite: until it is stopped
   std::atomic<double> depth{0};                        ///< m, as RunSummary::depth_m
   std::atomic<int> contacts{0};                        ///< TickReport::contacts of the newest tick
   std::atomic<double> force{0};                        ///< N
   std::atomic<LagReason> lag_reason{LagReason::none};  ///< of the newest tick; none while the lag is under its bound
-  std::atomic<bool> device{true};                      ///< the device is there
-  std::atomic<bool> held{false};    ///< parts of a fit without room hold it where it started (HeldFast)
-  std::atomic<double> checked{-1};  ///< after the last tick: share of the rest of the check (RunSummary::checked); < 0
+  std::atomic<bool> device{true};                      ///< the device is connected
+  std::atomic<bool> held{false};  ///< parts of a fit without clearance hold it where it started (HeldFast)
+  /// After the last tick: checked share of the poses that remained then (RunSummary::checked); before: below 0.
+  std::atomic<double> checked{-1};
 };
 
-/// A tick of the contact loop, for whoever looks on.
+/// One tick of the contact loop, for a RunObserver.
 struct TickView {
-  std::uint64_t tick;                   ///< number of the contact loop's tick, from 0
-  double t;                             ///< s since the start
-  const PenSample& pen;                 ///< the sample that the tick answered
-  const HapticLoop& loop;               ///< its report() and limits() are of this tick
-  std::uint64_t segment;                ///< of the run between two changes of its scene (RunEdits), from 0
-  double tick_us;                       ///< time the tick took; 0 in virtual time
-  std::optional<double> servo_late_us;  ///< how late the servo's newest tick began, or of another process's servo the
-                                        ///< worst in a tenth of a second; none in virtual time and where nothing says
-  const ServoStatistics& servo;  ///< what the servo last told of itself, ten times a second; zeros in virtual time
+  std::uint64_t tick;      ///< number of the contact loop's tick, from 0
+  double t;                ///< s since the start
+  const PenSample& pen;    ///< the sample that the tick answered
+  const HapticLoop& loop;  ///< its report() and constraints() are of this tick
+  std::uint64_t segment;   ///< number of the run's segment between two changes of its scene (RunEdits), from 0
+  double tick_us;          ///< time the tick took; 0 in virtual time
+  /// Lateness of the servo's newest tick; of a servo in another process the worst of a tenth of a second; none in
+  /// virtual time and when that servo does not report it.
+  std::optional<double> servo_late_us;
+  const ServoStatistics& servo;  ///< the servo's newest statistics, ten times a second; zeros in virtual time
 };
 
-/// Looks on while a session runs. Called in the contact loop's thread.
+/// Observes a run. The contact loop's thread makes the calls.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
-  /// Before the tick at `t` (s since the start), in virtual time only: may wait, to hold the run or to slow it down.
+  /// Called before the tick at `t` (s since the start), in virtual time only. It may wait, to pause the run or to slow
+  /// it down.
   virtual void before_tick(double t) = 0;
-  /// After the tick. In real time it must neither wait nor allocate.
+  /// Called after the tick. In real time it must neither wait nor allocate.
   virtual void after_tick(const TickView& tick) noexcept = 0;
 };
 
-/// Changes the scene of a running session (RunSettings::edits) as HapticLoop::change does: parts are added, removed,
-/// moved, or another one is held. Pen, servo, recorder and ticks go on. Where another part is held the pen, where it
-/// is, comes to mean that part, and the force goes off until a small one is wanted.
+/// Changes the scene of a run (RunSettings::edits) as HapticLoop::change does: parts are added, removed, moved, or
+/// another one is held. Pen, servo, recorder and ticks continue. When another part is held, the pen's present pose maps
+/// to that part, and the force goes off until the wanted force is small.
 ///
-/// A recording is of one scene. So with each change it ends, and RECORDING.2, RECORDING.3, ... (before its extension)
-/// go on from it, each with its scene in a file beside it (RECORDING.2.toml) and ticks and times that count on.
+/// A recording is of one scene. So each change ends the recording, and RECORDING.2, RECORDING.3, ... (before its
+/// extension) continue it. Each has its scene in a file beside it (RECORDING.2.toml), and its ticks and times count on.
 class RunEdits {
  public:
   RunEdits();
@@ -68,11 +71,11 @@ class RunEdits {
   RunEdits(const RunEdits&) = delete;
   RunEdits& operator=(const RunEdits&) = delete;
 
-  /// Goes on with `parts`, of which the one that is held now is put where it is now, and settings as they are. From
-  /// any thread but the session's; returns the parts as they are when they are in force. `ready` is told the number
-  /// that TickView::segment will have then, before it has. Throws Error, and the run goes on as it was, when there is
-  /// none, the parts cannot be held (see HapticLoop), their recording cannot be written, or what is new stands for a
-  /// second in the way that the held part has gone meanwhile.
+  /// Continues with `parts` and the present settings. The part held now stays where it is, whatever pose `parts` gives
+  /// it. Any thread but the run's may call it. Returns the parts as they are when they are in force. Before that, it
+  /// passes the number that TickView::segment will then have to `ready`. Throws Error, and the run continues unchanged,
+  /// when there is no run, the loop cannot hold the parts (see HapticLoop), their recording cannot be written, or new
+  /// parts block for a second the path that the held part has taken meanwhile.
   std::vector<Part> change(std::vector<Part> parts, const std::function<void(std::uint64_t segment)>& ready = {});
 
   struct State;
@@ -82,84 +85,88 @@ class RunEdits {
   std::unique_ptr<State> state_;
 };
 
-/// What is known of a run before its first tick.
+/// What is known about a run before its first tick.
 struct RunStart {
-  const InitialContactReport& parts;  ///< what the held part touches or overlaps
+  const InitialContactReport& parts;  ///< parts that the held part touches or overlaps
   const std::string& stability;       ///< as RunSummary::stability
-  const std::string& torsion;         ///< the torsional stiffness in use and why it is that, in one line, for people
+  const std::string& torsion;         ///< the torsional stiffness in use and the reason for it, in one line, for people
   const std::string& weight;          ///< of the held part, in one line, for people; empty when the hand feels none
 };
 
 /// How run_session() runs a scene.
 struct RunSettings {
-  /// "shm:NAME": the device of another process, such as tegotae-device; empty: the scene's simulated one with a servo
-  /// in a thread of this process. Only in real time.
+  /// "shm:NAME": the device of another process, such as tegotae-device, in real time only. Empty: the scene's simulated
+  /// device, and in real time a servo in a thread of this process.
   std::string device;
-  bool real_time = true;  ///< false: virtual time, as fast as it goes and the same on every run
-  double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
-  std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
-  std::string program;  ///< name and version, for the recording's info
-  RunProgress* progress = nullptr;                ///< written to while it runs; null: disabled
-  RunObserver* observer = nullptr;                ///< asked around every tick; null: disabled
-  RunEdits* edits = nullptr;                      ///< changes the scene while it runs; null: it stays
-  InputSource* hand = nullptr;                    ///< moves the simulated pen instead of the script
-  const InputGuide* guide = nullptr;              ///< leads the simulated hand away from the script
-  std::function<void(const RunStart&)> on_start;  ///< told before the first tick
-  const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording is kept
-  /// The check of the committed poses with FCL goes on beside the run, and after it for a quarter of the time that the
-  /// run took, or two seconds; in real time it takes a quarter of one processor. true: until all are checked.
+  bool real_time = true;  ///< false: virtual time, as fast as possible and the same on every run
+  /// Length of the run, s. 0: to the end of the script plus kSettleTime; with another process's device until `stop`.
+  double seconds = 0;
+  std::string record;                 ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
+  std::string program;                ///< name and version, for the recording's info
+  RunProgress* progress = nullptr;    ///< receives the progress; null disables it
+  RunObserver* observer = nullptr;    ///< called around every tick; null disables it
+  RunEdits* edits = nullptr;          ///< changes the scene during the run; null: the scene stays
+  InputSource* hand = nullptr;        ///< moves the simulated pen instead of the script; null: the script does
+  const InputGuide* guide = nullptr;  ///< leads the simulated hand away from the script
+  std::function<void(const RunStart&)> on_start;  ///< called before the first tick
+  const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording stays
+  /// FCL checks the committed poses during the run, and afterwards for a quarter of the time that the run took, or two
+  /// seconds. In real time it takes a quarter of one processor. true: until all are checked.
   bool check_all = false;
-  const std::atomic<bool>* stop_check = nullptr;  ///< set it to end the check as it is; null: only its time ends it
+  const std::atomic<bool>* stop_check = nullptr;  ///< set it to end the check early; null: only its time ends it
 };
 
-/// That a held part stood where it started for half a second although its pen had gone more than a millimeter, and ten
-/// times as far as the part: a fit without room holds it.
+/// A fit without clearance holds the held part: for half a second the part stood where it started, although its pen had
+/// moved more than a millimeter, and ten times as far as the part.
 struct HeldFast {
-  std::vector<std::size_t> parts;  ///< relieved parts (InitialContact) that it touched then; index into Scene::parts
-  double moved = 0;                ///< how far the held part had gone, its farthest point, m
-  double pen = 0;                  ///< how far the pen had, m
+  std::vector<std::size_t> parts;  ///< shrunk parts (InitialContact) that it touched then; index into Scene::parts
+  double moved = 0;                ///< how far the held part had moved, at its farthest point, m
+  double pen = 0;                  ///< how far the pen had moved, m
 };
 
-/// How the held part lagged behind the pen in a run.
+/// How the held part lagged the pen in a run.
 struct LagSummary {
   double max_m = 0;  ///< largest TickReport::lag of a tick
-  /// Ticks with a lag over lag_bound(), by LagReason.
+  /// Number of ticks with a lag over lag_bound(), by LagReason.
   std::array<std::int64_t, kLagReasons> ticks{};
-  std::int64_t unexplained = 0;  ///< TickReport::unexplained_lag_ticks at the end: 0 in a run without silent walls
+  /// TickReport::unexplained_lag_ticks at the end; 0: a contact explains every stop of the part.
+  std::int64_t unexplained = 0;
 };
 
-/// How a run went.
+/// Result of a run.
 struct RunSummary {
   std::int64_t ticks = 0;  ///< of the contact loop
   double seconds = 0;      ///< simulated time; in real time also the time it took
-  /// The run went past the end of the script (with the device of another process: whenever it ended) and the part that
-  /// the scene file holds rests where the script ends: its center within 2 % of the way plus the part's radius and what
-  /// friction and resolution leave of the pen, its rotation within 0.1 rad. A part that lags at the end by more than
-  /// lag_bound() for another reason than contact is not where it should be.
+  /// The run passed the end of the script (with the device of another process: whenever it ended), and the part that
+  /// the scene file holds rests where the script ends. Its center may be off by 2 % of the path's length plus the
+  /// part's radius, and by what friction and resolution leave of the pen; its rotation may be off by 0.1 rad. A part
+  /// that lags at the end by more than lag_bound() for another reason than contact does not count as arrived.
   bool completed = false;
-  /// How far (m) that part's center has gone along the straight line from where the script starts to where it ends.
+  /// How far (m) that part's center has moved along the straight line from the script's start to its end.
   double depth_m = 0;
   int contacts_max = 0;  ///< most TickReport::contacts of a tick
-  LagSummary lag;        ///< how far it was behind the pen, and why
-  /// Of the `checked` poses, how many intersect a fixed part, by FCL. Pairs that `start` names do not count until they
-  /// have come free.
+  LagSummary lag;        ///< how far it lagged the pen, and why
+  /// How many of the `checked` poses intersect a fixed part, by FCL. Pairs that `start` names count only once they have
+  /// separated.
   std::int64_t penetrating = 0;
-  std::int64_t checked = 0;  ///< committed poses that FCL was asked about, spread over the run (RunSettings::check_all)
+  std::int64_t checked = 0;  ///< committed poses that FCL checked, spread over the run (RunSettings::check_all)
   std::int64_t poses = 0;    ///< different poses that were committed
-  InitialContactReport
-      start;               ///< what the held part touched or overlapped at the start, as it was at the end or a change
-  HeldFast held_fast;      ///< the last time that it was so; no parts: never
-  double deepest_m = 0;    ///< deepest that a vertex was inside another part at a tick, m; only "penalty" penetrates
+  /// What the held part touched or overlapped at the start, and the state of these pairs at the end or at a change.
+  InitialContactReport start;
+  /// The last such event; no parts: there was none.
+  HeldFast held_fast;
+  double deepest_m = 0;    ///< largest depth of a vertex inside another part at a tick, m; only "penalty" penetrates
   LatencySummary tick_us;  ///< time a tick of the contact loop takes
   ServoStatistics servo;   ///< in virtual time only the number of ticks
   std::string missing_realtime;  ///< what the system did not grant to this process's servo, or else to the contact loop
   std::string stability;         ///< StabilityReport::text(); of this process's servo only
   double force_max_n = 0;        ///< largest rendered force, N
   double torque_max_nm = 0;      ///< largest rendered torque, N·m, about the center of mass
-  std::uint64_t device_losses = 0;   ///< how often the device of another process fell silent; the part stayed meanwhile
+  /// How often the device of another process fell silent; the part stayed in place meanwhile.
+  std::uint64_t device_losses = 0;
   std::int64_t ignored = 0;          ///< ticks whose pen pose was out of range (TickFlags::input_ignored)
-  std::uint64_t record_dropped = 0;  ///< rows that the recorder could not keep up with
-  std::string record_failure;        ///< why a recording is not whole, and what it has; empty: all are
+  std::uint64_t record_dropped = 0;  ///< rows that the recorder dropped because it was too slow
+  std::string record_failure;        ///< why a recording is incomplete, and what it contains; empty: all are complete
   std::vector<std::string> recordings;  ///< their paths: one, and one more for each change of the scene
 };
 
@@ -171,9 +178,9 @@ inline constexpr double kSettleTime = 0.5;
 /// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
 /// script and build give the same recording byte for byte.
 ///
-/// Throws Error when the scene cannot be held (see HapticLoop), the recording cannot be begun, or it would replace a
-/// file that the scene was read from (SceneFile::files). A recording that fails later ends nothing: the run goes on,
-/// and the summary says what was lost.
+/// Throws Error when the loop cannot hold the scene (see HapticLoop), the recording cannot be begun, or it would
+/// replace a file from which the scene was read (SceneFile::files). A recording that fails later does not end the run;
+/// the summary says what was lost.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);
 
 }  // namespace tegotae

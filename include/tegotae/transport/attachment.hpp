@@ -11,33 +11,35 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// An application's hold on a device in another process (tegotae-device, or a driver of one's own). It outlives the
-/// device: while there is none, read() says so, the application keeps the part where it is, and the next device of that
-/// name is attached to. Used from one thread, the contact loop's.
+/// An application's attachment to a device in another process (tegotae-device, or a custom driver). It outlives the
+/// device: while there is none, read() returns false and the application keeps the part where it is; then the object
+/// attaches to the next device of that name. Use it in one thread, the contact loop's.
 ///
-/// When it attaches, the pen, wherever it is, comes to mean the held part where that is: nothing jumps.
+/// When it attaches, the pen's present pose maps to the held part's present pose, so that nothing jumps.
 class Attachment {
  public:
-  /// `device` is "shm:NAME", the name of the segment; the others as ContactLink has them. Throws Error when there is no
-  /// such device, or another application has it, and when `scale` is out of range (see ContactLink::set_scale).
+  /// `device` is "shm:NAME" with the name of the segment; the other parameters are those of ContactLink. Throws Error
+  /// when there is no such device, when another application is attached to it, and when `scale` is out of range (see
+  /// ContactLink::set_scale).
   Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center, double scale = 1);
 
-  /// The newest sample of the pen. False, and `pen` untouched, when there is none to follow: the device's heartbeat is
-  /// older than 20 ms or its process gone (then it is looked for ten times a second, the only time that a call may take
-  /// longer or allocate), or it has not yet taken in where the part is.
+  /// Reads the newest sample of the pen. Returns false, and leaves `pen` unchanged, when there is none to follow: the
+  /// device's heartbeat is older than 20 ms, its process is gone, or it has not yet adopted the part's pose. While the
+  /// device is lost, the call searches for it ten times a second; only then may the call take longer or allocate.
   bool read(PenSample& pen, std::int64_t now_ns) noexcept;
-  /// As ContactLink::publish; call it once a tick, whatever read() said, for the heartbeat.
+  /// Publishes as ContactLink::publish does. Call it once a tick, whatever read() returned, because it is the
+  /// heartbeat.
   void publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence, std::int64_t now_ns,
                const ContactPlanes& planes = {}) noexcept;
 
-  /// As ContactLink::hold, for this device and those that come after it.
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
+  /// Does what ContactLink::grasp does, for this device and its successors.
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
 
-  /// The device's heartbeat was fresh at the last read().
+  /// Returns whether the device's heartbeat was fresh at the last read().
   bool connected() const noexcept { return connected_; }
-  /// How often the device was lost.
+  /// Returns how often the device was lost.
   std::uint64_t losses() const noexcept { return losses_; }
-  /// What the device's servo last told of itself; zeros before it has.
+  /// Returns the newest statistics of the device's servo; zeros before the first.
   ServoStatistics statistics() const noexcept;
 
  private:

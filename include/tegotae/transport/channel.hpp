@@ -11,40 +11,41 @@ namespace tegotae TEGOTAE_EXPORT {
 
 class Segment;
 
-/// Looks at a shared-memory segment (shm.h) without taking part.
+/// Reads a shared-memory segment (shm.h) without taking part.
 class ChannelReader {
  public:
-  /// Opens an existing segment for reading, whoever else uses it. `name` is a POSIX shared-memory name such as
-  /// "/tegotae-pen"; the slash may be left out. Throws Error unless the segment belongs to this user, nobody else may
-  /// open it, size, magic and version are those of this library, and its device's process lives.
+  /// Opens an existing segment for reading, whether or not others use it. `name` is a POSIX shared-memory name such as
+  /// "/tegotae-pen"; the slash is optional. Throws Error unless the segment belongs to this user, no other user may
+  /// open it, its size, magic and version are those of this library, and its device's process lives.
   static ChannelReader open(const std::string& name);
 
   ~ChannelReader();
-  ChannelReader(ChannelReader&&) noexcept;             ///< the other one may then only be destroyed or assigned to
-  ChannelReader& operator=(ChannelReader&&) noexcept;  ///< as the constructor; leaves its own segment
+  ChannelReader(ChannelReader&&) noexcept;  ///< afterwards the other one may only be destroyed or assigned to
+  ChannelReader& operator=(ChannelReader&&) noexcept;  ///< as the constructor; releases its own segment
 
   const std::string& name() const noexcept;  ///< with the slash
   std::uint64_t owner_pid() const noexcept;  ///< process id of the device
-  std::int64_t created_ns() const noexcept;  ///< when it was created, monotonic clock; tells one from its successor
+  std::int64_t created_ns()
+      const noexcept;  ///< time of creation, monotonic clock; distinguishes a segment from its successor
 
-  /// The newest whole write of the device; false, and `payload` untouched, when nothing was written yet or the writer
-  /// is stuck in a write. Never waits, allocates or throws.
+  /// Reads the newest complete write of the device. Returns false, and leaves `payload` unchanged, when the device has
+  /// not written yet or is stuck in a write. Never waits, allocates or throws.
   bool read(tegotae_shm_device& payload) const noexcept;
   bool read(tegotae_shm_application& payload) const noexcept;  ///< the same, of the application
   bool read(tegotae_shm_statistics& payload) const noexcept;   ///< the same, of the servo about itself
 
  protected:
   explicit ChannelReader(std::unique_ptr<Segment> segment);  ///< takes a mapped segment
-  std::unique_ptr<Segment> segment_;                         ///< the mapping; null in what was moved from
+  std::unique_ptr<Segment> segment_;                         ///< the mapping; null after a move
 };
 
-/// One end of a segment. The device's side creates it, the application attaches to it.
+/// One end of a segment. The device's side creates the segment, the application attaches to it.
 class Channel : public ChannelReader {
  public:
-  /// Creates a segment that only this user may open; an empty name chooses one that is unique to this process. A
-  /// segment that a dead process left is replaced, that of a living one refused; segments with chosen names that killed
-  /// processes left are removed. It is removed when the Channel goes.
-  /// Throws Error with the cause.
+  /// Creates a segment that only this user may open. With an empty name the library makes one that is unique to this
+  /// process. The call replaces a segment that a dead process left, and refuses to replace that of a living one. It
+  /// also removes segments with such made names that killed processes left. The destructor of Channel removes the
+  /// segment. Throws Error with the cause.
   static Channel create(const std::string& name = {});
   /// Attaches an application; a segment has one at a time. Throws Error as ChannelReader::open does, and when another
   /// application is attached.

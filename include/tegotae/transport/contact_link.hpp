@@ -11,58 +11,59 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What the servo last told of the pen.
+/// The servo's newest sample of the pen.
 struct PenSample {
   DeviceState state;                                  ///< mapped: `pose` is Y, where the pen wants the held part
-  Pose raw;                                           ///< of the pen in the device's own space
+  Pose raw;                                           ///< pose of the pen in the device's own space
   Wrench wrench;                                      ///< on the pen, as rendered, at the held part's center of mass
   DeviceStatus status = DeviceStatus::uninitialized;  ///< `enabled` only when the wrench was rendered
-  ForceOff reason = ForceOff::software;               ///< why it was not
-  std::uint32_t flags = 0;                            ///< TEGOTAE_SHM_FLAG_...: what was done to the wrench
+  ForceOff reason = ForceOff::software;               ///< why the wrench was not rendered
+  std::uint32_t flags = 0;                            ///< TEGOTAE_SHM_FLAG_...: what the safety chain did to the wrench
   double scale = 1;                                   ///< meters of the world for a meter of the pen
   Clutch clutch = Clutch::none;                       ///< by the application or by a button
-  double thermal_load = 0;                            ///< running RMS of the force over the continuous figure
+  double thermal_load = 0;                            ///< running RMS of the force divided by the continuous force
   double energy = 0;                                  ///< J, of the passivity observer; below zero: generated
   std::int64_t heartbeat_ns = 0;                      ///< time of the servo's tick
   std::uint64_t tick = 0;                             ///< number of the servo's tick
-  std::int64_t session = 0;                           ///< of the application that the servo listens to
-  std::uint32_t home_counter = 0;                     ///< of the last home command that it obeyed
+  std::int64_t attachment = 0;                        ///< that of the application that the servo serves
+  std::uint32_t home_counter = 0;                     ///< number of the last home command that the servo executed
 };
 
-/// The contact loop's end of a channel: pen in, proxy out.
+/// The contact loop's end of a channel: reads the pen, publishes the proxy.
 class ContactLink {
  public:
-  /// `coupling` is the contact loop's own (HapticLoop::coupling), `center` the held part's center of mass in its file
+  /// `coupling` is that of the contact loop (HapticLoop::coupling), `center` the held part's center of mass in its file
   /// frame, m. Keeps a reference to `channel`.
   ContactLink(Channel& channel, const CouplingSettings& coupling, const Vec3& center);
 
-  /// The newest sample of the pen; false and `pen` untouched before the servo's first tick.
+  /// Reads the newest sample of the pen. Returns false, and leaves `pen` unchanged, before the servo's first tick.
   bool read(PenSample& pen) const noexcept;
-  /// Tells the servo the proxy that answers the pen's sample `device_sequence`, and the commands below. `now_ns` is the
-  /// heartbeat: of the servo's clock, that is monotonic_ns() or the caller's virtual time. `planes` that were taken at
-  /// another pose than `proxy.X` are not told.
+  /// Publishes to the servo the proxy that answers the pen's sample `device_sequence`, and the commands below. `now_ns`
+  /// is the heartbeat on the servo's clock: monotonic_ns(), or the caller's virtual time. Planes that were taken at
+  /// another pose than `proxy.X` are not published.
   void publish(const ProxyState& proxy, std::uint64_t tick, std::uint64_t device_sequence, std::int64_t now_ns,
                const ContactPlanes& planes = {}) noexcept;
 
   // Commands; they leave with the next publish(). None makes the force jump: it fades out, waits until what is wanted
   // is small, and ramps in again.
-  void ask_for_force(bool on) noexcept { enable_ = on; }  ///< on from the beginning
-  /// Meters of the world for a meter of the pen. Throws Error outside of kMinScale to kMaxScale.
+  void ask_for_force(bool on) noexcept { enable_ = on; }  ///< asks for force, or no longer; on by default
+  /// Sets the meters of the world for a meter of the pen. Throws Error outside of kMinScale to kMaxScale.
   void set_scale(double scale);
-  /// What of the pen's motion the part does not follow from now on.
+  /// Sets which part of the pen's motion the held part does not follow from now on.
   void set_clutch(Clutch clutch) noexcept { clutch_ = clutch; }
   /// Re-references the pen: its present pose maps to the held part at `X` (file frame).
   void home(const Pose& X) noexcept;
-  /// Another part is held from now on, of which this is the center, with this coupling, and the pen means it at `X`.
-  void hold(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
-  /// Whether the servo listens to this application and has obeyed its home commands when it told `pen`.
+  /// Grasps another part: `center` is its center of mass, `coupling` its coupling, and the pen's present pose maps to
+  /// the part at `X`.
+  void grasp(const Vec3& center, const CouplingSettings& coupling, const Pose& X) noexcept;
+  /// Returns whether the servo served this application, and had executed its home commands, when it published `pen`.
   bool obeyed(const PenSample& pen) const noexcept;
 
  private:
   Channel& channel_;
   CouplingSettings coupling_;
   Vec3 center_;
-  std::int64_t session_;  // when this application attached
+  std::int64_t attachment_;  // when this application attached
   bool enable_ = true;
   double scale_ = 1;
   Clutch clutch_ = Clutch::none;

@@ -8,22 +8,22 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// What of the pen's motion the held part does not follow.
+/// Which part of the pen's motion the held part does not follow.
 enum class Clutch : std::uint32_t {
   none = TEGOTAE_SHM_CLUTCH_NONE,
-  translation = TEGOTAE_SHM_CLUTCH_TRANSLATION,  ///< it turns with the pen but stays in its place
-  all = TEGOTAE_SHM_CLUTCH_ALL,                  ///< it stays as it is
+  translation = TEGOTAE_SHM_CLUTCH_TRANSLATION,  ///< the part turns with the pen but stays in its place
+  all = TEGOTAE_SHM_CLUTCH_ALL,                  ///< the part does not move
 };
 
-/// What the pen's buttons do to the mapping from pen to part.
+/// Effect of the pen's buttons on the mapping from pen to part.
 struct MappingSettings {
-  std::uint32_t clutch_buttons = 0;       ///< while one of these is pressed the pen is clutched; 0: none is
-  Clutch clutch_by_button = Clutch::all;  ///< what of it
+  std::uint32_t clutch_buttons = 0;       ///< while one of these is pressed, the pen is clutched; 0: no button clutches
+  Clutch clutch_by_button = Clutch::all;  ///< which part of the motion they clutch
 };
 
-/// The least that an application may ask for: meters of the world for a meter of the pen.
+/// Smallest scale that an application may set: meters of the world for a meter of the pen.
 inline constexpr double kMinScale = 0.01;
-/// The most that an application may ask for.
+/// Largest scale that an application may set.
 inline constexpr double kMaxScale = 100;
 
 }  // namespace tegotae
