@@ -78,7 +78,7 @@ TEST_CASE("a file of parts runs with a script, and otherwise says the command th
   const Output o = run_program("tegotae", "run --fast --unit mm " + file + script);
   INFO(o.out << o.err);
   CHECK(o.code == 0);
-  CHECK(o.out.find("In the hand is pin") != std::string::npos);
+  CHECK(o.out.find("The hand holds pin") != std::string::npos);
   CHECK(o.out.find("pin.obj: done") != std::string::npos);
   CHECK(o.out.find("depth        10.") != std::string::npos);
   check_refused(run_program("tegotae", "run --fast --unit mm --record " + (folder / "r.csv") + " " + file + script),
