@@ -53,6 +53,7 @@ int import_here(const ImportOptions& options, const std::function<void(const std
   if (options.hold.empty())
     std::cout << "no part is held yet: run it with `tegotae run " << scene.string()
               << " --hold NAME`, or give a part held = true\n";
+  if (assembly.parts.size() > 1) std::cout << "take it apart: `tegotae plan " << scene.string() << " --all`\n";
   return kDone;
 }
 

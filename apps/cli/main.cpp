@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   run->add_option("--hold", hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   std::string script;
   run->add_option("--script", script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
+  add_guide_option(*run, options);
   add_run_options(*run, options);
   run->add_option("--seconds", options.seconds, "How long to run (default: to the end of the script)")
       ->check([](const std::string& text) -> std::string {

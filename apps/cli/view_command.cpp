@@ -56,6 +56,7 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options) {
                    "Unit of a file that does not tell it: m (default), cm, mm, um, in")
       ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
       ->type_name("UNIT");
+  add_guide_option(*view, options.run);
   add_page_options(*view, options.run.page);
   options.run.view = true;
   return view;

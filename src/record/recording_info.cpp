@@ -13,10 +13,15 @@ namespace {
 constexpr struct {
   const char* name;
   std::string RecordingInfo::*text;
-} kFields[] = {{"scene", &RecordingInfo::scene},         {"held", &RecordingInfo::held},
-               {"resolver", &RecordingInfo::resolver},   {"program", &RecordingInfo::program},
-               {"suspended", &RecordingInfo::suspended}, {"follows", &RecordingInfo::follows},
-               {"goes_on", &RecordingInfo::goes_on},     {"goal", &RecordingInfo::goal}};
+} kFields[] = {{"scene", &RecordingInfo::scene},
+               {"held", &RecordingInfo::held},
+               {"resolver", &RecordingInfo::resolver},
+               {"program", &RecordingInfo::program},
+               {"suspended", &RecordingInfo::suspended},
+               {"follows", &RecordingInfo::follows},
+               {"goes_on", &RecordingInfo::goes_on},
+               {"guide", &RecordingInfo::guide},
+               {"goal", &RecordingInfo::goal}};
 }  // namespace
 
 std::string recording_info_path(const std::string& path) {

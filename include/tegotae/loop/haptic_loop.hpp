@@ -35,7 +35,7 @@ struct TickReport {
   ProxyState proxy;          ///< X, its velocity, and whether it touches
   ContactPlanes planes;      ///< for a servo that brings X up to date between two ticks
   /// What the contacts exert on the held part at the end of the tick: with `forces.lag` it is the wrench of the
-  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's newer
+  /// coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.load`, before the damper, the servo's newer
   /// Y and the safety chain. Of resolvers that project (Resolver::projects, "qp"), and only while it touches; of others
   /// none is available.
   ContactForces forces;
@@ -106,6 +106,12 @@ class HapticLoop {
   /// grow over some 0.3 s once the force is on: the part sinks by weight / stiffness, and a force that jumped would be
   /// waited out by the safety chain.
   void carry(double share) noexcept;
+
+  /// What else pulls at the held part from the next tick on, beside its weight: a wrench at its center of mass (world,
+  /// N and N·m as the hand feels them), such as that of a guide. It goes with the proxy to the servo
+  /// (ProxyState::load), which gives it to the hand. Zero when it is not finite, and when another part comes to be
+  /// held. Whoever sets it keeps it small and lets it grow slowly, as for carry(). Call it in the thread of step().
+  void pull(const Wrench& wrench) noexcept;
 
   /// Continues in another scene: parts are added, removed, hidden (left out), moved, or another one is held. May be
   /// called from any thread while step() runs; it builds here what is new (parts that share a mesh with the scene so

@@ -35,6 +35,7 @@ struct RecordingInfo {
   std::string suspended{};  ///< names of the parts that the held part overlapped at the start, and was not kept out of
   std::string follows{};    ///< the recording beside it that it goes on from: the scene changed there
   std::string goes_on{};    ///< the recording beside it that goes on from its end: the scene changed there
+  std::string guide{};      ///< path of the file whose path the hand was pulled along
   std::string goal{};       ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
 };
 

@@ -88,6 +88,7 @@ struct RunStart {
   const std::string& stability;       ///< as RunSummary::stability
   const std::string& torsion;         ///< the torsional stiffness in use and why it is that, in one line, for people
   const std::string& weight;          ///< of the held part, in one line, for people; empty when the hand feels none
+  const std::string& guide;           ///< along RunSettings::guide_path, in one line, for people; empty without one
 };
 
 /// How run_session() runs a scene.
@@ -99,6 +100,11 @@ struct RunSettings {
   double seconds = 0;   ///< how long; 0: to the end of the script and kSettleTime more; another process's: until `stop`
   std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
   std::string program;  ///< name and version, for the recording's info
+  /// Path (CSV as of `tegotae plan` and `review --csv`, see read_path) that the hand is pulled along gently while it
+  /// holds the scene's held part: with at most 1 N, half of what the weight leaves of what the device stands for long,
+  /// and not at all farther than 20 mm (a turn counted by the coupling's radius) from the path. Empty: none. Needs
+  /// "qp".
+  std::string guide_path;
   RunProgress* progress = nullptr;                ///< written to while it runs; null: disabled
   RunObserver* observer = nullptr;                ///< asked around every tick; null: disabled
   RunEdits* edits = nullptr;                      ///< changes the scene while it runs; null: it stays
@@ -171,9 +177,9 @@ inline constexpr double kSettleTime = 0.5;
 /// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
 /// script and build give the same recording byte for byte.
 ///
-/// Throws Error when the scene cannot be held (see HapticLoop), the recording cannot be begun, or it would replace a
-/// file that the scene was read from (SceneFile::files). A recording that fails later ends nothing: the run goes on,
-/// and the summary says what was lost.
+/// Throws Error when the scene cannot be held (see HapticLoop), the guide's path cannot be read, the recording cannot
+/// be begun, or it would replace a file that the scene was read from (SceneFile::files). A recording that fails later
+/// ends nothing: the run goes on, and the summary says what was lost.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);
 
 }  // namespace tegotae
