@@ -80,9 +80,15 @@ Wrench PathGuide::pull(const Pose& Y, double dt) noexcept {
   follow(Y);
   const double fade = std::clamp(2 * (1 - distance_ / kReach), 0.0, 1.0);
   strength_ = std::min(fade, strength_ + dt / kReturn);
-  const Vec6 way = whiten(displacement(Y, at(nearest_.along + kAhead), settings_.center));
-  // Within kAhead of the end it is a spring to there.
-  const Vec6 pull = strength_ * settings_.force / std::max(way.norm(), kAhead) * way;
+  // Back to the path, and along it. Where the nearest place is a corner, what comes after it counts: before it, the
+  // pull goes into the wall.
+  Vec6 way = whiten(displacement(Y, at(nearest_.along), settings_.center)) / kSoft;
+  const Segment& here = segments_[nearest_.segment];
+  const bool over = nearest_.along >= here.end && nearest_.segment + 1 < segments_.size();
+  const Segment& next = over ? segments_[nearest_.segment + 1] : here;
+  if (next.end > next.begin)
+    way += std::min(1.0, (length() - nearest_.along) / kSoft) / (next.end - next.begin) * whiten(next.step);
+  const Vec6 pull = strength_ * settings_.force / std::max(way.norm(), 1.0) * way;
   return {pull.head<3>(), radius_ * pull.tail<3>()};
 }
 

@@ -14,9 +14,10 @@ struct PathGuideSettings {
   double force = 0;            ///< N, the most that it pulls with
 };
 
-/// A guiding virtual fixture: a gentle pull on the hand along a path of the held part. It pulls towards the point of
-/// the path that is kAhead farther than the one nearest to the pen, with a constant force; from half of kReach on it
-/// fades, and beyond kReach there is none. Where the hand comes back the pull comes back over kReturn.
+/// A guiding virtual fixture: a gentle pull on the hand along a path of the held part. It pulls along the path where
+/// that is nearest to the pen, and beside the path also back to it, kSoft off as much as along; together with a
+/// constant force. In the last kSoft it is a spring to the end. From half of kReach off the path on it fades, and
+/// beyond kReach there is none. Where the hand comes back the pull comes back over kReturn.
 ///
 /// Ways and turns are one length, as for the coupling: way of the center of mass and turn times √(k_t / k), both as the
 /// hand goes them (without the scale). So force and torque together, the torque divided by that radius, are never more
@@ -27,7 +28,7 @@ struct PathGuideSettings {
 class PathGuide {
  public:
   static constexpr double kForce = 1.0;   ///< N, what it pulls with where device and weight allow it
-  static constexpr double kAhead = 8e-3;  ///< m of the hand
+  static constexpr double kSoft = 8e-3;   ///< m of the hand
   static constexpr double kReach = 0.02;  ///< m of the hand
   static constexpr double kReturn = 0.3;  ///< s
 

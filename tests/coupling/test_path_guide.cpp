@@ -47,32 +47,45 @@ Wrench settled(PathGuide& guide, const Pose& Y) {
 
 }  // namespace
 
-TEST_CASE("along a straight path the pull is its force towards a point ahead", "[guide]") {
+TEST_CASE("along a straight path the pull is its force, along it and back to it", "[guide]") {
   const double scale = GENERATE(1.0, 3.0, 0.1);
   const int parts = GENERATE(1, 7, 500);
   PathGuide guide(straight(scale, parts), settings(scale));
   CHECK(guide.length() == Approx(0.1));
-  const double ahead = PathGuide::kAhead;
+  const double soft = PathGuide::kSoft;
   for (const double off : {0.0, 0.002, -0.006, 0.0099}) {
     const Wrench w = settled(guide, placed(scale * Vec3(0.03, off, 0)));
-    const double far = std::hypot(ahead, off);
-    CHECK((w.force - 0.8 / far * Vec3(ahead, -off, 0)).norm() < 1e-9);
+    const double far = std::hypot(soft, off);
+    CHECK((w.force - 0.8 / far * Vec3(soft, -off, 0)).norm() < 1e-9);
     CHECK(w.torque.norm() < 1e-9);
     CHECK(guide.distance() == Approx(std::abs(off)).margin(1e-9));
     CHECK(guide.along() == Approx(0.03).margin(1e-9));
   }
   // Turned by 0.3 rad: 6 mm of turn at the radius.
   const Wrench w = settled(guide, placed(scale * Vec3(0.03, 0, 0), Vec3(0, 0, 0.3)));
-  const double far = std::hypot(ahead, 0.3 * kRadius);
-  CHECK((w.force - 0.8 / far * Vec3(ahead, 0, 0)).norm() < 1e-9);
+  const double far = std::hypot(soft, 0.3 * kRadius);
+  CHECK((w.force - 0.8 / far * Vec3(soft, 0, 0)).norm() < 1e-9);
   CHECK((w.torque - 0.8 / far * kRadius * Vec3(0, 0, -0.3 * kRadius)).norm() < 1e-9);
+}
+
+TEST_CASE("before a corner the pull goes on to it, and from it on", "[guide]") {
+  PathGuide guide({placed(Vec3::Zero()), placed(Vec3(0.03, 0, 0)), placed(Vec3(0.03, 0, 0.04))}, settings());
+  for (const double before : {0.01, 1e-3, 1e-5}) {
+    const Wrench w = settled(guide, placed(Vec3(0.03 - before, 0, 0)));
+    CHECK((w.force - Vec3(0.8, 0, 0)).norm() < 1e-9);
+  }
+  // At the corner and a little too far: up.
+  for (const double over : {0.0, 1e-5, 1e-4}) {
+    const Wrench w = settled(guide, placed(Vec3(0.03 + over, 0, 0)));
+    CHECK((w.force - Vec3(0, 0, 0.8)).norm() < 0.02);
+  }
 }
 
 TEST_CASE("near the end of the path the pull is a spring to there", "[guide]") {
   PathGuide guide(straight(), settings());
   for (const double left : {0.006, 0.001, 0.0, -0.004}) {  // before and behind the end
     const Wrench w = guide.pull(placed(Vec3(0.1 - left, 0, 0)), kTick);
-    CHECK((w.force - Vec3(0.8 * left / PathGuide::kAhead, 0, 0)).norm() < 1e-9);
+    CHECK((w.force - Vec3(0.8 * left / PathGuide::kSoft, 0, 0)).norm() < 1e-9);
   }
 }
 
