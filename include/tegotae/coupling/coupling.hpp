@@ -33,7 +33,7 @@ struct ProxyState {
   bool touching = false;  ///< held back, by contacts or because the contact loop lags
   /// World, at the center of mass: what pulls at the part beside the contacts, as the hand feels it. The part's weight,
   /// and a guide (HapticLoop::pull). The part is drawn away from the pen by load / stiffness; see loaded().
-  Wrench load;
+  Wrench load = {};
 };
 
 /// Where the springs of the coupling draw the held part while `load` pulls at it: off the pen at `Y` by F / k and
