@@ -53,6 +53,7 @@ std::string result_text(const Assembly& assembly, const std::string& scene, bool
                      counted(triangles, "triangle", "triangles") + ", " + number(mm.x()) + " x " + number(mm.y()) +
                      " x " + number(mm.z()) + " mm\n";
   text += "look at it and take parts with `tegotae view " + scene + "`\n";
+  if (assembly.parts.size() > 1) text += "take it apart: `tegotae plan " + scene + " --all`\n";
   if (hold_one)
     text += "no part is held: `tegotae run " + scene + " --hold NAME` takes one, or give it held = true in the file\n";
   return text;

@@ -41,6 +41,7 @@ CLI::App* add_run(CLI::App& app, RunCommand& options) {
   run->add_option("--hold", options.open.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   run->add_option("--script", options.script, "Stylus script (CSV) instead of the scene's")->type_name("FILE");
   add_unit_option(*run, options.open.import);
+  add_guide_option(*run, options.run);
   add_run_options(*run, options.run);
   run->add_option("--seconds", options.run.seconds, "How long to run (default: to the end of the script)")
       ->check([](const std::string& text) -> std::string {

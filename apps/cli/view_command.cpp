@@ -13,6 +13,7 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options) {
   view->add_option("--hold", options.open.hold, "Name of the part to hold (the scene's, or the smallest)")
       ->type_name("NAME");
   add_unit_option(*view, options.open.import);
+  add_guide_option(*view, options.run);
   add_page_options(*view, options.run.page);
   options.run.view = true;
   return view;

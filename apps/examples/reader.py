@@ -6,7 +6,7 @@ import os
 import struct
 import sys
 
-MAGIC, VERSION, SIZE = 0x314541544F474554, 5, 1536
+MAGIC, VERSION, SIZE = 0x314541544F474554, 6, 1600
 DEVICE_COUNTER = 64  # offset of the counter; the slot of tegotae_shm_device follows it
 DEVICE_WORDS = 47
 # heartbeat_ns tick time_ns sequence, status ... force_freedom, name, position ... raw_orientation, scale

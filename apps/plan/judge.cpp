@@ -101,8 +101,6 @@ JudgedFigures judge(const JudgedScene& judged, const JudgeOptions& options) {
   const MassProperties mass = mass_properties(held, report(held).closed);
   PathOracle oracle(scene, mass.center);
   JudgedFigures out;
-  out.name = judged.name;
-  out.comes_out = judged.comes_out;
   for (int seed = 1; seed <= options.seeds; ++seed) {
     run_ours(scene, static_cast<std::uint64_t>(seed), options.seconds, oracle, out.ours);
     run_baseline(scene, mass, static_cast<std::uint64_t>(seed), options.seconds, oracle, out.baseline);

@@ -31,8 +31,6 @@ struct PlannerFigures {
 };
 
 struct JudgedFigures {
-  std::string name;
-  bool comes_out = true;
   PlannerFigures ours, baseline;
 };
 

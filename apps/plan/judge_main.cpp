@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,33 +36,42 @@ std::string bad(const PlannerFigures& f) {
   return f.found == 0 ? "–" : format("%d of %d", f.bad_paths, f.found);
 }
 
-std::string row(const JudgedFigures& f, int seeds) {
+std::string first_cell(const JudgedScene& scene) {
+  return "| " + scene.name + (scene.comes_out ? " " : " (no way) ");
+}
+
+std::string row(const JudgedScene& scene, const JudgedFigures& f, int seeds) {
   const PlannerFigures &a = f.ours, &b = f.baseline;
-  return "| " + f.name + (f.comes_out ? "" : " (no way)") + format(" | %d of %d", a.found, seeds) + " | " +
-         median(a.cpu) + " | " + median(a.whole_cpu) + " | " +
-         (a.found == 0 ? "–" : format("%.3g", 1e6 * a.clearance)) + " | " + bad(a) +
+  return first_cell(scene) + format("| %d of %d", a.found, seeds) + " | " + median(a.cpu) + " | " +
+         median(a.whole_cpu) + " | " + (a.found == 0 ? "–" : format("%.3g", 1e6 * a.clearance)) + " | " + bad(a) +
          format(" | %d of %d", b.found, seeds) + " | " + median(b.cpu) + " | " + bad(b) + " |\n";
 }
 
-std::string table(const std::vector<JudgedFigures>& figures, int seeds) {
-  std::string text =
-      "| scene | found | first path, s | with shortening and certificate, s | least clearance certified, µm | paths in "
-      "which FCL "
-      "finds contact | RRT-Connect + FCL: found | s | paths in which FCL finds contact "
-      "|\n|---|---|---|---|---|---|---|---|---|\n";
-  for (const JudgedFigures& f : figures) text += row(f, seeds);
-  return text;
-}
+const char* const kHead =
+    "| scene | found | first path, s | with shortening and certificate, s | least clearance certified, µm | paths in "
+    "which FCL finds contact | RRT-Connect + FCL: found | s | paths in which FCL finds contact "
+    "|\n|---|---|---|---|---|---|---|---|---|\n";
 
-/// Puts `text` between the marks of a file.
-void replace_generated(const std::string& path, const std::string& text) {
+/// A generated part of a file, and what is around it.
+struct Page {
+  std::string before, generated, after;
+};
+
+Page read_page(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(path + ": cannot be read");
-  const std::string old(std::istreambuf_iterator<char>(in), {});
-  const std::size_t begin = old.find(kBegin), end = old.find(kEnd);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::size_t begin = text.find(kBegin), end = text.find(kEnd);
   if (begin == std::string::npos || end == std::string::npos || end < begin)
     throw Error(path + ": has no lines " + std::string(kBegin, 24) + " and " + std::string(kEnd, 22));
-  replace_file(path, old.substr(0, begin) + kBegin + text + old.substr(end));
+  const std::size_t inside = begin + std::string(kBegin).size();
+  return {text.substr(0, inside), text.substr(inside, end - inside), text.substr(end)};
+}
+
+/// The row of a scene in a table; empty: it has none.
+std::string row_in(const std::string& table, const JudgedScene& scene) {
+  const std::size_t begin = table.find("\n" + first_cell(scene) + "|");
+  return begin == std::string::npos ? "" : table.substr(begin + 1, table.find('\n', begin + 1) - begin);
 }
 
 struct Options {
@@ -70,24 +80,53 @@ struct Options {
   std::string parts, markdown;
 };
 
+bool wanted(const Options& o, const JudgedScene& scene) {
+  return o.scenes.empty() || std::find(o.scenes.begin(), o.scenes.end(), scene.name) != o.scenes.end();
+}
+
+/// The command that makes the whole table, as the file shows it.
+std::string command(const Options& o) {
+  return format("Command: `plan_judge --seeds %d --seconds %g", o.judge.seeds, o.judge.seconds) +
+         (o.parts.empty() ? "" : " --parts " + o.parts) + " --markdown " + o.markdown +
+         "` (with `--scene NAME` a row of it)\n\n";
+}
+
+/// Rows of a run of all scenes replace the table, those of some their rows in it.
+void write_table(const Options& o, const std::vector<JudgedScene>& scenes,
+                 const std::map<std::string, std::string>& rows) {
+  const Page page = read_page(o.markdown);
+  if (!o.scenes.empty() && page.generated.find(command(o)) != 0)
+    throw Error(o.markdown + ": its table is not of " + command(o).substr(0, command(o).find('\n')));
+  std::string table = command(o) + kHead;
+  for (const JudgedScene& scene : scenes) {
+    const auto made = rows.find(scene.name);
+    table += made != rows.end() ? made->second : o.scenes.empty() ? "" : row_in(page.generated, scene);
+  }
+  replace_file(o.markdown, page.before + table + page.after);
+}
+
 /// Exit code 1 when a path of ours intersects, or one is found where there is none.
-int run(const Options& o, const std::string& command) {
+int run(const Options& o) {
   if (!has_planner()) throw Error(missing_planner());
-  std::vector<JudgedFigures> figures;
+  const std::vector<JudgedScene> scenes = judged_scenes(o.parts);
+  for (const std::string& name : o.scenes)
+    if (std::none_of(scenes.begin(), scenes.end(), [&](const JudgedScene& s) { return s.name == name; }))
+      throw Error("no scene \"" + name + "\"");
+  std::map<std::string, std::string> rows;
   bool clean = true;
-  for (const JudgedScene& scene : judged_scenes(o.parts)) {
-    if (!o.scenes.empty() && std::find(o.scenes.begin(), o.scenes.end(), scene.name) == o.scenes.end()) continue;
+  for (const JudgedScene& scene : scenes) {
+    if (!wanted(o, scene)) continue;
+    JudgedFigures f;
     {
       apps::StatusLine status;
       status.say(scene.name);
-      figures.push_back(judge(scene, o.judge));
+      f = judge(scene, o.judge);
     }
-    const JudgedFigures& f = figures.back();
-    clean = clean && f.ours.intersecting == 0 && (f.comes_out || f.ours.found == 0);
-    std::cout << row(f, o.judge.seeds) << std::flush;
+    clean = clean && f.ours.intersecting == 0 && (scene.comes_out || f.ours.found == 0);
+    rows[scene.name] = row(scene, f, o.judge.seeds);
+    std::cout << rows[scene.name] << std::flush;
+    if (!o.markdown.empty()) write_table(o, scenes, rows);
   }
-  if (!o.markdown.empty())
-    replace_generated(o.markdown, "Command: `" + command + "`\n\n" + table(figures, o.judge.seeds));
   return clean ? apps::kDone : apps::kRunFailed;
 }
 
@@ -105,7 +144,5 @@ int main(int argc, char** argv) {
   app.add_option("--scene", o.scenes, "Only this one (may be repeated)")->type_name("NAME");
   app.add_option("--parts", o.parts, "Folder of real parts, with pairs.json")->type_name("DIR");
   app.add_option("--markdown", o.markdown, "Also replace the generated part of this file")->type_name("FILE");
-  std::string command = "plan_judge";
-  for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
-  return apps::guarded_main(app, argc, argv, [&] { return run(o, command); });
+  return apps::guarded_main(app, argc, argv, [&] { return run(o); });
 }

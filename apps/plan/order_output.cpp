@@ -8,6 +8,7 @@
 #include "loop/scene_parts.hpp"
 #include "plan/plan_output.hpp"
 #include "review/path_exports.hpp"
+#include "review/verdict.hpp"
 #include "shared/format.hpp"
 #include "web/page.hpp"
 
@@ -73,14 +74,24 @@ std::string order_dot(const Scene& scene, const Disassembly& order) {
   return text + "}\n";
 }
 
+std::string step_file(std::size_t step) {
+  return format("step-%02zu", step + 1);
+}
+
+/// A cell that leads to a file beside the page.
+Json link(const std::string& file) {
+  return {{"text", file}, {"href", file}};
+}
+
 Json order_table(const Scene& scene, const Disassembly& order) {
-  Json t = {{"head", {"step", "part", "motions", "clearance proved (µm)", "tried in vain before, stopped by", "path"}},
+  Json t = {{"head",
+             {"step", "part", "motions", "clearance proved", "tried in vain before, stopped by", "to look at", "path"}},
             {"rows", Json::array()}};
   for (std::size_t i = 0; i < order.order.size(); ++i) {
     const Removal& r = order.order[i];
     t["rows"].push_back({std::to_string(i + 1), names(scene, r.parts, " + "), std::to_string(r.plan.path.size() - 1),
-                         format("%.3g", 1e6 * r.plan.clearance), names(scene, waited_for(order, r), ", "),
-                         format("step-%02zu.glb, step-%02zu.csv", i + 1, i + 1)});
+                         review::length_text(r.plan.clearance), names(scene, waited_for(order, r), ", "),
+                         link(step_file(i) + ".glb"), link(step_file(i) + ".csv")});
   }
   return t;
 }
@@ -131,15 +142,18 @@ void write_order(const SceneFile& file, const Disassembly& order, const std::str
   write_file(folder + "/order.dot", order_dot(file.scene, order));
   write_file(folder + "/order.html", order_html(file, order));
   for (std::size_t i = 0; i < order.order.size(); ++i)
-    write_step(file.scene, order.order[i], folder + format("/step-%02zu", i + 1));
+    write_step(file.scene, order.order[i], folder + "/" + step_file(i));
 }
 
 std::string order_text(const Scene& scene, const Disassembly& order) {
   std::string text;
   for (std::size_t i = 0; i < order.order.size(); ++i) {
     const Removal& r = order.order[i];
+    const std::size_t motions = r.plan.path.size() - 1;
     text += format("%zu. ", i + 1) + names(scene, r.parts, " + ") +
-            format(": %zu motions, proved to leave %.3g um\n", r.plan.path.size() - 1, 1e6 * r.plan.clearance);
+            (motions == 0 ? std::string(": is out where it stands")
+                          : format(": %zu motion%s", motions, motions == 1 ? "" : "s")) +
+            format(", proved to leave %.3g um\n", 1e6 * r.plan.clearance);
   }
   text += left_text(scene, order) + (order.interrupted ? " (interrupted)" : "") + "\n";
   for (const Blocked& b : order.blocked) {

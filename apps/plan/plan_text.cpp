@@ -36,8 +36,9 @@ std::string certificate(const PlanReport& r) {
 
 std::string found_text(const PlanReport& r) {
   std::string text =
-      format("\"%s\" %s: %.4g mm and %.3g degrees, in %zu motions\n  ", held_part(r.file.scene).name.c_str(),
-             r.to_goal ? "goes to its goal" : "comes out", 1e3 * r.way, kDegrees * r.turn, r.plan.path.size() - 1) +
+      format("\"%s\" %s: %.4g mm and %.3g degrees, in %zu motion%s\n  ", held_part(r.file.scene).name.c_str(),
+             r.to_goal ? "goes to its goal" : "comes out", 1e3 * r.way, kDegrees * r.turn, r.plan.path.size() - 1,
+             r.plan.path.size() == 2 ? "" : "s") +
       certificate(r) + "\n";
   for (std::size_t i = 0; i < std::min(kMaxListed, r.tightest.size()); ++i) {
     const review::PartClearance& c = r.tightest[i];

@@ -36,6 +36,12 @@ bool announce_page(const view::Server& server, const PageOptions& options, bool 
   return somebody;
 }
 
+void add_guide_option(CLI::App& app, RunOptions& options) {
+  app.add_option("--guide", options.guide,
+                 "Pull the hand gently along a path, as `plan` writes it; it may leave the path at any time")
+      ->type_name("PATH.csv");
+}
+
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--resolver", options.resolver,
                  "Contact resolver: qp or lp, or for comparison impulse or penalty; overrides the scene's")
@@ -61,12 +67,14 @@ void add_run_options(CLI::App& app, RunOptions& options) {
 
 int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal) {
   if (!options.resolver.empty()) file.scene.contact.resolver = resolver_kind(options.resolver);
+  if (!options.guide.empty()) file.files.push_back(options.guide);  // a recording must not replace it
   RunProgress progress;
   RunSettings settings;
   settings.device = options.device;
   settings.real_time = !options.fast;
   settings.seconds = options.seconds;
   settings.record = options.record;
+  settings.guide_path = options.guide;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
   settings.progress = &progress;
   BlockerWatch watch;
@@ -81,6 +89,7 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
       std::cout << format("%-12s ", "stability:") << start.stability << std::endl;
     if (!options.json) std::cout << format("%-12s ", "torsion:") << start.torsion << std::endl;
     if (!options.json && !start.weight.empty()) std::cout << format("%-12s ", "weight:") << start.weight << std::endl;
+    if (!options.json && !start.guide.empty()) std::cout << format("%-12s ", "guide:") << start.guide << std::endl;
   };
 
   RunSummary summary;

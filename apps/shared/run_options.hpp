@@ -27,6 +27,7 @@ struct RunOptions {
   bool fast = false;
   double seconds = 0;  ///< 0: to the end of the script
   std::string record;
+  std::string guide;  ///< path that the hand is pulled along; empty: none
   bool json = false;
   bool check_all = false;
   bool view = false;
@@ -50,6 +51,9 @@ view::Address page_address(const PageOptions& options);
 bool announce_page(const view::Server& server, const PageOptions& options, bool quiet = false);
 
 void add_run_options(CLI::App& app, RunOptions& options);
+
+/// The option --guide.
+void add_guide_option(CLI::App& app, RunOptions& options);
 
 /// Runs the scene with a progress line (on a terminal) and Ctrl-C ending the run with its recording kept, and reports.
 /// `goal` says in a few words what the run is to do.

@@ -151,7 +151,9 @@ Json measures_table(const Source& s) {
 }
 
 Json case_row(const Source& s, const Result& r) {
-  Json row = {std::to_string(r.number)};
+  const std::string number = std::to_string(r.number);
+  Json row = Json::array();
+  row.push_back(s.tries() ? Json(number) : Json({{"text", number}, {"href", replay_page(r.number)}}));
   for (const std::string& parameter : r.parameters) row.push_back(parameter);
   for (const Json& cell :
        {Json(r.who), Json(r.route), Json(format("%.2f", 1e3 * r.offset)), Json(format("%.1f", r.tilt * kDegrees)),
@@ -159,7 +161,7 @@ Json case_row(const Source& s, const Result& r) {
         Json(format("%.2f", r.time)), Json(format("%.2f", 1e3 * r.depth)), Json(format("%.2f", r.force)),
         Json(review::length_text(r.clearance)), Json(format("%.2f", r.stuck)), Json(r.reached ? "–" : r.why)})
     row.push_back(cell);
-  if (!s.tries()) row.push_back("tegotae study case " + s.study.path + " " + std::to_string(r.number));
+  if (!s.tries()) row.push_back("tegotae study case " + s.study.path + " " + number);
   return row;
 }
 
@@ -169,7 +171,7 @@ Json cases_table(const Source& s) {
   for (const char* name : {"operator", "route", "off (mm)", "tilt (°)", "result", "time (s)", "way (mm)", "force (N)",
                            "clearance", "wiggled (s)", "why not"})
     head.push_back(name);
-  if (!s.tries()) head.push_back("replay");
+  if (!s.tries()) head.push_back("makes the replay");
   Json rows = Json::array();
   for (std::size_t i = 0; i < std::min(kMaxRows, s.results.size()); ++i) rows.push_back(case_row(s, s.results[i]));
   return {{"head", head}, {"rows", rows}};
@@ -235,8 +237,8 @@ Json report(const Source& s) {
                     "\nEach one is a modeled operator at a simulated pen, led astray and tilted at random; what is "
                     "in the way when the time is over is who was touched most in the last half second. " +
                     (s.tries() ? "The best try is in best.csv, for tegotae review."
-                               : "The command in the last column makes a case again and records it, for tegotae replay "
-                                 "and review.")},
+                               : "The number of a case is a link to its replay. The command in its last column makes "
+                                 "that: it makes the case again and records it, for tegotae replay and review too.")},
       {"sections",
        {{{"title", "Success"},
          {"text", "With the interval that holds the true share with 95 % (Wilson)."},
@@ -250,6 +252,14 @@ Json report(const Source& s) {
 
 const char* word_for(const Study& study) {
   return study.path.empty() ? "tries" : "cases";
+}
+
+std::string case_folder(int number) {
+  return "case-" + std::to_string(number);
+}
+
+std::string replay_page(int number) {
+  return case_folder(number) + "/replay.html";
 }
 
 void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::string& folder) {

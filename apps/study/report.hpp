@@ -10,6 +10,10 @@ namespace tegotae::study {
 /// "tries" of one scene, or "cases".
 const char* word_for(const Study& study);
 
+/// Where `study case` writes a case, in the study's folder, and the page in that which replays it.
+std::string case_folder(int number);
+std::string replay_page(int number);
+
 /// Writes summary.json and report.html into `folder`. `results` in the order of their numbers. Throws Error.
 void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::string& folder);
 

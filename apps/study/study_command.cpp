@@ -17,6 +17,7 @@
 #include "study/shard.hpp"
 #include "study/study_file.hpp"
 #include "tegotae/core/error.hpp"
+#include "view/replay.hpp"
 
 namespace tegotae::study {
 namespace {
@@ -118,13 +119,9 @@ int run_all(const StudyOptions& o) {
   return merge(s);
 }
 
-int run_one(const StudyOptions& o) {
-  Opened s;
-  open(o, s);
-  if (o.number >= case_count(s.study))
-    throw Error(o.study + format(": has no case %d; its cases are 0 to %d", o.number, case_count(s.study) - 1));
-  const Case c = make_case(s.study, o.number);
-  const std::string folder = o.to.empty() ? s.out + "/case-" + std::to_string(o.number) : o.to;
+/// Makes a case again, with its recordings and the page that replays the last of them in `folder`.
+int run_one(const Opened& s, int number, const std::string& folder) {
+  const Case c = make_case(s.study, number);
   const std::size_t tasks = s.tasks->of(c).size();
   std::vector<std::string> recordings;
   const RecordTo record_to = [&](SceneFile& file, std::size_t task) {
@@ -138,11 +135,27 @@ int run_one(const StudyOptions& o) {
     std::cout << "interrupted" << std::endl;
     return apps::kRunFailed;
   }
-  std::cout << "case " << o.number << ": " << (result->reached ? "reached the goal" : "FAILED: " + result->why)
+  std::cout << "case " << number << ": " << (result->reached ? "reached the goal" : "FAILED: " + result->why)
             << format(", %.2f s, at most %.2f N\n", result->time, result->force);
   for (const std::string& recording : recordings)
     std::cout << "tegotae replay " << recording << "\ntegotae review " << recording << "\n";
-  std::cout << std::flush;
+  const std::string page = folder + "/" + fs::path(replay_page(number)).filename().string();
+  view::write_replay(view::replay_bundle(recordings.back(), {}, page), page);
+  std::cout << "replay: " << page << std::endl;
+  return apps::kDone;
+}
+
+int run_cases(const StudyOptions& o) {
+  Opened s;
+  open(o, s);
+  for (const int number : o.numbers)
+    if (number >= case_count(s.study))
+      throw Error(o.study + format(": has no case %d; its cases are 0 to %d", number, case_count(s.study) - 1));
+  if (!o.to.empty() && o.numbers.size() > 1) throw Error("study case: --to is the folder of one case");
+  for (const int number : o.numbers) {
+    const int code = run_one(s, number, o.to.empty() ? s.out + "/" + case_folder(number) : o.to);
+    if (code != apps::kDone) return code;
+  }
   return apps::kDone;
 }
 
@@ -175,9 +188,11 @@ CLI::App* add_study(CLI::App& app, StudyOptions& o) {
       ->check(CLI::Range(1, 1024))
       ->type_name("P");
   o.merge = add_part(o, "merge", "Make one table and the report of all parts");
-  o.one = add_part(o, "case", "Make a case again, and record it");
-  o.one->add_option("NUMBER", o.number, "Number of the case")->required()->check(CLI::NonNegativeNumber);
-  o.one->add_option("--to", o.to, "Folder for scene and recording")->type_name("DIR");
+  o.one = add_part(o, "case", "Make cases again, and record them");
+  o.one->add_option("NUMBER", o.numbers, "Number of a case (may be several)")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
+  o.one->add_option("--to", o.to, "Folder for scene, recording and replay")->type_name("DIR");
   for (CLI::App* part : {o.run, o.merge, o.one}) add_out(*part, o);
   return o.self;
 }
@@ -189,7 +204,7 @@ int run_study(const StudyOptions& o) {
     open(o, s);
     return merge(s);
   }
-  if (o.one->parsed()) return run_one(o);
+  if (o.one->parsed()) return run_cases(o);
   if (o.study.empty()) throw Error("study: name a study file (see --help)");
   return run_shard(o);
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace tegotae::study {
 
@@ -9,11 +10,11 @@ struct StudyOptions {
   std::string study;  ///< path of the study file
   std::string out;    ///< folder; empty: beside the study file, with its name
   std::string shard = "1/1";
-  int jobs = 0;        ///< of a shard
-  int shards = 0;      ///< of `run`; 0: fits study and processors
-  int processors = 0;  ///< of `run`; 0: all
-  int number = 0;      ///< of `case`
-  std::string to;      ///< of `case`: folder; empty: in `out`
+  int jobs = 0;              ///< of a shard
+  int shards = 0;            ///< of `run`; 0: fits study and processors
+  int processors = 0;        ///< of `run`; 0: all
+  std::vector<int> numbers;  ///< of `case`
+  std::string to;            ///< of `case`: folder of one; empty: in `out`
   CLI::App* self = nullptr;
   CLI::App* run = nullptr;
   CLI::App* merge = nullptr;

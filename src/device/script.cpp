@@ -25,6 +25,8 @@ constexpr double kFastest = 1e12, kHalfTurn = 3.15;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 constexpr std::array<std::string_view, 8> kColumns = {"t", "px", "py", "pz", "qw", "qx", "qy", "qz"};
+// In place of the index of a column: it is not one of them, and is not read.
+constexpr std::size_t kOther = kColumns.size();
 
 std::string_view trimmed(std::string_view s) {
   const std::size_t first = s.find_first_not_of(" \t\r");
@@ -35,7 +37,11 @@ std::string_view trimmed(std::string_view s) {
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> cells;
   for (;;) {
-    const std::size_t comma = line.find(',');
+    // A cell in quotes may have commas; quotes in it are doubled, so that they come in pairs.
+    std::size_t comma = line.find_first_of(",\"");
+    for (bool quoted = false; comma != std::string_view::npos && (quoted || line[comma] == '"');
+         comma = line.find_first_of(",\"", comma + 1))
+      if (line[comma] == '"') quoted = !quoted;
     cells.push_back(trimmed(line.substr(0, comma)));
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
@@ -58,11 +64,15 @@ std::string refusal(const StylusScript::Key& key, const StylusScript::Key* previ
   return {};
 }
 
-/// For each cell of the header row the index into kColumns. Throws the reason.
-std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells) {
+/// For each cell of the header row the index into kColumns; where `others` may be, of those kOther. Throws the reason.
+std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells, bool others) {
   std::vector<std::size_t> order;
   for (std::string_view cell : cells) {
     const auto found = std::find(kColumns.begin(), kColumns.end(), cell);
+    if (found == kColumns.end() && others) {
+      order.push_back(kOther);
+      continue;
+    }
     if (found == kColumns.end())
       throw Error("unknown column \"" + std::string(cell) + "\"; the header row is t,px,py,pz,qw,qx,qy,qz");
     const std::size_t column = found - kColumns.begin();
@@ -81,6 +91,7 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
     throw Error(std::to_string(cells.size()) + " values where the header row has " + std::to_string(order.size()));
   std::array<double, kColumns.size()> value{};
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (order[i] == kOther) continue;
     const char *begin = cells[i].data(), *end = begin + cells[i].size();
     if (cells[i].size() > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars takes no plus
     const auto [rest, error] = std::from_chars(begin, end, value[order[i]]);
@@ -88,6 +99,42 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
       throw Error(std::string(kColumns[order[i]]) + " is not a number: \"" + std::string(cells[i]) + "\"");
   }
   return {value[0], {Quat(value[4], value[5], value[6], value[7]), Vec3(value[1], value[2], value[3])}};
+}
+
+/// What a file is, for its messages, and whether it may have more columns.
+struct KeyFile {
+  std::string what;
+  bool others;
+};
+
+std::vector<StylusScript::Key> read_keys(const std::string& path, const KeyFile& kind) {
+  std::ifstream file(path);
+  if (!file) throw Error(path + ": cannot be opened as a " + kind.what);
+  std::vector<std::size_t> order;
+  std::vector<StylusScript::Key> keys;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1 && line.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
+      line.erase(0, kByteOrderMark.size());
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.front() == '#') continue;
+    try {
+      if (order.empty()) {
+        order = read_header(split(text), kind.others);
+        continue;
+      }
+      keys.push_back(read_row(split(text), order));
+      const std::string reason = refusal(keys.back(), keys.size() > 1 ? &keys[keys.size() - 2] : nullptr);
+      if (!reason.empty()) throw Error(reason);
+    } catch (const Error& error) {
+      throw Error(path + ":" + std::to_string(number) + ": " + error.what());
+    }
+  }
+  if (file.bad()) throw Error(path + ": cannot be read as a " + kind.what);
+  if (order.empty())
+    throw Error(path + ": empty; a " + kind.what + " begins with the header row t,px,py,pz,qw,qx,qy,qz");
+  if (keys.empty()) throw Error(path + ": no row after the header row");
+  return keys;
 }
 
 }  // namespace
@@ -125,32 +172,14 @@ Twist StylusScript::velocity(double t) const noexcept {
 }
 
 StylusScript read_script(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path + ": cannot be opened as a stylus script");
-  std::vector<std::size_t> order;
-  std::vector<StylusScript::Key> keys;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (number == 1 && line.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
-      line.erase(0, kByteOrderMark.size());
-    const std::string_view text = trimmed(line);
-    if (text.empty() || text.front() == '#') continue;
-    try {
-      if (order.empty()) {
-        order = read_header(split(text));
-        continue;
-      }
-      keys.push_back(read_row(split(text), order));
-      const std::string reason = refusal(keys.back(), keys.size() > 1 ? &keys[keys.size() - 2] : nullptr);
-      if (!reason.empty()) throw Error(reason);
-    } catch (const Error& error) {
-      throw Error(path + ":" + std::to_string(number) + ": " + error.what());
-    }
-  }
-  if (file.bad()) throw Error(path + ": cannot be read as a stylus script");
-  if (order.empty()) throw Error(path + ": empty; a stylus script begins with the header row t,px,py,pz,qw,qx,qy,qz");
-  if (keys.empty()) throw Error(path + ": no row after the header row");
-  return StylusScript(std::move(keys));
+  return StylusScript(read_keys(path, {"stylus script", false}));
+}
+
+std::vector<Pose> read_path(const std::string& path) {
+  std::vector<Pose> out;
+  for (const StylusScript::Key& key : read_keys(path, {"path", true}))
+    out.push_back({key.pose.q.normalized(), key.pose.p});
+  return out;
 }
 
 }  // namespace tegotae

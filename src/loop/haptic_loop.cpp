@@ -33,8 +33,9 @@ std::int64_t deadline(std::int64_t now_ns, double budget) {
 struct HapticLoop::State {
   std::unique_ptr<RunningScene> now;
   std::shared_ptr<SceneChanges> changes;
-  Pose Y;              // of the pen; with the weight it carries, the part is drawn to target()
+  Pose Y;              // of the pen; with the load that it carries, the part is drawn to target()
   double carried = 0;  // of the weight, 0 to 1
+  Wrench pulled;       // see pull()
   TickReport report;
   ContactList contacts;
   LagCounter lag;
@@ -54,20 +55,17 @@ struct HapticLoop::State {
     latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
   }
 
-  /// Where the pen's springs and the weight have the part: as far below the pen as the weight stretches them.
-  Pose target() const noexcept {
-    Pose out = Y;
-    // Without weight the pen's very bits.
-    if (carried > 0 && now->weight.mass > 0) out.p += now->sag(carried);
-    return out;
-  }
+  Wrench load() const noexcept { return {carried * now->weight.force + pulled.force, pulled.torque}; }
+
+  /// Where the pen's springs and the load have the part: as far off the pen as the load stretches them.
+  Pose target() const noexcept { return loaded(Y, now->mass.center, now->coupling, now->scale, load()); }
 
   /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
   const TickReport& finish() noexcept {
     const auto size = [this](const Displacement& d) { return d.dp.norm() + now->radius * d.dr.norm(); };
     const double moved = size(displacement(last_X, report.proxy.X, now->mass.center));
     last_X = report.proxy.X;
-    report.proxy.weight = carried * now->weight.force;
+    report.proxy.load = load();
     report.lag = size(displacement(report.proxy.X, target(), now->mass.center));
     lag.add(report.lag, moved, tegotae::lag_bound(now->radius), report.lag_reason);
     report.unexplained_lag_ticks = lag.ticks();
@@ -110,6 +108,7 @@ struct HapticLoop::State {
     now.reset(changed);
     if (!same) {
       Y = now->loop->pose();  // the old part's means nothing for the new one
+      pulled = {};
       begin();
     }
     contacts.clear();
@@ -158,6 +157,10 @@ Pose HapticLoop::latest() const noexcept {
 
 void HapticLoop::carry(double share) noexcept {
   state_->carried = share > 0 ? std::min(share, 1.0) : 0;
+}
+
+void HapticLoop::pull(const Wrench& wrench) noexcept {
+  state_->pulled = wrench.force.allFinite() && wrench.torque.allFinite() ? wrench : Wrench();
 }
 
 const TickReport& HapticLoop::report() const {

@@ -86,7 +86,7 @@ RunningScene::RunningScene(const Scene& scene)
       radius(radius_about(*held_mesh, mass.center)),
       coupling(fitted(scene, mass)),
       weight(held_weight(scene, mass)),
-      yields(coupling.stiffness > 0 ? scene.scale / coupling.stiffness : 0),
+      scale(scene.scale),
       loop(make_proxy_loop(coupled_by(scene, coupling), settings, mass)) {
   std::vector<Obstacle> list;
   friction_of_parts(scene);  // refuses what the loop of another resolver would not look at

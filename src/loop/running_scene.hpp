@@ -33,7 +33,7 @@ struct RunningScene {
   double radius;              ///< of the held part about its center of mass, m
   CouplingSettings coupling;  ///< nothing left open
   HeldWeight weight;          ///< of the held part
-  double yields;              ///< m of the world that the part sinks for a newton of weight
+  double scale;               ///< Scene::scale
   std::unique_ptr<ProxyLoop> loop;
   RunningScene* done_before = nullptr;          ///< see DoubleBuffer
   std::shared_ptr<SceneChange::Record> change;  ///< that it came with; null: none
@@ -42,8 +42,6 @@ struct RunningScene {
   explicit RunningScene(const Scene& scene);
   /// Sets `fresh` and `fresh_since`.
   void compare(const std::vector<Obstacle>& old, std::uint64_t old_number);
-  /// How far the part hangs below the pen with this share of its weight, m, world.
-  Vec3 sag(double share) const noexcept { return share * yields * weight.force; }
   /// Does once what is slow or allocates the first time, where the held part is.
   void warm_up();
   ~RunningScene();

@@ -63,6 +63,12 @@ class Planning {
     if (plan.found) improve(task, plan);
     tell({"certifying", result.iterations, result.poses, result.way});
     plan.clearance = certified(world_, plan.path);
+    if (plan.found && plan.clearance == 0) {
+      // What a world keeps of the motions before may cost a proof that a new one makes.
+      MotionWorld fresh(world_.scene(), world_.clearance());
+      plan.clearance = certified(fresh, plan.path);
+      count(fresh, plan);
+    }
     plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
     plan.interrupted = stopped();
@@ -177,7 +183,8 @@ class Planning {
     const double now = certified(world_, plan.path);
     for (const double share : kWiderShares) {
       const double clearance = share * most;
-      if (stopped() || clearance < kWorthwhile * now) return;
+      // Of parts that hardly leave more than what is asked for there is no wider way to look for.
+      if (stopped() || clearance < kWorthwhile * std::max(now, world_.clearance())) return;
       MotionWorld wider(world_.scene(), clearance);
       SearchTask again = task;
       again.ended = [this, &wider, most_led = led + kWiderMore] {

@@ -13,10 +13,15 @@ namespace {
 constexpr struct {
   const char* name;
   std::string RecordingInfo::*text;
-} kFields[] = {{"scene", &RecordingInfo::scene},          {"held", &RecordingInfo::held},
-               {"resolver", &RecordingInfo::resolver},    {"program", &RecordingInfo::program},
-               {"suspended", &RecordingInfo::filtered},   {"follows", &RecordingInfo::continues},
-               {"goes_on", &RecordingInfo::continued_by}, {"goal", &RecordingInfo::goal}};
+} kFields[] = {{"scene", &RecordingInfo::scene},
+               {"held", &RecordingInfo::held},
+               {"resolver", &RecordingInfo::resolver},
+               {"program", &RecordingInfo::program},
+               {"suspended", &RecordingInfo::filtered},
+               {"follows", &RecordingInfo::continues},
+               {"goes_on", &RecordingInfo::continued_by},
+               {"guide", &RecordingInfo::guide},
+               {"goal", &RecordingInfo::goal}};
 }  // namespace
 
 std::string recording_info_path(const std::string& path) {

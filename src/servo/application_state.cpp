@@ -21,10 +21,11 @@ bool constant(double x) {
 
 bool sane(const tegotae_shm_application& in) noexcept {
   return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
-         vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) && vector(in.weight).allFinite() &&
-         constant(in.stiffness) && constant(in.damping) && constant(in.torsional_stiffness) &&
-         constant(in.torsional_damping) && in.scale >= kMinScale && in.scale <= kMaxScale &&
-         in.clutch <= TEGOTAE_SHM_CLUTCH_ALL && (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
+         vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) &&
+         vector(in.load_force).allFinite() && vector(in.load_torque).allFinite() && constant(in.stiffness) &&
+         constant(in.damping) && constant(in.torsional_stiffness) && constant(in.torsional_damping) &&
+         in.scale >= kMinScale && in.scale <= kMaxScale && in.clutch <= TEGOTAE_SHM_CLUTCH_ALL &&
+         (in.home_counter == 0 || placed(in.home_position, in.home_orientation));
 }
 
 CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept {
@@ -41,7 +42,7 @@ ProxyState proxy_of(const tegotae_shm_application& in) noexcept {
   return {{quaternion(in.orientation), vector(in.position)},
           {vector(in.velocity), vector(in.angular_velocity)},
           in.touching != 0,
-          vector(in.weight)};
+          {vector(in.load_force), vector(in.load_torque)}};
 }
 
 ContactPlanes planes_of(const tegotae_shm_application& in) noexcept {

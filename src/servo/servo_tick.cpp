@@ -42,6 +42,10 @@ PassivitySettings passivity_settings(const DeviceInfo& device, double bound) {
   return s;
 }
 
+bool loads(const Wrench& load) {
+  return !load.force.isZero() || !load.torque.isZero();
+}
+
 /// 0 stands for a limit that is not known.
 double known(std::optional<double> limit) {
   return limit && std::isfinite(*limit) ? *limit : 0;
@@ -98,10 +102,9 @@ void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
 
 Wrench ServoTick::coupling(double& stored) noexcept {
   ProxyState x = proxy_of(application_);
-  const bool weighs = !x.weight.isZero() && coupling_.stiffness > 0;
-  // The part is drawn to where the weight stretches the springs to, and the hand feels how far that is from the pen.
-  Pose target = mapping_.Y();
-  if (weighs) target.p += mapping_.scale() / coupling_.stiffness * x.weight;
+  const bool weighs = loads(x.load) && coupling_.stiffness > 0;
+  // The part is drawn to where its load stretches the springs to, and the hand feels how far that is from the pen.
+  const Pose target = loaded(mapping_.Y(), command_.center, coupling_, mapping_.scale(), x.load);
   if (settings_.local_model && local_.update(planes_of(application_), coupling_radius(coupling_, mapping_.scale()),
                                              command_.center, target, mapping_.velocity(), x))
     flags_ |= TEGOTAE_SHM_FLAG_LOCAL;
@@ -120,12 +123,15 @@ Wrench ServoTick::coupling(double& stored) noexcept {
 }
 
 void ServoTick::lift(const ProxyState& x) noexcept {
-  const Vec3 at = x.X * command_.center / mapping_.scale();
-  if (!x.weight.isZero() && carries_) lifted_ -= x.weight.dot(at - carried_at_);
-  // What is lifted is told by the way alone: a weight that comes and goes, or another part, gives no energy.
-  carries_ = !x.weight.isZero();
+  const bool was_carried = carries_;
+  carries_ = loads(x.load);
+  if (was_carried && carries_) {
+    const Displacement gone = displacement(carried_at_, x.X, command_.center);
+    lifted_ -= x.load.force.dot(gone.dp) / mapping_.scale() + x.load.torque.dot(gone.dr);
+  }
+  // What is lifted is told by the way alone: a load that comes and goes, or another part, gives no energy.
   if (!carries_) lifted_ = 0;
-  carried_at_ = at;
+  carried_at_ = x.X;
 }
 
 void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {

@@ -33,7 +33,7 @@ class ServoTick {
   void tell_lead(std::int64_t now_ns) noexcept;
   /// Wrench on the pen that the coupling asks for; sets what its springs store.
   Wrench coupling(double& stored) noexcept;
-  /// Accounts for the way that the part's weight made.
+  /// Accounts for the way that the load of the part made.
   void lift(const ProxyState& x) noexcept;
   void follow_pen(const DeviceState& pen, SafetyInput& in) noexcept;
   void publish(const DeviceState& pen, const SafetyOutput& out, std::int64_t now_ns) noexcept;
@@ -57,9 +57,9 @@ class ServoTick {
   CouplingSettings coupling_;
   MappingCommand command_;
   std::optional<Vec3> held_center_;  // what the device was told last
-  double lifted_ = 0;                // J that lifting the part has stored since it has a weight
+  double lifted_ = 0;                // J that moving the part against its load has stored since it has one
   bool carries_ = false;
-  Vec3 carried_at_ = Vec3::Zero();  // its center of mass then, in the pen's lengths
+  Pose carried_at_;  // its pose then
 
   bool started_ = false;  // a proper pen has been seen
   Pose pen_;              // raw, last

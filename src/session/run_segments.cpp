@@ -98,6 +98,7 @@ void RunSegments::begin(RunSegment& segment, const Scene& scene, const InitialCo
 void RunSegments::record(RunSegment& segment, const InitialContactReport& start) {
   RecordingInfo info{file_.path, segment.held, to_string(file_.scene.contact.resolver), settings_.program,
                      names_of_suspended(start, segment.scene)};
+  info.guide = settings_.guide_path;
   if (settings_.hand != nullptr) info.goal = goal_text(file_.script.pose(file_.script.end()));
   segment.recording = settings_.record;
   if (segment.number > 0) {

@@ -9,6 +9,7 @@
 #include "loop/scene_parts.hpp"
 #include "servo/loop_priority.hpp"
 #include "session/fit_watch.hpp"
+#include "session/hand_guide.hpp"
 #include "session/pen_port.hpp"
 #include "session/run_check.hpp"
 #include "session/run_goal.hpp"
@@ -79,6 +80,7 @@ class Session {
         loop_(make_loop(file_, settings.real_time)),
         device_(make_device(file_, settings, loop_)),
         pen_(make_pen(device_.get(), file_, settings, loop_)),
+        guide_(make_guide(file_, settings, loop_)),
         goal_(file_, loop_.center()),
         duration_(duration(file_, settings)),
         check_(settings.check_all, settings.real_time),
@@ -87,8 +89,9 @@ class Session {
     summary_.held_fast.parts.reserve(file.scene.parts.size());
     summary_.stability = pen_->stability();
     if (settings.on_start)
-      settings.on_start(
-          {loop_.start(), summary_.stability, torsion_text(file_.scene, loop_), weight_text(file_.scene, loop_)});
+      settings.on_start({loop_.start(), summary_.stability, torsion_text(file_.scene, loop_),
+                         weight_text(file_.scene, loop_),
+                         guide_ ? guide_text(*guide_, loop_.report().proxy.X) : std::string()});
   }
 
   RunSummary run() {
@@ -154,7 +157,7 @@ class Session {
     PenSample pen;
     if (!pen_->read(pen, now)) return wait(now);
     const std::int64_t begin = monotonic_ns();
-    loop_.carry(carried_.update(pen, dt));
+    load(pen, dt);
     const TickReport& report = loop_.step(pen.state.pose, dt);
     const std::int64_t took = monotonic_ns() - begin;
     const std::string& held = segments_.now().held;
@@ -178,6 +181,15 @@ class Session {
     if (settings_.observer) observe(number, t, pen, tick_us);
     if (report.shrunk > 0) watch_.look(loop_, pen.state.pose, dt, summary_.held_fast);
     if (settings_.progress) show(t, pen, report);
+  }
+
+  /// What the hand carries beside the contacts: the weight of the part, and the pull of a guide along its path.
+  void load(const PenSample& pen, double dt) noexcept {
+    const double share = carried_.update(pen, dt);
+    loop_.carry(share);
+    if (!guide_ || !holds_first_) return;
+    const Wrench pull = guide_->pull(pen.state.pose, dt);
+    loop_.pull({share * pull.force, share * pull.torque});
   }
 
   void observe(std::uint64_t number, double t, const PenSample& pen, double tick_us) {
@@ -248,6 +260,7 @@ class Session {
   HapticLoop loop_;
   std::unique_ptr<SimulatedDevice> device_;  // null: another process's
   std::unique_ptr<PenPort> pen_;
+  std::optional<PathGuide> guide_;
   RunGoal goal_;
   double duration_;
   RunCheck check_;

@@ -86,7 +86,8 @@ void ContactLink::publish(const ProxyState& proxy, std::uint64_t tick, std::uint
   store(proxy.X.q, out.orientation);
   store(proxy.velocity.v, out.velocity);
   store(proxy.velocity.w, out.angular_velocity);
-  store(proxy.weight, out.weight);
+  store(proxy.load.force, out.load_force);
+  store(proxy.load.torque, out.load_torque);
   store(center_, out.center);
   out.stiffness = coupling_.stiffness;
   out.damping = coupling_.damping;

@@ -59,6 +59,26 @@ TEST_CASE("a plan is written, and a hand that follows it takes the part out") {
   CHECK(review.code != 2);
 }
 
+TEST_CASE("a planned path guides the hand of a run, and no recording replaces it") {
+  const TempFolder folder;
+  const std::string to = folder / "out", path = to + "/path.csv";
+  REQUIRE(run_program("tegotae", "plan " + scene("straight") + " --seed 1 --to " + to).code == 0);
+  const std::string run = "run " + scene("straight") + " --fast --seconds 1 --guide " + path;
+  const std::string record = folder / "run.csv";
+  const Output o = run_program("tegotae", run + " --record " + record);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("guide:       0.7 N and "));
+  // The scene's hand stays, and feels the pull up, out of the hole.
+  const Recording recording = read_recording(record);
+  CHECK(recording.info.guide == path);
+  CHECK(recording.frames.back().wrench.force.z() == Approx(0.7).epsilon(0.05));
+  const std::string before = read_text(path);
+  const Output over = run_program("tegotae", run + " --record " + path);
+  CHECK(over.code == 2);
+  CHECK(read_text(path) == before);
+}
+
 TEST_CASE("the same seed writes the same bytes") {
   const TempFolder folder;
   for (const char* to : {"a", "b"})

@@ -54,6 +54,7 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   CHECK(summary_in(out).at("blocked_by") == json::object({{"hole", 2}}));
   CHECK_THAT(read_text(out + "/cases.csv"), Contains("\"blocked by hole at ("));
   CHECK_THAT(read_text(out + "/report.html"), Contains("tegotae study case"));
+  CHECK_THAT(read_text(out + "/report.html"), Contains("case-2/replay.html"));
 
   // The written case has the peg's size, and its recording a verdict in the review.
   const Output again = study("case " + file + " 2 --to " + folder / "c");
@@ -67,6 +68,13 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   INFO(review.out << review.err);
   CHECK(review.code == 0);
   CHECK_THAT(review.out, Contains("It goes in"));
+  CHECK_THAT(read_text(folder / "c/replay.html"), Contains("</html>"));
+  // Where the report's links lead, of several at once.
+  study("case " + file + " 0 2");
+  CHECK_THAT(read_text(out + "/case-0/replay.html"), Contains("</html>"));
+  CHECK_THAT(read_text(out + "/case-2/replay.html"), Contains("</html>"));
+  const Output none = study("case " + file + " 2 999", 2);
+  CHECK_THAT(none.err, Contains("has no case 999, but 0 to "));
   const Output fails = study("case " + file + " 0 --to " + folder / "d");
   CHECK_THAT(fails.out, Contains("case 0: FAILED: blocked by hole at ("));
   CHECK_THAT(run_program("tegotae", "review " + folder / "d/recording.mcap").out, Contains("It does not go in"));

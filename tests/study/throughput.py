@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """How many cases a second, on how many processors, and what the drivers cost: throughput.py TEGOTAE [--markdown FILE]
-[--cases N]. With --markdown it replaces the generated part of a file."""
+[--cases N]. With --markdown it replaces the generated part of a file. What a driver costs is in processor time, which
+other work on the machine hardly changes; it changes the cases a second, so the table tells the load."""
 import argparse
 import os
+import resource
 import shlex
 import sys
 import tempfile
@@ -25,25 +27,31 @@ def commands(tegotae, study, out, processors, shards):
     return ways
 
 
+def processor_time():
+    """Of all processes that were waited for, s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def measure(tegotae, folder, way, cases, processors, per_shard):
-    """Seconds that it takes."""
+    """Seconds that it takes, and of processors."""
     where = tempfile.mkdtemp(dir=folder)
     study = drivers.write_study(where, cases)
-    command = commands(tegotae, study, where + "/out", processors, cases // per_shard)[way]
-    begin = time.monotonic()
+    command = commands(tegotae, study, where + "/out", processors, max(1, cases // per_shard))[way]
+    begin, before = time.monotonic(), processor_time()
     drivers.run(command, cwd=where)
-    return time.monotonic() - begin
+    return time.monotonic() - begin, processor_time() - before
 
 
 def line(tegotae, folder, way, cases, processors, per_shard, alone):
     """A row: the time of a quarter of the cases tells what a case takes and what the start does."""
     few, many = (measure(tegotae, folder, way, n, processors, per_shard) for n in (cases // 4, cases))
-    each = (many - few) / (cases - cases // 4)
-    start = max(0.0, few - each * (cases // 4))
+    each, work = ((many[i] - few[i]) / (cases - cases // 4) for i in (0, 1))
+    start = max(0.0, few[0] - each * (cases // 4))
     if way == "one process":
-        alone[processors] = each
+        alone[processors] = work
         return "| %d | %s | – | %.1f | %.1f | – |" % (processors, way, start, 1 / each)
-    cost = 1e3 * processors * (each - alone[processors])
+    cost = 1e3 * (work - alone[processors])
     return "| %d | %s | %d | %.1f | %.1f | %.1f |" % (processors, way, per_shard, start, 1 / each, cost)
 
 
@@ -61,13 +69,16 @@ def main():
     rows = ["Command: `python3 tests/study/throughput.py build/release/bin/tegotae --cases %d --markdown docs/study.md`" % o.cases,
             "", "| processors | driver | cases a shard | start and end, s | cases a second | driver's cost, ms a case |",
             "|---|---|---|---|---|---|"]
-    alone = {}
+    alone, load = {}, [os.getloadavg()[0]]
     with tempfile.TemporaryDirectory(prefix="tegotae_throughput_") as folder:
         for processors in steps:
             for way in commands(tegotae, "", "", 1, 1):
                 for per_shard in (20,) if way == "one process" else (1, 20):
                     rows.append(line(tegotae, folder, way, o.cases, processors, per_shard, alone))
                     print(rows[-1], flush=True)
+                    load.append(os.getloadavg()[0])
+    rows[1] = "%d processors; load of the machine before it began %.1f, while it ran %.1f to %.1f.\n" % (
+        os.cpu_count() or 1, load[0], min(load[1:]), max(load[1:]))
     if not o.markdown:
         return
     with open(o.markdown, encoding="utf-8") as file:

@@ -31,13 +31,19 @@ struct ProxyState {
   Pose X;                 ///< X_WF of its file frame
   Twist velocity;         ///< `v` of its center of mass
   bool touching = false;  ///< contacts hold it back, or the contact loop lags
-  /// N, world: of the held part as the hand carries it, on the pen at the center of mass. The part then hangs below the
-  /// pen by weight / stiffness.
-  Vec3 weight = Vec3::Zero();
+  /// What pulls at the part beside the contacts, as the hand feels it: its weight, and a guide (HapticLoop::pull).
+  /// World, at the center of mass. It draws the part away from the pen by load / stiffness; see loaded().
+  Wrench load = {};
 };
 
+/// Where the springs of the coupling draw the held part while `load` pulls at it: off the pen at `Y` by F / k and
+/// turned by T / k_t about its center of mass (`center`, file frame, m), in the world, of which `scale` meters are a
+/// meter of the pen. `Y` itself without load, and for a stiffness of zero.
+Pose loaded(const Pose& Y, const Vec3& center, const CouplingSettings& settings, double scale,
+            const Wrench& load) noexcept;
+
 /// Wrench on the pen at the held part's center of mass, expressed in the world:
-/// F = k (X − Y) + d (Ẋ − Ẏ), T = k_t rotvec(R_X R_Yᵀ) + d_t (ω_X − ω_Y); when not touching the weight alone.
+/// F = k (X − Y) + d (Ẋ − Ẏ), T = k_t rotvec(R_X R_Yᵀ) + d_t (ω_X − ω_Y); when not touching the load alone.
 /// `center` is the center of mass in the file frame (m); `Y_velocity.v` is the velocity of that point of the pen's
 /// body.
 Wrench coupling_wrench(const CouplingSettings& settings, const ProxyState& x, const Pose& Y, const Twist& Y_velocity,

@@ -42,4 +42,9 @@ class StylusScript {
 /// lines and lines that begin with # are skipped. Throws Error naming the file, the line and the reason.
 StylusScript read_script(const std::string& path);
 
+/// Reads the poses of a path (X_WF of the held part's file frame): a CSV file as read_script() reads, in which other
+/// columns may stand beside those of a script, as in what `tegotae plan` and `tegotae review --csv` write. Throws Error
+/// naming the file, the line and the reason.
+std::vector<Pose> read_path(const std::string& path);
+
 }  // namespace tegotae

@@ -42,7 +42,7 @@
 /** The bytes "TEGOTAE1" in little-endian order. */
 #define TEGOTAE_SHM_MAGIC UINT64_C(0x314541544F474554)
 /** Changes with every change of the layout or of a field's meaning. */
-#define TEGOTAE_SHM_VERSION UINT32_C(5)
+#define TEGOTAE_SHM_VERSION UINT32_C(6)
 
 /** Bytes of the object that the device's process and the application lock. The kernel ends a lock of an open file
  * description with the process that holds it, so the lock proves that the process lives. */
@@ -160,7 +160,7 @@ struct tegotae_shm_application {
   uint64_t tick;            /**< number of the contact loop's tick */
   uint64_t device_sequence; /**< the pen's sample that this tick answered */
   int64_t attachment;       /**< when this application attached, monotonic ns: another value is another application */
-  uint32_t touching;        /**< nonzero: at least one contact; otherwise the wrench is the weight */
+  uint32_t touching;        /**< nonzero: at least one contact; otherwise the wrench is the load */
   uint32_t enable;          /**< nonzero: the application asks for force */
   uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: what the part does not follow now */
   uint32_t home_counter; /**< a new value other than 0 makes Y jump to the home pose; begins at 0 in each attachment */
@@ -176,7 +176,8 @@ struct tegotae_shm_application {
   double scale;               /**< meters of the world for a meter of the pen, from 0.01 to 100 */
   double home_position[3];    /**< of the held part's file frame */
   double home_orientation[4]; /**< of the same */
-  double weight[3];           /**< N, of the held part, on the pen at the center of mass; 0: not felt */
+  double load_force[3];       /**< N, weight and guide, on the pen at the held part's center of mass; 0: none */
+  double load_torque[3];      /**< N*m, of the same about that center */
   double pen_position[3];     /**< Y that this tick answered */
   double pen_orientation[4];  /**< of the same */
   uint32_t plane_count;       /**< number of valid planes, up to TEGOTAE_SHM_PLANES; 0: X stays until the next tick */
@@ -231,17 +232,17 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, raw_position) == 240, "la
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, scale) == 296, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_device, attachment) == 368, "layout of tegotae_shm_device");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_plane) == 64, "layout of tegotae_shm_plane");
-TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 744, "layout of tegotae_shm_application");
+TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_application) == 768, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, touching) == 32, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, position) == 48, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, scale) == 208, "layout of tegotae_shm_application");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, plane_count) == 352, "layout of tegotae_shm_application");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_application, plane_count) == 376, "layout of tegotae_shm_application");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_statistics) == 304, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_statistics, force_off) == 104, "layout of tegotae_shm_statistics");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, device_counter) == 64, "layout of tegotae_shm_segment");
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, application_counter) == 448, "layout of tegotae_shm_segment");
-TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1216, "layout of tegotae_shm_segment");
-TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1536, "layout of tegotae_shm_segment");
+TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1280, "layout of tegotae_shm_segment");
+TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1600, "layout of tegotae_shm_segment");
 
 /** Attempts of a read before it gives up. A write takes well under a microsecond. A reader that still fails has met a
  * writer that was preempted or killed in the middle, and continues with what it read last. */

@@ -35,7 +35,7 @@ struct TickReport {
   ProxyState proxy;            ///< X, its velocity, and whether it touches
   ContactPlanes planes;        ///< for a servo that updates X between two ticks
   /// What the contacts exert on the held part at the end of the tick. Together with `forces.lag` it is the wrench of
-  /// the coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.weight`, before the damper, the servo's
+  /// the coupling's springs, k (X − Y) and k_t rotvec(R_X R_Yᵀ), less `proxy.load`, before the damper, the servo's
   /// newer Y and the safety chain. Only resolvers that project (Resolver::projects, "qp") report forces, and only while
   /// the part touches.
   ContactForces forces;
@@ -108,6 +108,12 @@ class HapticLoop {
   /// some 0.3 s once the force is on, because the part sinks by weight / stiffness and the safety chain waits until a
   /// force that jumps is over.
   void carry(double share) noexcept;
+
+  /// Sets what else pulls at the held part from the next tick on, beside its weight: a wrench at its center of mass
+  /// (world, N and N·m as the hand feels them), such as that of a guide. It goes with the proxy to the servo
+  /// (ProxyState::load), which gives it to the hand. A wrench that is not finite counts as zero, and a change of the
+  /// held part makes it zero. Keep it small and let it grow slowly, as for carry(). Call it in the thread of step().
+  void pull(const Wrench& wrench) noexcept;
 
   /// Continues in another scene: parts are added, removed, hidden (left out), moved, or another one is held. Any thread
   /// may call it while step() runs. The call builds what is new (parts that share a mesh with the present scene share

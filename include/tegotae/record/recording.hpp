@@ -36,6 +36,7 @@ struct RecordingInfo {
   std::string filtered{};
   std::string continues{};     ///< the recording beside it that it continues: the scene changed there
   std::string continued_by{};  ///< the recording beside it that continues it: the scene changed there
+  std::string guide{};         ///< path of the file whose path pulled the hand along
   std::string goal{};  ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
 };
 

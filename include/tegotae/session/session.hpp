@@ -91,6 +91,7 @@ struct RunStart {
   const std::string& stability;       ///< as RunSummary::stability
   const std::string& torsion;         ///< the torsional stiffness in use and the reason for it, in one line, for people
   const std::string& weight;          ///< of the held part, in one line, for people; empty when the hand feels none
+  const std::string& guide;           ///< along RunSettings::guide_path, in one line, for people; empty without one
 };
 
 /// How run_session() runs a scene.
@@ -101,8 +102,13 @@ struct RunSettings {
   bool real_time = true;  ///< false: virtual time, as fast as possible and the same on every run
   /// Length of the run, s. 0: to the end of the script plus kSettleTime; with another process's device until `stop`.
   double seconds = 0;
-  std::string record;                 ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
-  std::string program;                ///< name and version, for the recording's info
+  std::string record;   ///< recording (CSV, or MCAP by its ending, see Recorder); empty: none
+  std::string program;  ///< name and version, for the recording's info
+  /// Path (CSV as of `tegotae plan` and `review --csv`, see read_path) along which the run pulls the hand gently while
+  /// it holds the scene's held part: with at most 1 N, with half of what the weight leaves of the device's continuous
+  /// force, and with nothing farther than 20 mm (a turn counts by the coupling's radius) from the path. Empty: none.
+  /// Needs "qp".
+  std::string guide_path;
   RunProgress* progress = nullptr;    ///< receives the progress; null disables it
   RunObserver* observer = nullptr;    ///< called around every tick; null disables it
   RunEdits* edits = nullptr;          ///< changes the scene during the run; null: the scene stays
@@ -178,9 +184,9 @@ inline constexpr double kSettleTime = 0.5;
 /// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
 /// script and build give the same recording byte for byte.
 ///
-/// Throws Error when the loop cannot hold the scene (see HapticLoop), the recording cannot be begun, or it would
-/// replace a file from which the scene was read (SceneFile::files). A recording that fails later does not end the run;
-/// the summary says what was lost.
+/// Throws Error when the loop cannot hold the scene (see HapticLoop), the guide's path cannot be read, the recording
+/// cannot be begun, or it would replace a file from which the scene was read (SceneFile::files). A recording that fails
+/// later does not end the run; the summary says what was lost.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);
 
 }  // namespace tegotae

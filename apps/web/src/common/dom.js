@@ -13,7 +13,7 @@ function cellText(value) {
   return rounding ? "< 1e-6" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
 }
 
-// A table of {caption?, head: [...], rows: [[cell, ...], ...]}; a cell is text, a number or {text, class}.
+// A table of {caption?, head: [...], rows: [[cell, ...], ...]}; a cell is text, a number or {text, class?, href?}.
 export function tableOf({ caption, head, rows }) {
   const table = element("table");
   if (caption) table.append(element("caption", caption));
@@ -24,7 +24,13 @@ export function tableOf({ caption, head, rows }) {
     const tr = element("tr");
     for (const cell of row) {
       const rich = cell !== null && typeof cell === "object";
-      tr.append(element("td", rich ? cell.text : cellText(cell), rich ? cell.class : ""));
+      const td = element("td", rich ? "" : cellText(cell), rich ? cell.class : "");
+      if (rich) {
+        const text = element(cell.href ? "a" : "span", cell.text);
+        if (cell.href) text.href = cell.href;
+        td.append(text);
+      }
+      tr.append(td);
     }
     table.append(tr);
   }
