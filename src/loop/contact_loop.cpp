@@ -384,11 +384,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
     // Cutting planes between triangles that do not touch explain no lag.
     if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
-    const double far = size(metric_.unwhiten(wanted));
-    // Of a shorter way a program that does not project may take a part where of the whole it takes nothing.
-    if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
-        !solve((cap / far) * wanted, report, motion))
-      return false;
+    if (!resolver_->projects() && !try_shorter_ways(wanted, cap, report, motion)) return false;
   }
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
@@ -403,6 +399,18 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   if (rubs) recover_gaps(report, motion);
   trial.d = metric_.unwhiten(motion);
   trial.X = displaced(X_, center_, trial.d);
+  return true;
+}
+
+bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
+  const double far = size(metric_.unwhiten(wanted));
+  Vec6 best = motion;
+  for (double way = std::min(cap, far); way > keep_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
+       way *= kShorter) {
+    if (!solve((way / far) * wanted, report, motion)) return false;
+    if (motion.dot(wanted) > best.dot(wanted)) best = motion;
+  }
+  motion = best;
   return true;
 }
 
