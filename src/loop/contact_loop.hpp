@@ -79,6 +79,8 @@ class ContactLoop final : public ProxyLoop {
   void shorter_than(double cap);
   /// Whether a cutting plane limits the motion.
   bool cutting() const;
+  /// Marks the limits that `motion` uses up: they carry.
+  void mark_carriers(const Vec6& motion);
   /// Limit number `i` carries in the last program.
   void carries(std::size_t i);
   /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,
