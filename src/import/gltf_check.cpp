@@ -9,6 +9,7 @@
 
 #include "core/whole_number.hpp"
 #include "import/file_check.hpp"
+#include "import/gltf_buffers.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -99,7 +100,7 @@ class GltfCheck {
         there = (uri.size() - std::min(uri.size(), uri.find(',') + 1)) / 4 * 3;
         there += 3;  // without padding
       } else {
-        const std::filesystem::path file = std::filesystem::path(path_).parent_path() / decoded(uri);
+        const std::filesystem::path file = std::filesystem::path(path_).parent_path() / decoded_uri(uri);
         std::error_code status;
         if (!std::filesystem::is_regular_file(file, status)) refuse("its buffer " + file.string() + " is missing");
         there = std::filesystem::file_size(file);
@@ -120,20 +121,6 @@ class GltfCheck {
     const auto all = of.find("extensions");
     if (all == of.end() || !all->is_object() || !all->contains(name)) return nullptr;
     return &(*all)[name];
-  }
-
-  static std::string decoded(const std::string& uri) {
-    std::string out;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-      if (uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) != 0 &&
-          std::isxdigit(static_cast<unsigned char>(uri[i + 2])) != 0) {
-        out.push_back(static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)));
-        i += 2;
-      } else {
-        out.push_back(uri[i]);
-      }
-    }
-    return out;
   }
 
   void check_view(std::size_t i) const {

@@ -60,6 +60,9 @@ constexpr double kKeepGrowth = 1.1;
 // looked for among about so many limits.
 constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMaxWedging = 64;
+// A part that stands between opposite sides and may go along them by this share of its way, if the limits give way by
+// the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
+constexpr double kAlongShare = 1e-2;
 // Forces of a piece that are remembered until the end of the tick.
 constexpr std::size_t kMaxForces = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
@@ -358,6 +361,12 @@ bool ContactLoop::cutting() const {
   return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
+void ContactLoop::mark_carriers(const Vec6& motion) {
+  far_planes_ = false;
+  for (int i = 0; i < rows_.rows(); ++i)
+    if (rows_.row(i).dot(motion) <= bounds_[static_cast<std::size_t>(i)] + kRest) carries(static_cast<std::size_t>(i));
+}
+
 void ContactLoop::carries(std::size_t i) {
   at_.contacts->carries(i);
   if (!far_planes_ && at_.contacts->limits()[i].age == kOneShotAge)
@@ -384,11 +393,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
     // Cutting planes between triangles that do not touch explain no lag.
     if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
-    const double far = size(metric_.unwhiten(wanted));
-    // Of a shorter way a program that does not project may take a part where of the whole it takes nothing.
-    if (!resolver_->projects() && far > cap && size(metric_.unwhiten(motion)) < kRest &&
-        !solve((cap / far) * wanted, report, motion))
-      return false;
+    if (!resolver_->projects() && !try_shorter_ways(wanted, cap, report, motion)) return false;
   }
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
@@ -406,12 +411,26 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   return true;
 }
 
+bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
+  const double far = size(metric_.unwhiten(wanted));
+  Vec6 best = motion;
+  for (double way = std::min(cap, far); way > keep_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
+       way *= kShorter) {
+    if (!solve((way / far) * wanted, report, motion)) return false;
+    if (motion.dot(wanted) > best.dot(wanted)) best = motion;
+  }
+  motion = best;
+  return true;
+}
+
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   const auto& limits = at_.contacts->limits();
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the program allows it; without recovery it has an
-  // answer, because standing still is one, but for rounding.
+  // answer, because standing still is one, but for rounding. Between walls without room that may be the only one, by
+  // rounding too.
+  bool only_stands = false;
   for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
     const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) {
@@ -422,16 +441,22 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     report.iterations += r.iterations;
     report.status = r.status;
     motion = r.motion;
+    if (only_stands && (r.status != ResolveStatus::solved || motion.norm() < kAlongShare * wanted.norm())) break;
     if (r.status != ResolveStatus::solved) continue;
     // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
     if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * keep_) continue;
-    far_planes_ = false;
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) carries(i);
+    only_stands = recovery == 0 && slack == 0 && resolver_->projects() && motion.norm() < kRest &&
+                  wanted.norm() > kRest && wedged();
+    if (only_stands) continue;
+    mark_carriers(motion);
     return true;
   }
-  return false;
+  if (!only_stands) return false;
+  motion.setZero();
+  report.status = ResolveStatus::solved;
+  mark_carriers(motion);
+  return true;
 }
 
 bool ContactLoop::is_free(const Trial& trial, TickReport& report) {

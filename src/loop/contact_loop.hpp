@@ -43,6 +43,9 @@ class ContactLoop final : public ProxyLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One program over the limits: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Of a shorter way a program that does not project may bring a part nearer to its pen than of the whole, of which it
+  /// makes `motion`: the best of some.
+  bool try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
   /// The last forces of a piece, as forces of the contacts that are tracked now.
   const std::vector<FrictionForce>& known_forces();
   /// The same with friction, without gaps that should open.
@@ -76,6 +79,8 @@ class ContactLoop final : public ProxyLoop {
   void shorter_than(double cap);
   /// Whether a cutting plane limits the motion.
   bool cutting() const;
+  /// Marks the limits that `motion` uses up: they carry.
+  void mark_carriers(const Vec6& motion);
   /// Limit number `i` carries in the last program.
   void carries(std::size_t i);
   /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,

@@ -31,9 +31,7 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
         const Contact& c = limits[static_cast<std::size_t>(f.row)];
         if (known_.size() < known_.capacity()) known_.push_back({c.part, c.feature_a, c.feature_b, f});
       }
-    far_planes_ = false;
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      if (rows_.row(static_cast<int>(i)).dot(motion) <= bounds_[i] + kRest) carries(i);
+    mark_carriers(motion);
     return true;
   }
   return false;

@@ -9,6 +9,7 @@
 
 #include "core/name_list.hpp"
 #include "import/file_check.hpp"
+#include "import/gltf_buffers.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/held_weight.hpp"
 #include "loop/scene_parts.hpp"
@@ -116,6 +117,12 @@ void read_parts(const TomlTable& top, const std::filesystem::path& folder, const
     top.fail("part", "no part is held; give one of them held = true, or name one with --hold NAME (there are " +
                          name_list(part_names(scene)) + ")");
   meshes.read(options, scene.parts);
+  const std::set<std::string> named(files.begin(), files.end());
+  for (const std::string& file : named) {
+    const std::string extension = lower_extension(file);
+    if (extension != ".gltf" && extension != ".glb") continue;
+    for (std::string& buffer : gltf_buffer_files(file)) files.push_back(std::move(buffer));
+  }
 }
 
 std::string one_of(const TomlTable& t, const char* key, const std::string& otherwise,

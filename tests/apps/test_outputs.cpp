@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,32 @@ TEST_CASE("an output that is an input of the same command is refused, by whateve
       CHECK(read_text(r.folder / c.victim) == before);
     }
   }
+}
+
+TEST_CASE("the buffer that a mesh of the scene names is an input", "[outputs]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const float corners[] = {0, 0, 0, 10, 0, 0, 0, 10, 0, 0, 0, 10};
+  const std::uint16_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  folder.write("a b.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+                              std::string(reinterpret_cast<const char*>(faces), sizeof faces));
+  folder.write("tet.gltf",
+               R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"buffers":[{"uri":"a%20b.bin","byteLength":72}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[10,10,10]},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}]})");
+  std::string scene = read_text(folder / "scene.toml");
+  scene.replace(scene.find("tet.obj"), 7, "tet.gltf");
+  folder.write("scene.toml", scene);
+  const std::string run = "$B/tegotae run scene.toml --fast --seconds 0.1 --record ";
+  REQUIRE(shell(folder, run + "r.csv").code == 0);
+  const std::string before = read_text(folder / "a b.bin");
+  for (const std::string name : {"'a b.bin'", "'./a b.bin'", "tet.gltf"})
+    check_named(shell(folder, run + name), {"would be replaced"});
+  check_named(shell(folder, "$B/tegotae review r.csv --out 'a b.bin'"), {"would be replaced"});
+  CHECK(read_text(folder / "a b.bin") == before);
 }
 
 TEST_CASE("tries do not replace the scene's files, and two outputs are two files", "[outputs]") {

@@ -96,7 +96,7 @@ struct Counts {
   double most_in_air = 0;  // N
 };
 
-/// Boards about the held box, some of them there.
+/// Boards about the held box, some of them there; under `qp` they may rub.
 Scene random_scene(std::mt19937& rng, const std::shared_ptr<const TriangleMesh>& body) {
   std::uniform_real_distribution<double> unit(-1, 1);
   Scene scene;
@@ -109,6 +109,7 @@ Scene random_scene(std::mt19937& rng, const std::shared_ptr<const TriangleMesh>&
     scene.parts.push_back({"board " + std::to_string(side), kBoard, {q, (0.035 + 0.008 * unit(rng)) * out}});
   }
   scene.parts.push_back({"body", body, Pose(), true});
+  if (scene.contact.resolver == ResolverKind::qp && rng() % 2 == 0) scene.friction.mu = 0.4;
   return scene;
 }
 

@@ -196,8 +196,7 @@ TEST_CASE("what holds a pressed part are contacts, on any kind of triangles", "[
           c.name, resolver, loop.report().contacts, most, silent, 1e3 * worst_lag);
       INFO(c.name << ", " << resolver);
       CHECK(silent == 0);
-      // `lp` creeps on surfaces that curve; see docs/limits.md.
-      if (c.flat || scene.contact.resolver == ResolverKind::qp) CHECK(loop.report().unexplained_lag_ticks == 0);
+      CHECK(loop.report().unexplained_lag_ticks == 0);
     }
   }
 }

@@ -33,6 +33,5 @@ TEST_CASE("a still pen gives a still part", "[sim]") {
   CHECK(moved < 1e-6);
   CHECK(turned < 1e-4);
   CHECK(force_change < 0.01);
-  // The paper's program creeps up to what it touches.
-  if (resolver == "qp") CHECK(unexplained_lag_ticks() == unexplained);
+  CHECK(unexplained_lag_ticks() == unexplained);
 }

@@ -28,7 +28,8 @@ std::string write_scene(const TempFolder& folder) {
 
 TEST_CASE("every setting that a scene file knows makes another task, and how it is written does not") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder), text = read_text(scene);
+  const std::string scene = write_scene(folder);
+  std::string text = read_text(scene);
   const auto print = [&](const std::string& more, std::uint64_t seed = 1, double seconds = 6) {
     folder.write("scene.toml", text + more);
     study::Study study;
@@ -67,7 +68,23 @@ TEST_CASE("every setting that a scene file knows makes another task, and how it 
                                   "[coupling]\nstiffness = 700\n",
                                   "[coupling]\ndamping = 4\n",
                                   "[coupling]\ntorsional_stiffness = 0.2\n",
-                                  "[coupling]\ntorsional_damping = 0.003\n"};
+                                  "[coupling]\ntorsional_damping = 0.003\n",
+                                  "[contact]\nl_0 = 1e-4\n",
+                                  "[device]\nhand = { torsional_stiffness = 4 }\n",
+                                  "[device]\nhand = { torsional_damping = 0.1 }\n",
+                                  "[device]\nhand = { inertia = 1e-3 }\n",
+                                  "[friction]\nmu = 0.1\n",
+                                  "[friction]\nmu = 0.2\n",
+                                  "[[friction.pair]]\nparts = [\"block\", \"roof\"]\nmu = 0.1\n"};
   for (const char* setting : settings) prints.insert(print(setting));
-  CHECK(prints.size() == 3 + std::size(settings));
+  // Keys of no table stand above the first one, those of a part in its own.
+  const std::string own = text;
+  const std::string above[] = {"weight = true\n", "weight = true\ngravity = [0, 0, -5]\n"};
+  for (const std::string& key : above) {
+    text = key + own;
+    prints.insert(print(""));
+  }
+  text = own + "mass = 0.1\n";
+  prints.insert(print(""));
+  CHECK(prints.size() == 3 + std::size(settings) + std::size(above) + 1);
 }

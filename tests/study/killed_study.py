@@ -36,12 +36,14 @@ exec %(isolate)s setsid --wait bash -c 'echo $$ >> "'"%(folder)s/hosts/$name"'";
 
 def undisturbed(tegotae, folder, cases):
     study = drivers.write_study(folder, cases)
+    begin = time.time()
     drivers.run([tegotae, "study", study, "--out", folder + "/once", "--jobs", "2"])
+    took = time.time() - begin
     drivers.run([tegotae, "study", "merge", study, "--out", folder + "/once"])
     table = drivers.read(folder, "once", "cases.csv")
     if table.count(b"\n") != cases + 2:
         sys.exit("the undisturbed table has %d lines" % table.count(b"\n"))
-    return study, table
+    return study, table, took
 
 
 def processes():
@@ -84,13 +86,12 @@ def run_shards(o, folder, study, chance):
     """Two workers at a time, both killed now and then."""
     shards = ["%d/7" % i for i in range(1, 8)] + ["3/7"]  # one of them twice
     todo, running, kills = list(reversed(shards)), [], 0
-    wait = max(0.02, o.cases * 0.012 / max(1, o.kills))
     while todo or running:
         while todo and len(running) < 2:
             shard = todo.pop()
             command = [o.tegotae, "study", study, "--out", folder + "/out", "--jobs", "1", "--shard", shard]
             running.append((shard, subprocess.Popen(command, stdout=subprocess.DEVNULL)))
-        time.sleep(wait * 2 * chance.random())
+        time.sleep(o.wait * 2 * chance.random())
         if kills < o.kills:
             if kill([chance.choice(running)[1].pid]):
                 kills += 1
@@ -109,12 +110,11 @@ def run_shards(o, folder, study, chance):
 def watch(process, o, victims, chance, what):
     """Kills one of victims() now and then until the process has ended."""
     kills, end = 0, time.time() + PATIENCE
-    wait = max(0.05, o.cases * 0.012 / max(1, o.kills))
     while process.poll() is None:
         if time.time() > end:
             kill([process.pid])
             sys.exit(what + " does not end")
-        time.sleep(wait * 2 * chance.random())
+        time.sleep(o.wait * 2 * chance.random())
         found = victims()
         if kills < o.kills and found and kill(chance.choice(found)):
             kills += 1
@@ -185,7 +185,8 @@ def main():
     chance = random.Random(o.seed)
     ways = {"shards": run_shards, "hosts": run_hosts, "hypershell": run_hypershell}
     with tempfile.TemporaryDirectory(prefix="tegotae_study_") as folder:
-        study, table = undisturbed(o.tegotae, folder, o.cases)
+        study, table, took = undisturbed(o.tegotae, folder, o.cases)
+        o.wait = 0.5 * took / max(1, o.kills)  # whatever the machine, the kills fall within the study
         begin = time.time()
         kills = ways[o.how](o, folder, study, chance)
         took = time.time() - begin

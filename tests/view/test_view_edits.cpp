@@ -256,13 +256,18 @@ TEST_CASE("parts are held, moved, removed and added back while a pen runs and th
   check_force_after(all[3]);
   check_force_after(all[6]);
 
-  // The tick that goes over to a change is no longer than others may be: the budget, and what the machine adds.
+  // The tick that goes over to a change is no longer than others may be: the budget, or what the machine makes of it.
   std::vector<double> tick_us;
-  for (std::size_t k = 1; k < all.size(); ++k) tick_us.push_back(all[k].recording.frames.front().tick_us);
+  double longest_other = 0;
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    const auto& frames = all[k].recording.frames;
+    tick_us.push_back(frames.front().tick_us);
+    for (std::size_t i = 1; i < frames.size(); ++i) longest_other = std::max(longest_other, frames[i].tick_us);
+  }
   std::sort(tick_us.begin(), tick_us.end());
   std::cout << "ticks that went over to a change: median " << tick_us[tick_us.size() / 2] << ", longest "
-            << tick_us.back() << " us\n";
-  CHECK(tick_us[tick_us.size() / 2] < 1000);
+            << tick_us.back() << " us; longest of the others " << longest_other << " us\n";
+  CHECK(tick_us[tick_us.size() / 2] <= std::max(1e6 * ContactSettings().tick_budget, longest_other));
 }
 
 TEST_CASE("a run in virtual time that stands takes changes, and goes on in them") {
