@@ -210,8 +210,8 @@ void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), report.planes,
-                 report.forces);
+    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), deadline_ns_,
+                 report.planes, report.forces);
   } else {
     // Out of time, the limits may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "tegotae/core/clock.hpp"
+
 namespace tegotae {
 namespace {
 
@@ -87,6 +89,7 @@ bool FrictionSolver::shift(const FrictionProblem& problem) noexcept {
     estimate_.clear();
     cone_.forces(estimate_);
     if (refine(problem, cone_.z(), estimate_)) return true;
+    if (past(problem.deadline_ns)) return false;
     for (int i = 0; i < problem.normals.rows(); ++i) {
       if (!(problem.mu[i] > 0)) continue;
       const TangentRows& t = problem.tangents[i];
@@ -97,12 +100,13 @@ bool FrictionSolver::shift(const FrictionProblem& problem) noexcept {
   return false;
 }
 
-void FrictionSolver::relax(const FrictionProblem& problem) noexcept {
+bool FrictionSolver::relax(const FrictionProblem& problem) noexcept {
   result_.method = FrictionMethod::relaxed;
   result_.z.setZero();
   result_.forces.clear();
   const bool solved = cone_.solve(problem.bounds, RelaxedCone::kFine, estimate_);
   result_.iterations += cone_.changes();
+  if (!solved && past(problem.deadline_ns)) return false;
   // Standing still is always allowed.
   if (solved) {
     result_.z = cone_.z();
@@ -110,6 +114,26 @@ void FrictionSolver::relax(const FrictionProblem& problem) noexcept {
   }
   result_.residual = coulomb_residual(problem, result_.z, result_.forces);
   result_.exact = result_.residual <= kExact * problem.wanted.norm();
+  return true;
+}
+
+const FrictionResult& FrictionSolver::end_late(const FrictionProblem& problem,
+                                               const std::vector<FrictionForce>& guess) noexcept {
+  result_.status = guess.empty() ? LpStatus::stalled : LpStatus::optimal;
+  result_.method = FrictionMethod::late;
+  result_.exact = false;
+  result_.forces.clear();
+  result_.z = guess.empty() ? Vec6(Vec6::Zero()) : problem.wanted;
+  for (const FrictionForce& f : guess) {
+    if (problem.bounds[f.row] < 0) continue;
+    result_.forces.push_back(f);
+    result_.z += f.normal * problem.normals.row(f.row);
+    if (!(problem.mu[f.row] > 0)) continue;
+    const TangentRows& t = problem.tangents[f.row];
+    result_.z += f.tangential[0] * t.row[0] + f.tangential[1] * t.row[1];
+  }
+  result_.residual = coulomb_residual(problem, result_.z, result_.forces);
+  return result_;
 }
 
 const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
@@ -122,6 +146,7 @@ const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
     cone_.set_problem(problem);
     estimate_.assign(guess.begin(), guess.end());
     if (shift(problem)) return result_;
+    if (past(problem.deadline_ns)) return end_late(problem, guess);
   }
   const QpResult& qp = frictionless_.solve(problem.normals, problem.bounds, problem.wanted);
   take_frictionless(qp);
@@ -133,11 +158,12 @@ const FrictionResult& FrictionSolver::solve(const FrictionProblem& problem,
   const bool ended = active_set_.solve(problem, from);
   result_.iterations += active_set_.rounds();
   if (ended && take_active_set(problem, FrictionMethod::sliding)) return result_;
+  if (past(problem.deadline_ns)) return end_late(problem, guess);
   cone_.set_problem(problem);
   estimate_sliding(problem, qp);
   // After a guess the convex neighbors have been tried already.
-  if (!(guess.empty() && shift(problem))) relax(problem);
-  return result_;
+  if (guess.empty() && shift(problem)) return result_;
+  return !past(problem.deadline_ns) && relax(problem) ? result_ : end_late(problem, guess);
 }
 
 }  // namespace tegotae
