@@ -44,13 +44,15 @@ struct tegotae_tick {
 
 /** A place where the held part A touches a fixed part B. */
 struct tegotae_contact {
-  uint32_t part;     /**< B, as tegotae_scene_add() numbered it */
-  int32_t began;     /**< 1 in the first step of a contact */
-  double point_a[3]; /**< on A, m, world */
-  double point_b[3]; /**< on B, m, world */
-  double normal[3];  /**< unit, from B to A, world */
-  double gap;        /**< m */
-  double force;      /**< N, along the normal on A; NaN: not known */
+  uint32_t part;      /**< B, as tegotae_scene_add() numbered it */
+  int32_t began;      /**< 1 in the first step of a contact */
+  double point_a[3];  /**< on A, m, world */
+  double point_b[3];  /**< on B, m, world */
+  double normal[3];   /**< unit, from B to A, world */
+  double gap;         /**< m */
+  double force;       /**< N, along the normal on A; NaN: not known */
+  double friction[3]; /**< N, on A across the normal, world */
+  int32_t slides;     /**< nonzero: A's point has slid in the step, where there is friction */
 };
 
 /** What a rig's time is: of the machine's clock, or moved on by each step by a millisecond, which repeats bit for bit.

@@ -195,6 +195,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   was_cut_ = report.flags.timed_out;
   tell_forces(Y, report);
   tell_slip(moved, report.forces);
+  report.flags.timed_out |= late();  // forces with friction may have run out of time
   // What the tick leaves over gets ready for the first touch.
   if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
     const Displacement to_pen = displacement(X_, Y, center_);

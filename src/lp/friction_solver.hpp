@@ -13,7 +13,7 @@ enum class FrictionMethod {
   frictionless,  ///< no contact with friction carries force
   sliding,       ///< exact, from the frictionless motion
   refined,       ///< exact, from the convex neighbor's answer or from the guess
-  relaxed,       ///< of the convex neighbor: exact (see `exact`) where nothing slides
+  relaxed,       ///< of the last convex neighbor that keeps the bounds: exact (see `exact`) where nothing slides
   late           ///< the deadline passed: the guess as it was, or without one no answer
 };
 
@@ -48,8 +48,10 @@ class FrictionSolver {
   void estimate_sliding(const FrictionProblem& problem, const QpResult& qp) noexcept;
   /// From the convex neighbor, whose forces are near estimate_, on towards the law; false when it does not come there.
   bool shift(const FrictionProblem& problem) noexcept;
-  /// False when time was up before the convex neighbor was solved.
-  bool relax(const FrictionProblem& problem) noexcept;
+  /// Keeps the convex neighbor's answer for take_nearest() if it keeps the problem's bounds.
+  void keep_nearest(const FrictionProblem& problem) noexcept;
+  /// Takes the last answer that was kept, or standing still.
+  void take_nearest(const FrictionProblem& problem) noexcept;
   /// What there is when time is up: those forces of the guess whose contacts touch, and the motion that is left with
   /// them; without a guess no answer.
   const FrictionResult& end_late(const FrictionProblem& problem, const std::vector<FrictionForce>& guess) noexcept;
@@ -59,6 +61,8 @@ class FrictionSolver {
   RelaxedCone cone_;
   std::vector<double> shifted_;  // bounds
   std::vector<FrictionForce> estimate_;
+  Vec6 nearest_z_ = Vec6::Zero();  // see keep_nearest()
+  std::vector<FrictionForce> nearest_;
   FrictionResult result_;
 };
 

@@ -16,7 +16,6 @@ class RelaxedCone {
   /// For at most `capacity` rows; allocates.
   explicit RelaxedCone(int capacity);
 
-  static constexpr double kFine = 1e-10;
   /// Takes the problem, which must live until the last solve of it.
   void set_problem(const FrictionProblem& problem) noexcept;
   /// Limits hold to `tolerance` of the wanted motion, with the problem's bounds or others (one for each row). False
