@@ -87,7 +87,9 @@ Creep rest(double mu, int ticks) {
 Jitter jitter(double mu, int ticks) {
   std::mt19937 random(1);
   const auto off = [&random] {
-    const auto one = [&random] { return kPenNoise * (2.0 * random() / std::mt19937::max() - 1); };
+    const auto one = [&random] {
+      return kPenNoise * (2.0 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1);
+    };
     const double x = one(), y = one(), z = one();
     return Vec3(x, y, z);
   };
