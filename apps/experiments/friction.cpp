@@ -268,7 +268,8 @@ void add_rest(const Work& work, Outcome& out) {
   out.sections.push_back(
       {"At rest and to and fro",
        "A block is pressed by 1.6 N, pulled to 0.8 of its friction and twisted, and watched; then led to "
-       "and fro by 5 mm. Then the pen is off by up to 15 µm along each axis, anew in every tick.",
+       "and fro by 5 mm. Then it is pulled to half, and the pen is off by up to 15 µm along each axis, anew in every "
+       "tick.",
        {plot},
        {table}});
   out.csv.push_back(csv);

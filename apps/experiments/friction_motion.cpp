@@ -24,11 +24,12 @@ Pose press(LoadRig& rig) {
   return Y;
 }
 
-/// The pen's pose that holds the block by 0.8 of its friction, twisted, after it has come to rest there.
-Pose hold(LoadRig& rig, double mu) {
+/// The pen's pose that pulls the block by `share` of its friction, tilts it and twists it by `twist` (rad), after it
+/// has come to rest there.
+Pose hold(LoadRig& rig, double mu, double share, double twist) {
   Pose Y = press(rig);
-  Y.p.x() += 0.8 * mu * kPress;
-  Y.q = rotation({0.01, 0.005, 0.02}) * Y.q;
+  Y.p.x() += share * mu * kPress;
+  Y.q = rotation({0.01, 0.005, twist}) * Y.q;
   for (int i = 0; i < 200; ++i) rig.step(Y);
   return Y;
 }
@@ -77,7 +78,7 @@ Slot slide_in_slot(double play, double mu) {
 
 Creep rest(double mu, int ticks) {
   LoadRig rig(block_on_floor(kBlock, mu));
-  const Pose Y = hold(rig, mu);
+  const Pose Y = hold(rig, mu, 0.8, 0.02);
   const Pose from = rig.X();
   for (int i = 0; i < ticks; ++i) rig.step(Y);
   const Displacement crept = displacement(from, rig.X(), rig.loop().center());
@@ -97,7 +98,8 @@ Jitter jitter(double mu, int ticks) {
   out.mu = mu;
   {
     LoadRig rig(block_on_floor(kBlock, mu));
-    const Pose Y = hold(rig, mu), from = rig.X();
+    // Well within its cone: at its border any push outwards moves a part for good, as Coulomb has it.
+    const Pose Y = hold(rig, mu, 0.5, 0.02 * mu), from = rig.X();
     const Wrench still = rig.felt(Y);
     for (int i = 0; i < ticks; ++i) {
       const Vec3 e = off();

@@ -29,8 +29,8 @@ struct Creep {
 };
 Creep rest(double mu, int ticks);
 
-/// The same block, and one that is led over the floor, under a pen whose position is off by up to kPenNoise along each
-/// axis, by another amount in every tick: an encoder's step and a hand's tremor.
+/// A block at rest well within its cone, and one that is led over the floor, under a pen whose position is off by up to
+/// kPenNoise along each axis, by another amount in every tick: an encoder's step and a hand's tremor.
 struct Jitter {
   double mu = 0;
   double way = 0;    ///< that the block at rest made, m
