@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "experiments/friction_scenes.hpp"
 #include "experiments/load_rig.hpp"
@@ -20,6 +21,16 @@ Pose press(LoadRig& rig) {
     Y.p.z() = from - kPress * std::min(1.0, i / 200.0);
     rig.step(Y);
   }
+  return Y;
+}
+
+/// The pen's pose that pulls the block by `share` of its friction, tilts it and twists it by `twist` (rad), after it
+/// has come to rest there.
+Pose hold(LoadRig& rig, double mu, double share, double twist) {
+  Pose Y = press(rig);
+  Y.p.x() += share * mu * kPress;
+  Y.q = rotation({0.01, 0.005, twist}) * Y.q;
+  for (int i = 0; i < 200; ++i) rig.step(Y);
   return Y;
 }
 
@@ -67,23 +78,51 @@ Slot slide_in_slot(double play, double mu) {
 
 Creep rest(double mu, int ticks) {
   LoadRig rig(block_on_floor(kBlock, mu));
-  Pose Y = press(rig);
-  Y.p.x() += 0.8 * mu * kPress;
-  Y.q = rotation({0.01, 0.005, 0.02}) * Y.q;
-  for (int i = 0; i < 200; ++i) rig.step(Y);
+  const Pose Y = hold(rig, mu, 0.8, 0.02);
   const Pose from = rig.X();
   for (int i = 0; i < ticks; ++i) rig.step(Y);
   const Displacement crept = displacement(from, rig.X(), rig.loop().center());
-  Creep out{mu, crept.dp.norm(), crept.dr.norm(), 0};
-  unsigned random = 1;
-  for (int i = 0; i < 20000; ++i) {
-    random = random * 1664525u + 1013904223u;
-    Pose pen = Y;
-    pen.p.x() += (random >> 16 & 1) != 0 ? 30e-6 : 0;
-    pen.p.z() += (random >> 17 & 1) != 0 ? 30e-6 : 0;
-    rig.step(pen);
+  return {mu, crept.dp.norm(), crept.dr.norm()};
+}
+
+Jitter jitter(double mu, int ticks) {
+  std::mt19937 random(1);
+  const auto off = [&random] {
+    const auto one = [&random] {
+      return kPenNoise * (2.0 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1);
+    };
+    const double x = one(), y = one(), z = one();
+    return Vec3(x, y, z);
+  };
+  Jitter out;
+  out.mu = mu;
+  {
+    LoadRig rig(block_on_floor(kBlock, mu));
+    // Well within its cone: at its border any push outwards moves a part for good, as Coulomb has it.
+    const Pose Y = hold(rig, mu, 0.5, 0.02 * mu), from = rig.X();
+    const Wrench still = rig.felt(Y);
+    for (int i = 0; i < ticks; ++i) {
+      const Vec3 e = off();
+      const Pose pen{Y.q, Y.p + e};
+      rig.step(pen);
+      const Vec3 change = rig.felt(pen).force - still.force;
+      out.share = std::max(out.share, change.norm() / (rig.loop().coupling().stiffness * e.norm()));
+      out.way = std::max(out.way, displacement(from, rig.X(), rig.loop().center()).dp.norm());
+    }
   }
-  out.jitter_way = displacement(from, rig.X(), rig.loop().center()).dp.norm();
+  LoadRig rig(block_on_floor(kBlock, mu));
+  Pose Y = press(rig);
+  constexpr int kTicks = 300, kStarting = 60;
+  for (int i = 0; i < kTicks; ++i) {
+    Y.p.x() += 1e-4;
+    const Pose pen{Y.q, Y.p + off()};
+    const double before = rig.X().p.x();
+    rig.step(pen);
+    if (i < kStarting) continue;
+    const Vec3 f = rig.felt(pen).force;
+    out.worst = std::max(out.worst, std::abs(f.head<2>().norm() / (mu * f.z()) - 1));
+    out.back += rig.X().p.x() < before ? 1 : 0;
+  }
   return out;
 }
 
@@ -114,6 +153,7 @@ Hysteresis to_and_fro(double mu) {
   }
   const double sticks = mu * normal / rig.loop().coupling().stiffness;
   out.breakaway_expected = sticks;
+  out.step = kReach * 2 * M_PI / kTicks;
   out.expected = 4 * mu * normal * (kReach - sticks);
   return out;
 }

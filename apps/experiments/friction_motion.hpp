@@ -26,9 +26,20 @@ Slot slide_in_slot(double play, double mu);
 /// A block under force and twist within the cone, for so many ticks.
 struct Creep {
   double mu = 0, way = 0, turn = 0;  ///< m, rad
-  double jitter_way = 0;             ///< m, under a pen that jumps by 30 µm for 20 s, for comparison
 };
 Creep rest(double mu, int ticks);
+
+/// A block at rest well within its cone, and one that is led over the floor, under a pen whose position is off by up to
+/// kPenNoise along each axis, by another amount in every tick: an encoder's step and a hand's tremor.
+struct Jitter {
+  double mu = 0;
+  double way = 0;    ///< that the block at rest made, m
+  double share = 0;  ///< the largest change of its wrench, by the stiffness times what the pen was off
+  double worst = 0;  ///< while it is led: the largest |F_t / (mu N) - 1|
+  int back = 0;      ///< ticks in which it went back
+};
+inline constexpr double kPenNoise = 15e-6;  // m
+Jitter jitter(double mu, int ticks);
 
 /// The pen to and fro over a floor.
 struct Hysteresis {
@@ -36,6 +47,7 @@ struct Hysteresis {
   std::vector<double> pen, force;                ///< mm, N, over the last round
   double lost = 0, expected = 0;                 ///< J a round
   double breakaway = 0, breakaway_expected = 0;  ///< m of the pen
+  double step = 0;                               ///< of the pen, the longest, m
 };
 Hysteresis to_and_fro(double mu);
 

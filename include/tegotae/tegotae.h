@@ -43,13 +43,15 @@ struct tegotae_tick {
 
 /** Place where the held part A touches a fixed part B. */
 struct tegotae_contact {
-  uint32_t part;     /**< B, as tegotae_scene_add() numbered it */
-  int32_t began;     /**< 1 in the first step of a contact */
-  double point_a[3]; /**< on A, m, world */
-  double point_b[3]; /**< on B, m, world */
-  double normal[3];  /**< unit, from B to A, world */
-  double gap;        /**< m */
-  double force;      /**< N, along the normal on A; NaN: not known */
+  uint32_t part;      /**< B, as tegotae_scene_add() numbered it */
+  int32_t began;      /**< 1 in the first step of a contact */
+  double point_a[3];  /**< on A, m, world */
+  double point_b[3];  /**< on B, m, world */
+  double normal[3];   /**< unit, from B to A, world */
+  double gap;         /**< m */
+  double force;       /**< N, along the normal on A; NaN: not known */
+  double friction[3]; /**< N, on A across the normal, world */
+  int32_t slides;     /**< nonzero: A's point has slid in the step, where there is friction */
 };
 
 /** Source of a rig's time: the machine's clock, or each step advances it by a millisecond, and the run repeats bit for

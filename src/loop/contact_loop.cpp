@@ -198,6 +198,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   was_cut_ = report.flags.timed_out;
   tell_forces(Y, report);
   tell_slip(moved, report.forces);
+  report.flags.timed_out |= late();  // forces with friction may have run out of time
   // What the tick leaves over gets ready for the first touch.
   if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
     const Displacement to_pen = displacement(X_, Y, center_);
@@ -213,8 +214,8 @@ void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), report.planes,
-                 report.forces);
+    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), deadline_ns_,
+                 report.planes, report.forces);
   } else {
     // Out of time, the limits may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));

@@ -1,6 +1,7 @@
 // What of a piece is different where contacts rub.
 #include "loop/contact_loop.hpp"
 #include "loop/kept_gap.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
@@ -16,12 +17,17 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
   const auto& limits = at_.contacts->limits();
   rows_.clear();
   for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  // The first program of a tick is solved to its end, or a part whose budget is short would never move.
+  const std::int64_t deadline_ns = report.resolves == 0 ? kNoDeadline : deadline_ns_;
   for (const double slack : {0.0, kNormalNoise}) {
     const double give = slack * wanted.norm();
     for (std::size_t i = 0; i < limits.size(); ++i) bounds_[i] = bound_of(limits[i], keep_, recover_below_, 0) - give;
-    const Resolution r = resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted));
+    const Resolution r =
+        resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted, deadline_ns));
     ++report.resolves;
     report.iterations += r.iterations;
+    // Out of time is no failure of the program; the tick says that it was cut.
+    if (r.status == ResolveStatus::stalled && past(deadline_ns)) return false;
     report.status = r.status;
     motion = r.motion;
     if (r.status != ResolveStatus::solved) continue;

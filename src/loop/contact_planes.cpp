@@ -15,14 +15,15 @@ constexpr double kTouching = 1e-7;
 }  // namespace
 
 bool PlanePicker::solve(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction,
-                        const Vec6& wanted, const std::vector<FrictionForce>& guess, Vec6& left) noexcept {
+                        const Vec6& wanted, const std::vector<FrictionForce>& guess, std::int64_t deadline_ns,
+                        Vec6& left) noexcept {
   forces_.clear();
   rubs_ = friction.fill(limits, metric);
   if (rubs_) {
     // Forces that hold the part here press where it touches, to the last digits of a gap.
     for (const FrictionForce& f : guess)
       if (double& bound = bounds_[static_cast<std::size_t>(f.row)]; bound > -kTouching) bound = 0;
-    const FrictionProblem problem = friction.problem(rows_, bounds_.data(), wanted);
+    const FrictionProblem problem = friction.problem(rows_, bounds_.data(), wanted, deadline_ns);
     const FrictionResult& r = friction_solver_.solve(problem, guess);
     if (r.status != LpStatus::optimal) return false;
     forces_.assign(r.forces.begin(), r.forces.end());
@@ -43,7 +44,7 @@ bool PlanePicker::solve(const std::vector<Contact>& limits, const Metric& metric
 
 void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Pose& X,
                        const Pose& Y, const Vec3& center, double keep, const std::vector<FrictionForce>& guess,
-                       ContactPlanes& planes, ContactForces& forces) noexcept {
+                       std::int64_t deadline_ns, ContactPlanes& planes, ContactForces& forces) noexcept {
   planes.count = forces.count = 0;
   forces.available = false;
   planes.X = X;
@@ -58,7 +59,7 @@ void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric,
     bounds_[i] = std::min(keep, limits[i].gap) - limits[i].gap;
   }
   Vec6 left;
-  if (!solve(limits, metric, friction, metric.whiten(error), guess, left)) return;
+  if (!solve(limits, metric, friction, metric.whiten(error), guess, deadline_ns, left)) return;
   // What the solution still goes is not held by contacts: the springs pull the part there.
   forces.lag = pull(metric.unwhiten(left));
   forces.available = true;

@@ -29,17 +29,18 @@ class PlanePicker {
 
   /// `metric` is the coupling's, oriented as X is. First the limits that carry force where X would go on towards Y
   /// (they keep the gap `keep`), then those with the least room. No planes and no forces when the program stalls.
-  /// `friction` is scratch for the limits' tangents. `guess`: forces that may hold the part there, by limit, or none.
+  /// `friction` is scratch for the limits' tangents. `guess`: forces that may hold the part there, by limit, or none;
+  /// with friction they are what is told when `deadline_ns` passes, and what they do not hold is the lag.
   void pick(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Pose& X,
             const Pose& Y, const Vec3& center, double keep, const std::vector<FrictionForce>& guess,
-            ContactPlanes& planes, ContactForces& forces) noexcept;
+            std::int64_t deadline_ns, ContactPlanes& planes, ContactForces& forces) noexcept;
   /// What the springs pull, `d` from X to Y, at the center of mass.
   Wrench pull(const Displacement& d) const noexcept { return {-stiffness_ * d.dp, -torsional_stiffness_ * d.dr}; }
 
  private:
   /// Sets forces_ and what the part still goes, in whitened coordinates; false when the program stalls.
   bool solve(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Vec6& wanted,
-             const std::vector<FrictionForce>& guess, Vec6& left) noexcept;
+             const std::vector<FrictionForce>& guess, std::int64_t deadline_ns, Vec6& left) noexcept;
 
   LeastDistanceSolver solver_;
   FrictionSolver friction_solver_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lp/small_lu.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
@@ -270,7 +271,7 @@ bool FrictionActiveSet::refine(const FrictionProblem& problem, const Vec6& from,
 
 bool FrictionActiveSet::run(bool first) noexcept {
   for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
-    if (!step()) return false;
+    if (past(problem_->deadline_ns) || !step()) return false;
     if (drop_pulling(first)) continue;
     first = false;
     const Change stuck = stick_or_turn();

@@ -19,7 +19,7 @@ class FrictionActiveSet {
   explicit FrictionActiveSet(int capacity);
 
   /// Starts from the contacts that touch after the motion `from`, each sliding as that has it, or sticking where it
-  /// does not slide. False when the rounds ran out or it went in a circle.
+  /// does not slide. False when the rounds or the time ran out or it went in a circle.
   bool solve(const FrictionProblem& problem, const Vec6& from) noexcept;
 
   /// Starts from an answer that is nearly right: its contacts with force, which slide where `from` has them slide.

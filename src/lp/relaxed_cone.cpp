@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tegotae/core/clock.hpp"
+
 namespace tegotae {
 namespace {
 
@@ -152,6 +154,7 @@ bool RelaxedCone::solve(const double* bounds, double tolerance, const std::vecto
   start_from(start);
   Row row;
   while (most_violated(tolerance * scale, row)) {
+    if (past(problem_->deadline_ns)) return false;
     if (take(row)) continue;
     return !most_violated(std::max(tolerance, kAccepted) * scale, row);
   }

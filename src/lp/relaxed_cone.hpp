@@ -16,11 +16,11 @@ class RelaxedCone {
   /// For at most `capacity` rows; allocates.
   explicit RelaxedCone(int capacity);
 
-  static constexpr double kFine = 1e-10;
   /// Takes the problem, which must live until the last solve of it.
   void set_problem(const FrictionProblem& problem) noexcept;
   /// Limits hold to `tolerance` of the wanted motion, with the problem's bounds or others (one for each row). False
-  /// when precision is lost, which leaves standing still. `start`: forces that are near those of the answer, or none.
+  /// when precision is lost, which leaves standing still, or the problem's time is up. `start`: forces that are near
+  /// those of the answer, or none.
   bool solve(const double* bounds, double tolerance, const std::vector<FrictionForce>& start = {}) noexcept;
 
   // Of the last solve that succeeded:

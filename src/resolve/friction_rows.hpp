@@ -17,8 +17,9 @@ class FrictionRows {
 
   /// Takes the contacts, in their order; whether one of them has friction. `metric` is oriented as the held part is.
   bool fill(const std::vector<Contact>& contacts, const Metric& metric) noexcept;
-  FrictionProblem problem(const LowRankMatrix& normals, const double* bounds, const Vec6& wanted) const noexcept {
-    return {normals, bounds, tangents_.data(), mu_.data(), wanted};
+  FrictionProblem problem(const LowRankMatrix& normals, const double* bounds, const Vec6& wanted,
+                          std::int64_t deadline_ns) const noexcept {
+    return {normals, bounds, tangents_.data(), mu_.data(), wanted, deadline_ns};
   }
   /// Of contact `i`.
   double mu(std::size_t i) const noexcept { return mu_[i]; }

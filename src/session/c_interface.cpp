@@ -234,6 +234,8 @@ int64_t tegotae_rig_contacts(const tegotae_rig* rig, struct tegotae_contact* con
       store(c.normal, out.normal);
       out.gap = c.gap;
       out.force = c.force.value_or(std::numeric_limits<double>::quiet_NaN());
+      store(c.friction, out.friction);
+      out.slides = c.slides ? 1 : 0;
     }
     return static_cast<int64_t>(all.size());
   });

@@ -204,3 +204,21 @@ TEST_CASE("a cutting plane knows how far apart its triangles are", "[contact]") 
     CHECK_FALSE(set.touches(0, 0.999 * apart));
   }
 }
+
+TEST_CASE("a cutting plane's triangle may have collapsed in welding", "[contact]") {
+  // Two of its corners are one vertex: it has no edges to walk over, and is the way between the other two.
+  TriangleMesh flat;
+  flat.vertices = {Vec3::Zero(), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0)};
+  flat.triangles = {{0, 1, 2}, {0, 1, 1}};
+  TriangleMesh over = flat;
+  const double height = 1e-5;
+  for (Vec3& v : over.vertices) v.z() += height;
+  ContactSet set(surface(over), {{surface(flat), Pose{}}}, Vec3::Zero(), 64);
+  REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
+  const Displacement d{Vec3(0, 0, -2e-5), Vec3::Zero()};
+  REQUIRE(set.cut({{0, 1, 0}, {0, 0, 1}, {0, 1, 1}}, d, 1e-6, kNoDeadline) > 0);
+  for (std::size_t i = 0; i < set.limits().size(); ++i) {
+    CHECK(set.touches(i, 1.001 * height));
+    CHECK_FALSE(set.touches(i, 0.999 * height));
+  }
+}

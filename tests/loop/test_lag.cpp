@@ -3,6 +3,7 @@
 #include "catch.hpp"
 #include "loop/lag.hpp"
 #include "models/shapes.hpp"
+#include "stress_run.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -151,4 +152,17 @@ TEST_CASE("a pen that is not followed is said not to be", "[lag]") {
   CHECK(tick.proxy.velocity.v.isZero());
   CHECK(tick.substeps.size() == 1);
   CHECK(loop.step(at_height(0.014), 0.001).lag_reason == LagReason::none);
+}
+
+TEST_CASE("a peg that is pulled through its hole from afar is not held by play and friction", "[lag][friction]") {
+  // The pen stands 10 mm further and to the side; the first motion that obeys friction's convex neighbor is the play
+  // over mu a tick.
+  StressOptions options;
+  options.mu = 0.64;
+  LatencyHistogram cpu;
+  const StressResult run = run_stress_script(stress_scene("peg_0.99", 138), 138, options, cpu);
+  CHECK(run.ticks == options.ticks);
+  CHECK(run.touching > 0);
+  CHECK(run.intersecting == 0);
+  CHECK(run.unexplained == 0);
 }

@@ -15,6 +15,8 @@ using namespace tegotae::test;
 namespace {
 
 constexpr double kDegree = M_PI / 180;
+/// Of the wanted motion: how far the convex neighbor is solved.
+constexpr double kFine = 1e-10;
 
 /// Whether the part moves at all under the load.
 bool sticks(const FrictionCase& c, const Vec6& load) {
@@ -324,7 +326,7 @@ TEST_CASE("the convex neighbor has one answer, wherever the search for it starts
     const Vec6 wanted = random_case(u, static_cast<Kind>(i % 4), 4 + i % 60, 0.1 + 0.1 * (i % 6), c);
     const FrictionProblem p = c.problem(wanted);
     cone.set_problem(p);
-    REQUIRE(cone.solve(p.bounds, RelaxedCone::kFine));
+    REQUIRE(cone.solve(p.bounds, kFine));
     const Vec6 z = cone.z();
     std::vector<FrictionForce> right, wrong;
     cone.forces(right);
@@ -333,7 +335,7 @@ TEST_CASE("the convex neighbor has one answer, wherever the search for it starts
       wrong.push_back({static_cast<int>(u.uniform(0, c.size())), nu, {t * std::cos(angle), t * std::sin(angle)}, true});
     }
     for (const auto& start : {right, wrong}) {
-      REQUIRE(cone.solve(p.bounds, RelaxedCone::kFine, start));
+      REQUIRE(cone.solve(p.bounds, kFine, start));
       // Limits that hold to 1e-10 leave the nearest motion open to the root of that.
       CHECK((cone.z() - z).norm() < 1e-4 * wanted.norm());
       for (int k = 0; k < c.size(); ++k) {
@@ -436,4 +438,49 @@ TEST_CASE("solving allocates nothing and takes a bounded number of rounds", "[fr
   }
   CHECK(allocations == 0);
   CHECK(most < 400 + 2 * 26 + 301);
+}
+
+TEST_CASE("out of time a solve has no answer, or the guess whose contacts touch", "[friction]") {
+  Random u(17);
+  FrictionSolver solver(FrictionCase::kMax), other(FrictionCase::kMax);
+  FrictionCase c;
+  int with_force = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec6 wanted = random_case(u, static_cast<Kind>(i % 4), 4 + i % 60, 0.3, c);
+    const FrictionProblem in_time = c.problem(wanted);
+    FrictionProblem late = in_time;
+    late.deadline_ns = 1;
+    const FrictionResult& whole = other.solve(in_time);
+    const std::vector<FrictionForce> guess = whole.forces;
+    const FrictionResult& r = solver.solve(late);
+    if (r.method != FrictionMethod::frictionless) {
+      CHECK(r.method == FrictionMethod::late);
+      CHECK(r.status == LpStatus::stalled);
+      CHECK_FALSE(r.exact);
+      CHECK(r.z.isZero());
+      CHECK(r.forces.empty());
+    }
+    if (guess.empty()) continue;
+    const FrictionResult& kept = solver.solve(late, guess);
+    CHECK(kept.method == FrictionMethod::late);
+    CHECK(kept.status == LpStatus::optimal);
+    std::vector<FrictionForce> touching;
+    for (const FrictionForce& f : guess)
+      if (late.bounds[f.row] == 0) touching.push_back(f);
+    with_force += touching.empty() ? 0 : 1;
+    REQUIRE(kept.forces.size() == touching.size());
+    for (std::size_t k = 0; k < touching.size(); ++k) CHECK(kept.forces[k].row == touching[k].row);
+    // Each within its cone, and what they do not hold is the motion.
+    const LawError e = law_error(late, kept.z, kept.forces);
+    CHECK(e.balance < 1e-12);
+    CHECK(e.cone < 1e-9);
+  }
+  CHECK(with_force > 50);
+  // A deadline that does not pass changes nothing.
+  for (int i = 0; i < 100; ++i) {
+    const Vec6 wanted = random_case(u, static_cast<Kind>(i % 4), 4 + i % 60, 0.3, c);
+    FrictionProblem far = c.problem(wanted);
+    far.deadline_ns = kNoDeadline - 1;
+    CHECK(solver.solve(far).z == other.solve(c.problem(wanted)).z);
+  }
 }

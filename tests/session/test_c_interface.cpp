@@ -97,6 +97,60 @@ TEST_CASE("a rig from C is pressed on a floor and feels it", "[c_interface]") {
   tegotae_rig_destroy(rig);
 }
 
+TEST_CASE("a contact from C tells its friction, and whether it slides", "[c_interface]") {
+  const TempFolder folder;
+  folder.write("scene.toml",
+               "unit = \"mm\"\n[friction]\nmu = 0.3\n"
+               "[[part]]\nname = \"floor\"\nmesh = \"" TEGOTAE_MODELS_DIR
+               "/floor.obj\"\n"
+               "[[part]]\nname = \"cube\"\nmesh = \"" TEGOTAE_MODELS_DIR
+               "/cube.obj\"\nheld = true\nposition = [0, 0, 0.03]\n");
+  tegotae_scene* scene = tegotae_scene_load((folder / "scene.toml").c_str());
+  INFO(error());
+  REQUIRE(scene != nullptr);
+  tegotae_rig* rig = tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED);
+  REQUIRE(rig != nullptr);
+  REQUIRE(tegotae_rig_start(rig) == 0);
+  tegotae_tick tick = {};
+  double pen[7] = {0, 0, 0.03, 1, 0, 0, 0};
+  const auto step = [&] {
+    REQUIRE(tegotae_rig_lead(rig, pen) == 0);
+    REQUIRE(tegotae_rig_step(rig, &tick) == 0);
+  };
+  for (int i = 0; i < 3000 && tick.contacts == 0; ++i) {
+    pen[2] -= 1e-5;
+    step();
+  }
+  REQUIRE(tick.contacts > 0);
+  pen[2] -= 1e-3;
+  for (int i = 0; i < 1000; ++i) step();
+  tegotae_contact contacts[32];
+  int64_t count = tegotae_rig_contacts(rig, contacts, 32);
+  for (int64_t k = 0; k < count; ++k) CHECK(contacts[k].slides == 0);
+  // The pen goes in steps of its resolution, so that there are ticks without a motion.
+  int slid = 0;
+  for (int i = 0; i < 1000; ++i) {
+    pen[0] += 1e-5;
+    step();
+    count = tegotae_rig_contacts(rig, contacts, 32);
+    for (int64_t k = 0; k < count; ++k) slid += contacts[k].force > 0 && contacts[k].slides != 0 ? 1 : 0;
+  }
+  REQUIRE(count >= 4);
+  REQUIRE(count <= 32);
+  CHECK(slid > 200);
+  double normal = 0, friction[3] = {0, 0, 0};
+  for (int64_t k = 0; k < count; ++k) {
+    normal += contacts[k].force;
+    for (int i = 0; i < 3; ++i) friction[i] += contacts[k].friction[i];
+  }
+  CHECK(normal > 0.2);
+  CHECK(friction[0] == Approx(-0.3 * normal).epsilon(0.01));
+  CHECK(friction[1] == Approx(0).margin(0.01 * normal));
+  CHECK(friction[2] == Approx(0).margin(1e-6));
+  tegotae_rig_destroy(rig);
+  tegotae_scene_destroy(scene);
+}
+
 TEST_CASE("a scene is changed from C while it runs", "[c_interface]") {
   tegotae_scene* scene = floor_scene();
   tegotae_rig* rig = tegotae_rig_create(scene, nullptr, TEGOTAE_CLOCK_SIMULATED);

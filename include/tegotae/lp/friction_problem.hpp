@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+
+#include "tegotae/core/clock.hpp"
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
 #include "tegotae/lp/low_rank_matrix.hpp"
@@ -17,11 +20,12 @@ struct TangentRows {
 /// and where a contact slides τ_i = -μ_i ν_i T_i z / |T_i z|. In these coordinates the springs' energy is half of the
 /// squared length of what remains of `wanted`. Forces have the same unit (m); times the stiffness they are in N.
 struct FrictionProblem {
-  const LowRankMatrix& normals;  ///< rows N_i
-  const double* bounds;          ///< b_i, m, at most 0, so that rest is allowed
-  const TangentRows* tangents;   ///< T_i, one for each normal; read only where μ_i > 0
-  const double* mu;              ///< μ_i >= 0, one for each normal
-  Vec6 wanted;                   ///< the motion that the springs ask for, m
+  const LowRankMatrix& normals;            ///< rows N_i
+  const double* bounds;                    ///< b_i, m, at most 0, so that rest is allowed
+  const TangentRows* tangents;             ///< T_i, one for each normal; read only where μ_i > 0
+  const double* mu;                        ///< μ_i >= 0, one for each normal
+  Vec6 wanted;                             ///< the motion that the springs ask for, m
+  std::int64_t deadline_ns = kNoDeadline;  ///< of monotonic_ns(); an answer that comes later is of no use
 };
 
 /// Force of one contact, in the unit of its FrictionProblem.
