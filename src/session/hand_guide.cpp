@@ -13,9 +13,9 @@ namespace {
 constexpr double kGuideShare = 0.5;
 
 double strongest(const Scene& scene, const HapticLoop& loop) {
-  if (!scene.weight.most) return PathGuide::kForce;
+  if (!scene.weight.max_force) return PathGuide::kForce;
   // Half of what the device stands for is the most of the weight.
-  const double left = 2 * *scene.weight.most - loop.weight().force.norm();
+  const double left = 2 * *scene.weight.max_force - loop.weight().force.norm();
   return std::clamp(kGuideShare * left, 0.0, PathGuide::kForce);
 }
 

@@ -52,7 +52,7 @@ TEST_CASE("mean, deviation, interval and slope", "[statistics]") {
 }
 
 TEST_CASE("every job is done once on any number of threads, and a failure comes out", "[statistics]") {
-  const tegotae::apps::StatusLine status;
+  tegotae::apps::StatusLine status;
   for (const int threads : {1, 2, 5}) {
     Options options;
     options.threads = threads;

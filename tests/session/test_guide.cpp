@@ -47,7 +47,7 @@ class Ticks final : public RunObserver {
 
 SceneFile file_of(Scene scene, StylusScript script) {
   SceneFile file{"guide.toml", std::move(scene), {}, std::move(script)};
-  file.scene.weight.most = 0.7;  // half of what the simulated pen stands for long, as a scene file has it
+  file.scene.weight.max_force = 0.7;  // half of what the simulated pen stands for long, as a scene file has it
   return file;
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("the weight leaves the guide what the device stands for", "[guide]") {
   CHECK(force.x() == Approx((1.4 - 0.588) / 2).epsilon(0.05));
   // A device that is not known to have a limit.
   file.scene.weight.on = false;
-  file.scene.weight.most.reset();
+  file.scene.weight.max_force.reset();
   std::string told;
   settings.on_start = [&told](const RunStart& start_of) { told = start_of.guide; };
   run_session(file, settings);
