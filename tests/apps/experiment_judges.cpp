@@ -85,7 +85,8 @@ void judge_wall(const std::string& at) {
       CHECK(end["fx_n"] / (end["x_mm"] - end["pen_x_mm"]) ==
             Approx(end["fz_n"] / (end["z_mm"] - end["pen_z_mm"])).epsilon(1e-3));
       CHECK(end["fx_n"] < 0);
-      CHECK(std::abs(end["tilt_mrad"]) < 0.01);
+      // Gaps of a face that rests are kept, 2 µm at least: they differ by less over the cube's 40 mm.
+      CHECK(std::abs(end["tilt_mrad"]) < 0.05);
     }
     CHECK(deepest(table("penalty")) > 0.1);
   }

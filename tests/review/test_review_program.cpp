@@ -226,9 +226,9 @@ TEST_CASE("what is no recording, or not of this scene, is one line") {
   refused(folder / "garbage.csv" + scene, "garbage.csv:1:");
   refused(folder / "empty.csv" + scene, "has no rows");
   refused(folder / "inside.csv" + scene, "does not fit this scene");
-  refused(folder / "back.csv" + scene, "row 2: its time is before");
-  refused(folder / "good.csv", "does not say which scene");
-  refused(folder / "good.csv" + scene + " --goal 1,2", "no pose");
+  refused(folder / "back.csv" + scene, "row 2: its time is earlier");
+  refused(folder / "good.csv", "does not name its scene");
+  refused(folder / "good.csv" + scene + " --goal 1,2", "is not a pose");
   refused(folder / "good.csv" + scene + " --out " + folder / "no/such/x.html", "cannot be written");
   CHECK(run_program("tegotae", "review " + folder / "good.csv" + scene).code == 1);  // it never left the start
 }

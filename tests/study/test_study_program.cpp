@@ -74,7 +74,7 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   CHECK_THAT(read_text(out + "/case-0/replay.html"), Contains("</html>"));
   CHECK_THAT(read_text(out + "/case-2/replay.html"), Contains("</html>"));
   const Output none = study("case " + file + " 2 999", 2);
-  CHECK_THAT(none.err, Contains("has no case 999, but 0 to "));
+  CHECK_THAT(none.err, Contains("has no case 999; its cases are 0 to "));
   const Output fails = study("case " + file + " 0 --to " + folder / "d");
   CHECK_THAT(fails.out, Contains("case 0: FAILED: blocked by hole at ("));
   CHECK_THAT(run_program("tegotae", "review " + folder / "d/recording.mcap").out, Contains("It does not go in"));
@@ -203,7 +203,7 @@ TEST_CASE("bad commands of study are one line") {
   refused(file + " --shard 0/4", "is not I/N");
   refused(file + " --shard 5/4", "is not I/N");
   refused(file + " --shard 1/4x", "is not I/N");
-  refused("case " + file + " 1", "has no case 1, but 0 to 0");
+  refused("case " + file + " 1", "has no case 1; its cases are 0 to 0");
   folder.write("study.toml", "scenes = [\"scene.toml\"]\n");
   refused(file, "its script does not move; give the part's goal with goal in ");
   folder.write("study.toml",

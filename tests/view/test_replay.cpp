@@ -115,7 +115,7 @@ TEST_CASE("a recording knows its scene") {
   const TempFolder folder;
   write_cubes(folder);
   folder.write("r.csv", kHeader + row(0, 0.018));
-  CHECK_THROWS_WITH(replay_bundle(folder / "r.csv"), Contains("does not say which scene"));
+  CHECK_THROWS_WITH(replay_bundle(folder / "r.csv"), Contains("does not name its scene"));
   folder.write("r.csv.info.json", R"({"scene": "scene.toml"})");
   CHECK_THAT(about_of(replay_bundle(folder / "r.csv")).at("parts").dump(), Contains("block"));
   folder.write("r.csv.info.json", R"({"scene": "gone.toml"})");
