@@ -129,7 +129,7 @@ TEST_CASE("tries do not replace the scene's files, and two outputs are two files
   r.folder.write("scene.toml", scene);
   check_named(shell(r.folder, "$B/tegotae try scene.toml --tries 1 --seconds 1"), {"best.csv", "would be replaced"});
   CHECK(read_text(r.folder / "tries/best.csv") == read_text(r.folder / "path.csv"));
-  check_named(shell(r.folder, "$B/tegotae review r.csv --out x --csv ./x"), {"written twice"});
+  check_named(shell(r.folder, "$B/tegotae review r.csv --out x --csv ./x"), {"writes it twice"});
   CHECK_FALSE(fs::exists(r.folder / "x"));
   CHECK(shell(r.folder, "$B/tegotae review r.csv --out x --csv /dev/null --script /dev/null").code != 2);
   CHECK(fs::exists(r.folder / "x"));

@@ -140,10 +140,10 @@ TEST_CASE("what the helper sends is checked", "[isolated]") {
   };
   CHECK(load_mesh_isolated(file, 1.0, {sent(0, 0, 3, 2)}).triangles.size() == 1);
   CHECK(load_mesh_isolated(file, 1.0, {sent(0, 6, 3, 2)}).notes == std::vector<std::string>{"a ", "bc"});
-  CHECK(contains(refusal(file, {sent(0, std::uint64_t{1} << 60, 3, 2)}), "more than the memory"));
+  CHECK(contains(refusal(file, {sent(0, std::uint64_t{1} << 60, 3, 2)}), "more than its memory"));
   CHECK(contains(refusal(file, {sent(0, 0, 3, 3)}), "no usable mesh"));
   CHECK(contains(refusal(file, {sent(1u << 30, 0, 3, 2)}), "sent no mesh"));
-  CHECK(contains(refusal(file, {sent(0, 0, std::uint64_t{1} << 60, 2)}), "more than the memory"));
+  CHECK(contains(refusal(file, {sent(0, 0, std::uint64_t{1} << 60, 2)}), "more than its memory"));
 }
 
 TEST_CASE("memory and time of the helper are bounded", "[isolated]") {

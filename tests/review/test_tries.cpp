@@ -152,7 +152,7 @@ TEST_CASE("bad input of try is one line") {
     CHECK(lines(o.err) == 1);
     CHECK_THAT(o.err, Contains(why));
   };
-  refused("", "its script goes nowhere");
+  refused("", "its script does not move");
   refused("--goal 1", "is not a pose");
   refused("--goal 0,0,0.03", "the goal is where the held part starts");
   refused("--goal 0,0,0.02 --tries 0", "--tries");
