@@ -34,7 +34,8 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   if (pair.state == InitialContactState::filtered)
     return text + "; SUSPENDED: until they have come free, nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; until they have come free, contact is felt " + length(pair.inward_offset) + " inside its surface\n";
+    return text + "; until they have come free, contact is felt " + length(pair.inward_offset) +
+           " inside its surface\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
