@@ -6,8 +6,6 @@
 namespace tegotae {
 namespace {
 
-// A motion that carries no point farther than this (m) is rest.
-constexpr double kRest = 1e-10;
 // A contact that slides goes farther than this in a tick (m): 10 µm/s at 1 kHz.
 constexpr double kSlip = 1e-8;
 
