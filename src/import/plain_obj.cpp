@@ -45,12 +45,12 @@ class ObjReader {
   void take_statement() {
     statement_.clear();
     for (bool goes_on = true; goes_on && !rest_.empty();) {
-      std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+      std::string_view line = rest_.substr(0, first_of(rest_, "\r\n"));
       rest_.remove_prefix(line.size());
       ends_file_ = rest_.empty();
       rest_.remove_prefix(std::min<std::size_t>(rest_.substr(0, 2) == "\r\n" ? 2 : 1, rest_.size()));
       ++next_line_;
-      const std::size_t start = std::min(line.find_first_not_of(kSpace), line.size());
+      const std::size_t start = first_not_of(line, kSpace);
       if (statement_.empty() && line.substr(start, 1) == "#") return;
       goes_on = !line.empty() && line.back() == '\\';
       if (goes_on) line.remove_suffix(1);
@@ -59,8 +59,8 @@ class ObjReader {
   }
 
   static std::string_view take_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_not_of(kSpace), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_of(kSpace));
+    line.remove_prefix(first_not_of(line, kSpace));
+    const std::string_view word = line.substr(0, first_of(line, kSpace));
     line.remove_prefix(word.size());
     return word;
   }
@@ -120,7 +120,7 @@ class ObjReader {
   }
 
   void copy_name(std::string_view word, std::string_view name) {
-    name.remove_prefix(std::min(name.find_first_not_of(kSpace), name.size()));
+    name.remove_prefix(first_not_of(name, kSpace));
     (out_ += word) += ' ';
     for (const char c : name.substr(0, kLongestName)) out_ += c == '\\' ? '/' : c;  // assimp goes on after a backslash
     out_ += '\n';

@@ -64,14 +64,14 @@ class OffReader {
 
   /// Counts may stand on a line each.
   bool take_count(std::string_view& line, std::uint64_t& count) {
-    line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+    line.remove_prefix(first_not_of(line, kBlank));
     if (line.empty()) line = next_line();
     return take_number(line, count);
   }
 
   static std::string_view take_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+    line.remove_prefix(first_not_of(line, kBlank));
+    const std::string_view word = line.substr(0, first_of(line, kBlank));
     line.remove_prefix(word.size());
     return word;
   }
@@ -79,7 +79,7 @@ class OffReader {
   /// The next line with something on it, without its comment; at the end of the file an empty one.
   std::string_view next_line() {
     while (!rest_.empty()) {
-      std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+      std::string_view line = rest_.substr(0, first_of(rest_, "\r\n"));
       rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
       line = line.substr(0, line.find('#'));
       if (line.find_first_not_of(kBlank) != line.npos) return line;

@@ -96,13 +96,13 @@ class Body {
 
   /// To the line of the next element, in an ASCII file.
   void begin_element() {
-    if (encoding_ == Encoding::ascii) at_ = std::min(bytes_.find_first_not_of(kBlank, at_), bytes_.size());
+    if (encoding_ == Encoding::ascii) at_ = first_not_of(bytes_, kBlank, at_);
   }
 
   /// False when values are left over on an ASCII file's line, which is an element.
   bool end_element() {
     if (encoding_ != Encoding::ascii) return true;
-    at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size());
+    at_ = first_not_of(bytes_, " \t\r", at_);
     return at_ == bytes_.size() || bytes_[at_] == '\n';
   }
 

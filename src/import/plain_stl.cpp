@@ -59,14 +59,14 @@ class TextStl {
  private:
   /// The next word; empty at the end.
   std::string_view next() {
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpace), rest_.size()));
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(kSpace));
+    rest_.remove_prefix(first_not_of(rest_, kSpace));
+    const std::string_view word = rest_.substr(0, first_of(rest_, kSpace));
     rest_.remove_prefix(word.size());
     return word;
   }
 
   std::string_view rest_of_line() {
-    const std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+    const std::string_view line = rest_.substr(0, first_of(rest_, "\r\n"));
     rest_.remove_prefix(line.size());
     return line;
   }
@@ -133,9 +133,9 @@ std::string_view text_of(std::string_view bytes) {
   bytes = bytes.substr(0, bytes.find_last_not_of('\0') + 1);
   if (bytes.substr(0, 3) == "\xef\xbb\xbf") bytes.remove_prefix(3);
   for (;;) {
-    bytes.remove_prefix(std::min(bytes.find_first_not_of(kBlank), bytes.size()));
-    if (bytes.empty() || !is_aside(bytes.substr(0, bytes.find_first_of(kBlank)))) return bytes;
-    bytes.remove_prefix(std::min(bytes.find_first_of("\r\n"), bytes.size()));
+    bytes.remove_prefix(first_not_of(bytes, kBlank));
+    if (bytes.empty() || !is_aside(bytes.substr(0, first_of(bytes, kBlank)))) return bytes;
+    bytes.remove_prefix(first_of(bytes, "\r\n"));
   }
 }
 
