@@ -21,7 +21,9 @@ constexpr std::size_t kMaxSlidingPairs = 1u << 16;
 constexpr double kCurvedShare = 0.125;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
 constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
-constexpr int kMaxRounds = 4;
+// Where no deadline bounds it, the same motion is asked about so often until all is known: in virtual time a part must
+// not lag for want of work, and what never ends is to end some time.
+constexpr int kMaxRounds = 64;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
@@ -54,6 +56,15 @@ constexpr int kStandSearches = 1024;
 constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
+
+/// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done.
+template <typename Ask>
+CertifyReport ask_through(std::int64_t deadline_ns, Ask ask) {
+  CertifyReport report = ask();
+  if (deadline_ns != kNoDeadline) return report;
+  for (int i = 1; i < kMaxRounds && !report.overflow && report.status == CertifyStatus::cut; ++i) report = ask();
+  return report;
+}
 
 double mean_edge(const TriangleMesh& mesh) {
   double sum = 0;
@@ -166,12 +177,8 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
     limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
-    CertifyReport report = ask_front(part, X, d, clearance, limit_);
-    // Where nothing is in the way but work, as at a first touch, and no deadline bounds it, the front goes on.
-    for (int i = 1;
-         i < kMaxRounds && limit_.deadline_ns == kNoDeadline && !report.overflow && report.status == CertifyStatus::cut;
-         ++i)
-      report = ask_front(part, X, d, clearance, limit_);
+    const CertifyReport report =
+        ask_through(limit_.deadline_ns, [&] { return ask_front(part, X, d, clearance, limit_); });
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
     const bool slides = !axes_[part]->empty();
@@ -197,7 +204,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (!near_cells_.empty()) {
     limit_.searches = kCellSearches;
     limit_.blocking = kMaxBlocking;
-    const CertifyReport report = ask_cells(X, d, clearance);
+    const CertifyReport report = ask_through(limit_.deadline_ns, [&] { return ask_cells(X, d, clearance); });
     overflow_ |= report.overflow;
     share_ = std::min(share_, report.share);
     for (const FacePair& pair : cells_->blocking())

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   app.add_option("--clearance", p.clearance, "m")->check(CLI::NonNegativeNumber)->capture_default_str();
   app.add_option("--size", p.size, "Of the held part, m")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--near", p.near, "Fixed parts")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_flag("--real-time", one.options.real_time, "With the default tick budget");
+  app.add_flag("--real-time", one.options.real_time, "With the default tick budget, not in virtual time");
   app.add_option("--trace", one.options.trace, "File for a line of CSV a tick of the one case");
   app.add_flag("--daily", daily, "The selection of every day");
   app.add_option("--seeds", seeds, "All families at so many seeds")->check(CLI::PositiveNumber);
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
     std::vector<SelectedCase> cases;
     if (!p.family.empty()) cases = {one};
     if (daily) cases = daily_cases();
-    if (seeds > 0) cases = all_cases(seeds);
+    if (seeds > 0) cases = all_cases(seeds, one.options.real_time);
     return run(cases, quiet, argv[0]);
   } catch (const Error& e) {
     std::fprintf(stderr, "families: %s\n", e.what());

@@ -48,6 +48,8 @@ std::vector<SelectedCase> daily_cases() {
   // The size that the issues of conforming parts were found at.
   cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), virtual_time});
   cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), virtual_time});
+  // More work in one motion than a tick of virtual time once did.
+  cases.push_back({daily("noise", 4, 20000, 0.1e-3, 0.129, 1), virtual_time});
   for (const int near : {36, 64, 144, 2000}) cases.push_back({daily("cover", 1, 12, 0, 0.12, near), virtual_time});
   cases.push_back({daily("cover", 1, 12, 0, 0.12, 144), real_time});
   // What is in the way of all these parts takes more than a tick to be told.
@@ -55,16 +57,17 @@ std::vector<SelectedCase> daily_cases() {
   return cases;
 }
 
-std::vector<SelectedCase> all_cases(int seeds) {
+std::vector<SelectedCase> all_cases(int seeds, bool real_time) {
   std::vector<SelectedCase> cases;
   // Full-area contact under a fast pen in real time, which docs/limits.md says is missed: not of every day.
-  cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), {true, {}}});
-  cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), {true, {}}});
+  if (real_time) {
+    cases.push_back({daily("wave", 1, 7000, 0, 0.3, 1), {true, {}}});
+    cases.push_back({daily("ball", 1, 20000, 0.05e-3, 0.04, 1), {true, {}}});
+  }
   const std::vector<std::string> names = family_names();
   for (int seed = 1; seed <= seeds; ++seed)
     for (std::size_t i = 0; i < names.size(); ++i)
-      for (const bool real_time : {false, true})
-        cases.push_back({drawn(names[i], i, static_cast<unsigned>(seed)), {real_time, {}}});
+      cases.push_back({drawn(names[i], i, static_cast<unsigned>(seed)), {real_time, {}}});
   return cases;
 }
 
