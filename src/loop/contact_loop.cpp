@@ -42,33 +42,14 @@ constexpr double kFullShare = 0.99;
 constexpr double kProvedGrowth = 2;
 // Programs solved for one piece before it is shortened instead.
 constexpr int kMaxResolves = 6;
-// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of its
-// length is tried without them, so often in one tick.
-constexpr double kShorter = 0.25;
+// Pieces that are held by planes for one motion, so often in one tick.
 constexpr int kMaxShorter = 3;
 // Halvings of a piece that still intersects.
 constexpr int kMaxHalvings = 4;
-// Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
-constexpr double kWorthwhile = 0.25;
-// Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
-constexpr double kKeepShare = 0.5;
-// Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
-// factor where there is room for more.
-constexpr int kAdaptTicks = 8;
-constexpr double kKeepGrowth = 1.1;
-// A part that moved less than this in a tick (m) stands; normals with less than this dot product are of opposite sides,
-// looked for among about so many limits.
-constexpr double kStanding = 2e-6, kOpposite = -0.3;
-constexpr std::size_t kMaxWedging = 64;
-// A part that stands between opposite sides and may go along them by this share of its way, if the limits give way by
-// the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
-constexpr double kAlongShare = 1e-2;
 // Forces of a piece that are remembered until the end of the tick.
 constexpr std::size_t kMaxForces = 64;
 // Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
 constexpr double kMinKeep = 2e-6;
-// A motion that carries no point farther than this (m) is rest.
-constexpr double kRest = 1e-10;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
 // It never falls below this length (m), or a part whose way was blocked would not try again.
@@ -239,43 +220,6 @@ bool ContactLoop::track() {
   return tracked_;
 }
 
-void ContactLoop::adapt_keep(const Pose& Y) {
-  // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
-  // when a motion exists that leaves twice as much everywhere; out of a hole there always is one, so a part that stands
-  // wedged between opposite sides has none either. The gap never grows under a part at rest: it would push it about.
-  const auto& limits = at_.contacts->limits();
-  if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
-  const bool standing = moved_ < kStanding;
-  const bool holds = standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged();
-  // Gaps that are a little short of the least one may lock a part that has room to turn out of where it stands.
-  recover_below_ = holds && keep_ == least_keep_ ? kRecoverWedged : kRecoverBelow;
-  if (holds) {
-    keep_ = std::max(0.5 * keep_, least_keep_);
-    return;
-  }
-  metric_.set_orientation(X_.q);
-  rows_.clear();
-  for (const Contact& c : limits) {
-    if (c.age == kOneShotAge) continue;  // planes for one motion, not surfaces
-    bounds_[static_cast<std::size_t>(rows_.rows())] = 2 * keep_ - c.gap;
-    rows_.push_row(metric_.row(c));
-  }
-  const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
-  if (!room) keep_ = std::max(0.5 * keep_, least_keep_);
-  if (room && !standing) keep_ = std::min(kKeepGrowth * keep_, most_keep_);
-}
-
-bool ContactLoop::wedged() const {
-  const auto& limits = at_.contacts->limits();
-  // Of many limits an even sample: neighbors in the list are of one side.
-  const std::size_t stride = limits.size() / kMaxWedging + 1;
-  const auto presses = [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= keep_ / kKeepShare; };
-  for (std::size_t i = 0; i < limits.size(); i += stride)
-    for (std::size_t j = 0; j < i && presses(limits[i]); j += stride)
-      if (presses(limits[j]) && limits[i].n.dot(limits[j].n) < kOpposite) return true;
-  return false;
-}
-
 double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   held_by_planes_ = false;
   if (!track()) return 0;
@@ -362,18 +306,6 @@ bool ContactLoop::cutting() const {
   return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
-void ContactLoop::mark_carriers(const Vec6& motion) {
-  far_planes_ = false;
-  for (int i = 0; i < rows_.rows(); ++i)
-    if (rows_.row(i).dot(motion) <= bounds_[static_cast<std::size_t>(i)] + kRest) carries(static_cast<std::size_t>(i));
-}
-
-void ContactLoop::carries(std::size_t i) {
-  at_.contacts->carries(i);
-  if (!far_planes_ && at_.contacts->limits()[i].age == kOneShotAge)
-    far_planes_ = !at_.contacts->touches(i, keep_ / kKeepShare);
-}
-
 LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   TickEnd end;
   end.lag = lag;
@@ -384,80 +316,6 @@ LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   end.late = late();
   end.moved = moved_ > kRest;
   return lag_reason(end);
-}
-
-bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
-  Vec6 motion = wanted;
-  bool rubs = false;
-  if (!at_.contacts->limits().empty()) {
-    rubs = friction_.fill(at_.contacts->limits(), metric_);
-    if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
-    // Cutting planes between triangles that do not touch explain no lag.
-    if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
-    if (!resolver_->projects() && !try_shorter_ways(wanted, cap, report, motion)) return false;
-  }
-  trial.d = metric_.unwhiten(motion);
-  const double length = size(trial.d);
-  if (length > cap) {
-    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
-    // would leave nearly nothing of their recovery.
-    const Vec6 scaled = (cap / length) * motion;
-    motion = scaled;
-    if (!rubs && !at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
-  }
-  // What is left of a longer way would see no load and so no friction; its gaps are set right without any.
-  if (rubs) recover_gaps(report, motion);
-  trial.d = metric_.unwhiten(motion);
-  trial.X = displaced(X_, center_, trial.d);
-  return true;
-}
-
-bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
-  const double far = size(metric_.unwhiten(wanted));
-  Vec6 best = motion;
-  for (double way = std::min(cap, far); way > keep_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
-       way *= kShorter) {
-    if (!solve((way / far) * wanted, report, motion)) return false;
-    if (motion.dot(wanted) > best.dot(wanted)) best = motion;
-  }
-  motion = best;
-  return true;
-}
-
-bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
-  const auto& limits = at_.contacts->limits();
-  rows_.clear();
-  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
-  // Gaps that were lost to rounding or curvature recover where the program allows it; without recovery it has an
-  // answer, because standing still is one, but for rounding. Between walls without room that may be the only one, by
-  // rounding too.
-  bool only_stands = false;
-  for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
-    const double give = slack * wanted.norm();
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      bounds_[i] = bound_of(limits[i], keep_, recover_below_, recovery) - give;
-    }
-    const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
-    ++report.resolves;
-    report.iterations += r.iterations;
-    report.status = r.status;
-    motion = r.motion;
-    if (only_stands && (r.status != ResolveStatus::solved || motion.norm() < kAlongShare * wanted.norm())) break;
-    if (r.status != ResolveStatus::solved) continue;
-    // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
-    const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * keep_) continue;
-    only_stands = recovery == 0 && slack == 0 && resolver_->projects() && motion.norm() < kRest &&
-                  wanted.norm() > kRest && wedged();
-    if (only_stands) continue;
-    mark_carriers(motion);
-    return true;
-  }
-  if (!only_stands) return false;
-  motion.setZero();
-  report.status = ResolveStatus::solved;
-  mark_carriers(motion);
-  return true;
 }
 
 bool ContactLoop::is_free(const Trial& trial, TickReport& report) {

@@ -31,6 +31,16 @@ class ContactLoop final : public ProxyLoop {
   const InitialContactReport& start() const override { return at_.start.report(); }
 
  private:
+  /// A motion that carries no point farther than this (m) is rest.
+  static constexpr double kRest = 1e-10;
+  /// A part that moved less than this in a tick (m) stands.
+  static constexpr double kStanding = 2e-6;
+  /// Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
+  static constexpr double kWorthwhile = 0.25;
+  /// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of
+  /// its length is tried without them.
+  static constexpr double kShorter = 0.25;
+
   /// A displacement together with the pose it leads to.
   struct Trial {
     Displacement d;

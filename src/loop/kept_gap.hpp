@@ -7,6 +7,8 @@
 
 namespace tegotae {
 
+/// Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
+inline constexpr double kKeepShare = 0.5;
 /// Share of the kept gap by which one that is too small recovers in a piece.
 inline constexpr double kRecovery = 0.4;
 /// Gaps above this share of the kept one are let be: opening them by hairs would push a resting part about.
