@@ -42,7 +42,7 @@ constexpr double kFullShare = 0.99;
 constexpr double kProvedGrowth = 2;
 // Programs solved for one piece before it is shortened instead.
 constexpr int kMaxResolves = 6;
-// Pieces that are held by planes for one motion, so often in one tick.
+// Pieces that planes for one motion hold (see kShorter) in one tick.
 constexpr int kMaxShorter = 3;
 // Halvings of a piece that still intersects.
 constexpr int kMaxHalvings = 4;
@@ -52,6 +52,7 @@ constexpr std::size_t kMaxForces = 64;
 constexpr double kMinKeep = 2e-6;
 // Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
 // more than the second doubles it; it never falls below this many times the pen's motion of the tick.
+constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 // It never falls below this length (m), or a part whose way was blocked would not try again.
 constexpr double kMinTrust = 1e-8;
 // In the mass metric a rotation error larger than this (rad) is taken in parts: the metric of a rotation vector has its
@@ -69,7 +70,6 @@ constexpr double kFeltLag = 0.05;
 constexpr double kPrepareShare = 0.7;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
-constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 
 }  // namespace
 
