@@ -28,6 +28,11 @@ constexpr int kMaxRounds = 64;
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMaxCuts = 6;
+// The other way round, so few cells that run out of time more often than that, with no more ticks than these between
+// two times, and do not double meanwhile, are those of a part that slides along walls: each is looked for again in
+// every tick. A front of some 20 pairs for each of them has room.
+constexpr int kFewCells = 800;
+constexpr std::uint64_t kTicksBetween = 12;
 // So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
 // cells: they lie on each other over much of the part.
 constexpr int kSomePairs = 500, kFacesPerPair = 5;
@@ -114,7 +119,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
-  in_cells_.assign(fixed.size(), 0);
+  choice_.assign(fixed.size(), Certificate::front);
   seen_.assign(fixed.size(), 0);
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size());
@@ -142,7 +147,7 @@ void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {
   part_of_[front] = kNobody;
   front_of_[part] = kNobody;
   used_[front] = 0;
-  in_cells_[part] = 1;
+  choice_[part] = Certificate::cells;
 }
 
 void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept {
@@ -154,9 +159,9 @@ void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_
   for (const std::uint32_t part : near)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
   for (const std::uint32_t part : near) {
-    if (in_cells_[part] != 0 && seen_[part] + 1 < now_) in_cells_[part] = 0;
+    if (seen_[part] + 1 < now_) choice_[part] = Certificate::front;
     seen_[part] = now_;
-    if (front_of_[part] == kNobody && !in_cells_[part]) take_front(part);
+    if (front_of_[part] == kNobody && choice_[part] != Certificate::cells) take_front(part);
     (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
   }
   cells_->set_near(near_cells_);
@@ -182,7 +187,8 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
     const bool slides = !axes_[part]->empty();
-    if ((cuts > kMaxCuts && report.pairs > kManyPairs && !slides) ||
+    const bool tried = choice_[part] == Certificate::front_for_good;
+    if ((cuts > kMaxCuts && report.pairs > kManyPairs && !slides && !tried) ||
         (report.overflow && report.status == CertifyStatus::cut)) {
       move_to_cells(part);
       near_cells_.push_back(part);
@@ -197,7 +203,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   }
   if (moved) {
     near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
-                                      [this](std::uint32_t part) { return in_cells_[part] != 0; }),
+                                      [this](std::uint32_t part) { return choice_[part] == Certificate::cells; }),
                        near_fronts_.end());
     cells_->set_near(near_cells_);
   }
@@ -206,6 +212,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
     limit_.blocking = kMaxBlocking;
     const CertifyReport report = ask_through(limit_.deadline_ns, [&] { return ask_cells(X, d, clearance); });
     overflow_ |= report.overflow;
+    judge_cells(report);
     share_ = std::min(share_, report.share);
     for (const FacePair& pair : cells_->blocking())
       if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
@@ -213,6 +220,17 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {
+  if (report.status != CertifyStatus::cut || vain_.last == now_) return;
+  const bool begins = vain_.last + kTicksBetween < now_ || report.pairs > 2 * vain_.cells;
+  if (begins) vain_ = {report.pairs, 0, 0};
+  vain_.last = now_;
+  vain_.cuts = report.pairs <= kFewCells ? vain_.cuts + 1 : 0;
+  if (vain_.cuts <= kMaxCuts) return;
+  for (const std::uint32_t part : near_cells_)
+    if (choice_[part] == Certificate::cells) choice_[part] = Certificate::front_for_good;
 }
 
 CertifyReport PatchMotionCheck::ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept {
@@ -225,6 +243,7 @@ CertifyReport PatchMotionCheck::ask_cells(const Pose& X, const Displacement& d, 
 }
 
 bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) const noexcept {
+  if (choice_[part] == Certificate::front_for_good) return false;
   const int many = std::max(kSomePairs, static_cast<int>(held_->mesh().triangles.size()) / kFacesPerPair);
   if (report.pairs * static_cast<int>(near_fronts_.size()) <= many) return false;
   int pairs = 0;

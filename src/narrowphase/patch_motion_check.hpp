@@ -35,6 +35,20 @@ class PatchMotionCheck final : public MotionCheck {
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
+  /// What a near part is certified by.
+  enum class Certificate : std::uint8_t {
+    front,          ///< where there is one left for it
+    cells,          ///< its front was too small or too slow, or it is better cells
+    front_for_good  ///< cells were tried in vain
+  };
+
+  /// Cells that run out of time again and again.
+  struct Vain {
+    int cells = 0;           ///< when it began
+    std::uint32_t cuts = 0;  ///< ticks in which they did since
+    std::uint64_t last = 0;  ///< the begin() of the last of them
+  };
+
   /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
@@ -44,6 +58,8 @@ class PatchMotionCheck final : public MotionCheck {
 
   void take_front(std::uint32_t part) noexcept;
   void move_to_cells(std::uint32_t part) noexcept;
+  /// Sends parts back to fronts, from the next tick on, where cells do not pay.
+  void judge_cells(const CertifyReport& report) noexcept;
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
                           const WorkLimit& limit) noexcept;
   bool lies_on(const CertifyReport& report, std::uint32_t part) const noexcept;
@@ -74,8 +90,8 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
-  std::vector<std::uint8_t>
-      in_cells_;  ///< of each part: its front was too small or too slow, and it has been near since
+  std::vector<Certificate> choice_;  ///< of each part, for as long as it is near
+  Vain vain_;
   std::vector<std::uint32_t> near_fronts_;  ///< near parts that have fronts
   std::vector<std::uint32_t> near_cells_;   ///< the others
   WorkLimit limit_;
