@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "narrowphase/patch_cache.hpp"
 
@@ -105,6 +106,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
   in_cells_.assign(fixed.size(), 0);
   seen_.assign(fixed.size(), 0);
+  near_.reserve(fixed.size());
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size());
 }
@@ -136,19 +138,35 @@ void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {
 
 void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept {
   limit_.deadline_ns = deadline_ns;
+  near_.assign(near.begin(), near.end());
+  take_up_near();
+}
+
+void PatchMotionCheck::take_up_near() noexcept {
   ++now_;
   overflow_ = false;
   near_fronts_.clear();
   near_cells_.clear();
-  for (const std::uint32_t part : near)
+  for (const std::uint32_t part : near_)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
-  for (const std::uint32_t part : near) {
+  for (const std::uint32_t part : near_) {
     if (in_cells_[part] != 0 && seen_[part] + 1 < now_) in_cells_[part] = 0;
     seen_[part] = now_;
     if (front_of_[part] == kNobody && !in_cells_[part]) take_front(part);
     (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
   }
   cells_->set_near(near_cells_);
+}
+
+void PatchMotionCheck::begin_anew() noexcept {
+  part_of_.assign(part_of_.size(), kNobody);
+  used_.assign(used_.size(), 0);
+  front_of_.assign(front_of_.size(), kNobody);
+  in_cells_.assign(in_cells_.size(), 0);
+  cells_->clear();
+  headway_.restart();
+  take_up_near();
+  asked_ = false;
 }
 
 CertifyReport PatchMotionCheck::ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
@@ -161,7 +179,36 @@ CertifyReport PatchMotionCheck::ask_front(std::uint32_t part, const Pose& X, con
 
 MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, double clearance,
                                      std::vector<FacePair>& blocking) noexcept {
+  const bool asked = std::exchange(asked_, true);
+  const MotionAnswer answer = ask(X, d, clearance, blocking);
+  // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
+  // them costs a search, and few go together again in a call that ends so.
+  if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline) return answer;
+  begin_anew();
+  return check(X, d, clearance, blocking);
+}
+
+MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double clearance,
+                                   std::vector<FacePair>& blocking) noexcept {
   share_ = 1;
+  ask_fronts(X, d, clearance, blocking);
+  if (!near_cells_.empty()) {
+    limit_.searches = kCellSearches;
+    limit_.blocking = kMaxBlocking;
+    const CertifyReport report = ask_cells(X, d, clearance);
+    overflow_ |= report.overflow;
+    share_ = std::min(share_, report.share);
+    for (const FacePair& pair : cells_->blocking())
+      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
+  }
+  if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
+  share_ *= kShareKept;
+  return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+/// Parts whose fronts are too small or too slow go over to the cells.
+void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
+                                  std::vector<FacePair>& blocking) noexcept {
   bool moved = false;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
@@ -188,24 +235,11 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
     if (report.exhausted && past(limit_.deadline_ns)) break;
   }
-  if (moved) {
-    near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
-                                      [this](std::uint32_t part) { return in_cells_[part] != 0; }),
-                       near_fronts_.end());
-    cells_->set_near(near_cells_);
-  }
-  if (!near_cells_.empty()) {
-    limit_.searches = kCellSearches;
-    limit_.blocking = kMaxBlocking;
-    const CertifyReport report = ask_cells(X, d, clearance);
-    overflow_ |= report.overflow;
-    share_ = std::min(share_, report.share);
-    for (const FacePair& pair : cells_->blocking())
-      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
-  }
-  if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
-  share_ *= kShareKept;
-  return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+  if (!moved) return;
+  near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
+                                    [this](std::uint32_t part) { return in_cells_[part] != 0; }),
+                     near_fronts_.end());
+  cells_->set_near(near_cells_);
 }
 
 CertifyReport PatchMotionCheck::ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept {
