@@ -1,4 +1,5 @@
 // What a new path certificate proves, one that was asked before proves too, whatever that was about.
+#include <array>
 #include <string>
 
 #include "broadphase/bounding_spheres.hpp"
@@ -55,21 +56,25 @@ std::vector<Case> cases() {
   return out;
 }
 
+double power(std::mt19937& rng, double lo, double hi) {
+  return std::pow(10, uniform(rng, lo, hi));
+}
+
 /// A motion from beside the case's start; or none, which asks about the pose.
 struct Question {
   Pose X;
   Displacement d;
 };
 
-Question question(std::mt19937& rng, const Case& c, double radius, double far, double turn) {
+/// `far` (m) and `turn` (rad): powers of ten by which the pose is off at most.
+Question question(std::mt19937& rng, const Case& c, double radius, const std::array<double, 2>& far,
+                  const std::array<double, 2>& turn) {
+  const double away = 0.02 * power(rng, far[0], far[1]);
+  const double turned = power(rng, turn[0], turn[1]);
   Question q;
-  q.X = displaced(c.start, c.center, {random_in_ball(rng, far), random_in_ball(rng, turn)});
+  q.X = displaced(c.start, c.center, {random_in_ball(rng, away), random_in_ball(rng, turned)});
   if (rng() % 2 == 0) q.d = {random_in_ball(rng, 0.04 * radius), random_in_ball(rng, 0.04)};
   return q;
-}
-
-double power(std::mt19937& rng, double lo, double hi) {
-  return std::pow(10, uniform(rng, lo, hi));
 }
 
 class Checks {
@@ -119,11 +124,10 @@ TEST_CASE("what was asked before costs no proof", "[patch]") {
     std::mt19937 rng(7);
     int proved = 0;
     for (int round = 0; round < 3; ++round) {
-      for (int i = 0; i < 8; ++i)
-        ask_for_most(checks, question(rng, c, checks.radius(), 0.02 * power(rng, -2.5, 0), power(rng, -3, -0.5)));
+      for (int i = 0; i < 8; ++i) ask_for_most(checks, question(rng, c, checks.radius(), {-2.5, 0}, {-3, -0.5}));
       for (int i = 0; i < 4; ++i) {
-        const Question q = question(rng, c, checks.radius(), i == 0 ? 0 : 0.02 * power(rng, -3, -0.5),
-                                    i == 0 ? 0 : power(rng, -4, -1));
+        Question q = question(rng, c, checks.radius(), {-3, -0.5}, {-4, -1});
+        if (i == 0) q.X = c.start;
         const double clearance = power(rng, -6, -3);
         if (checks.fresh(q, clearance) != MotionAnswer::free) continue;
         ++proved;
