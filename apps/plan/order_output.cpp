@@ -83,24 +83,33 @@ Json link(const std::string& file) {
   return {{"text", file}, {"href", file}};
 }
 
-Json order_table(const Scene& scene, const Disassembly& order) {
-  Json t = {{"head",
-             {"step", "part", "motions", "clearance proved", "tried in vain before, stopped by", "to look at", "path"}},
-            {"rows", Json::array()}};
-  for (std::size_t i = 0; i < order.order.size(); ++i) {
-    const Removal& r = order.order[i];
-    t["rows"].push_back({std::to_string(i + 1), names(scene, r.parts, " + "), std::to_string(r.plan.path.size() - 1),
-                         review::length_text(r.plan.clearance), names(scene, waited_for(order, r), ", "),
-                         link(step_file(i) + ".glb"), link(step_file(i) + ".csv")});
+/// A table without the columns that are empty in every row.
+Json filled(const std::vector<std::string>& head, const std::vector<std::vector<Json>>& rows) {
+  Json t = {{"head", Json::array()}, {"rows", std::vector<Json>(rows.size(), Json::array())}};
+  for (std::size_t k = 0; k < head.size(); ++k) {
+    if (std::all_of(rows.begin(), rows.end(), [k](const auto& row) { return row[k] == ""; })) continue;
+    t["head"].push_back(head[k]);
+    for (std::size_t i = 0; i < rows.size(); ++i) t["rows"][i].push_back(rows[i][k]);
   }
   return t;
 }
 
+Json order_table(const Scene& scene, const Disassembly& order) {
+  std::vector<std::vector<Json>> rows;
+  for (std::size_t i = 0; i < order.order.size(); ++i) {
+    const Removal& r = order.order[i];
+    rows.push_back({std::to_string(i + 1), names(scene, r.parts, " + "), std::to_string(r.plan.path.size() - 1),
+                    review::length_text(r.plan.clearance), names(scene, waited_for(order, r), ", "),
+                    link(step_file(i) + ".glb"), link(step_file(i) + ".csv")});
+  }
+  return filled(
+      {"step", "part", "motions", "clearance proved", "tried in vain before, stopped by", "to look at", "path"}, rows);
+}
+
 Json blocked_table(const Scene& scene, const Disassembly& order) {
-  Json t = {{"head", {"part", "stopped by", "not tried, because"}}, {"rows", Json::array()}};
-  for (const Blocked& b : order.blocked)
-    t["rows"].push_back({scene.parts[b.part].name, names(scene, b.by, ", "), b.error});
-  return t;
+  std::vector<std::vector<Json>> rows;
+  for (const Blocked& b : order.blocked) rows.push_back({scene.parts[b.part].name, names(scene, b.by, ", "), b.error});
+  return filled({"part", "stopped by", "not tried, because"}, rows);
 }
 
 std::string left_text(const Scene& scene, const Disassembly& order) {
@@ -113,10 +122,13 @@ std::string left_text(const Scene& scene, const Disassembly& order) {
 std::string order_html(const SceneFile& file, const Disassembly& order) {
   Json report = {{"title", "Order of disassembly"}, {"subtitle", file.path}};
   report["intro"] = left_text(file.scene, order) + ". Assembly is the same, backwards.";
-  report["sections"] = {{{"title", "Steps"}, {"tables", {order_table(file.scene, order)}}},
-                        {{"title", "What blocked what"},
-                         {"text", "The last try of each part that failed; order.dot has it as a graph."},
-                         {"tables", {blocked_table(file.scene, order)}}}};
+  report["sections"] = Json::array();
+  if (!order.order.empty())
+    report["sections"].push_back({{"title", "Steps"}, {"tables", {order_table(file.scene, order)}}});
+  if (!order.blocked.empty())
+    report["sections"].push_back({{"title", "What blocked what"},
+                                  {"text", "The last try of each part that failed; order.dot has it as a graph."},
+                                  {"tables", {blocked_table(file.scene, order)}}});
   return apps::report_page(report);
 }
 

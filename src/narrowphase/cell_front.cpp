@@ -72,6 +72,21 @@ std::size_t CellFront::bytes() const {
                                                          sizeof(CellCorridor) + 2 * sizeof(double) + 2 * sizeof(Due));
 }
 
+void CellFront::clear() noexcept {
+  nodes_.clear();
+  free_nodes_ = kNobody;
+  slots_.clear();
+  items_.clear();
+  listed_.clear();
+  anchors_.clear();
+  expiry_.clear();
+  clear_until_.clear();
+  root_.assign(root_.size(), kNobody);
+  started_ = false;
+  travel_ = turned_ = motion_ = 0;
+  cursor_ = 0;
+}
+
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
   ++now_;
   for (const std::uint32_t part : near) {

@@ -28,6 +28,8 @@ class CellFront {
   CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std::vector<FixedPart> fixed,
             std::uint32_t capacity, std::uint32_t blocking);
 
+  /// Forgets all: what follows is as with a new CellFront. set_near() comes next.
+  void clear() noexcept;
   /// Fixed parts that certify() is about until the next call.
   void set_near(const std::vector<std::uint32_t>& near) noexcept;
   /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "narrowphase/patch_cache.hpp"
 
@@ -22,8 +23,9 @@ constexpr double kCurvedShare = 0.125;
 // Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
 constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
 // Where no deadline bounds it, the same motion is asked about so often until all is known: in virtual time a part must
-// not lag for want of work, and what never ends is to end some time.
-constexpr int kMaxRounds = 64;
+// not lag for want of work, and what never ends is to end some time. A front that takes nothing apart has looked for
+// all its planes after these rounds; what it still lacks it would look for again.
+constexpr int kMaxRounds = 64, kMaxIdleRounds = 8;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
@@ -62,12 +64,18 @@ constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
 
-/// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done.
+/// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done or `idle_rounds` in
+/// a row have taken nothing apart.
 template <typename Ask>
-CertifyReport ask_through(std::int64_t deadline_ns, Ask ask) {
+CertifyReport ask_through(std::int64_t deadline_ns, int idle_rounds, Ask ask) {
   CertifyReport report = ask();
   if (deadline_ns != kNoDeadline) return report;
-  for (int i = 1; i < kMaxRounds && !report.overflow && report.status == CertifyStatus::cut; ++i) report = ask();
+  int idle = 0;
+  for (int i = 1; i < kMaxRounds && idle < idle_rounds; ++i) {
+    if (report.overflow || report.status != CertifyStatus::cut) break;
+    report = ask();
+    idle = report.splits > 0 ? 0 : idle + 1;
+  }
   return report;
 }
 
@@ -121,6 +129,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
   choice_.assign(fixed.size(), Certificate::front);
   seen_.assign(fixed.size(), 0);
+  near_.reserve(fixed.size());
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size());
 }
@@ -152,19 +161,36 @@ void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {
 
 void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept {
   limit_.deadline_ns = deadline_ns;
+  near_.assign(near.begin(), near.end());
+  take_up_near();
+}
+
+void PatchMotionCheck::take_up_near() noexcept {
   ++now_;
   overflow_ = false;
   near_fronts_.clear();
   near_cells_.clear();
-  for (const std::uint32_t part : near)
+  for (const std::uint32_t part : near_)
     if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
-  for (const std::uint32_t part : near) {
+  for (const std::uint32_t part : near_) {
     if (seen_[part] + 1 < now_) choice_[part] = Certificate::front;
     seen_[part] = now_;
     if (front_of_[part] == kNobody && choice_[part] != Certificate::cells) take_front(part);
     (front_of_[part] == kNobody ? near_cells_ : near_fronts_).push_back(part);
   }
   cells_->set_near(near_cells_);
+}
+
+void PatchMotionCheck::begin_anew() noexcept {
+  part_of_.assign(part_of_.size(), kNobody);
+  used_.assign(used_.size(), 0);
+  front_of_.assign(front_of_.size(), kNobody);
+  choice_.assign(choice_.size(), Certificate::front);
+  vain_ = {};
+  cells_->clear();
+  headway_.restart();
+  take_up_near();
+  asked_ = false;
 }
 
 CertifyReport PatchMotionCheck::ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
@@ -177,13 +203,44 @@ CertifyReport PatchMotionCheck::ask_front(std::uint32_t part, const Pose& X, con
 
 MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, double clearance,
                                      std::vector<FacePair>& blocking) noexcept {
+  const bool asked = std::exchange(asked_, true);
+  const MotionAnswer answer = ask(X, d, clearance, blocking);
+  // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
+  // them costs a search, and few go together again in a call that ends so.
+  if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline) return answer;
+  begin_anew();
+  return check(X, d, clearance, blocking);
+}
+
+MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double clearance,
+                                   std::vector<FacePair>& blocking) noexcept {
   share_ = 1;
+  ask_fronts(X, d, clearance, blocking);
+  if (!near_cells_.empty()) {
+    limit_.searches = kCellSearches;
+    limit_.blocking = kMaxBlocking;
+    const CertifyReport report =
+        ask_through(limit_.deadline_ns, kMaxRounds, [&] { return ask_cells(X, d, clearance); });
+    overflow_ |= report.overflow;
+    judge_cells(report);
+    share_ = std::min(share_, report.share);
+    for (const FacePair& pair : cells_->blocking())
+      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
+  }
+  if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
+  share_ *= kShareKept;
+  return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+/// Parts whose fronts are too small or too slow go over to the cells.
+void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
+                                  std::vector<FacePair>& blocking) noexcept {
   bool moved = false;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
     limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
     const CertifyReport report =
-        ask_through(limit_.deadline_ns, [&] { return ask_front(part, X, d, clearance, limit_); });
+        ask_through(limit_.deadline_ns, kMaxIdleRounds, [&] { return ask_front(part, X, d, clearance, limit_); });
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
     const bool slides = !axes_[part]->empty();
@@ -201,25 +258,11 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
     if (report.exhausted && past(limit_.deadline_ns)) break;
   }
-  if (moved) {
-    near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
-                                      [this](std::uint32_t part) { return choice_[part] == Certificate::cells; }),
-                       near_fronts_.end());
-    cells_->set_near(near_cells_);
-  }
-  if (!near_cells_.empty()) {
-    limit_.searches = kCellSearches;
-    limit_.blocking = kMaxBlocking;
-    const CertifyReport report = ask_through(limit_.deadline_ns, [&] { return ask_cells(X, d, clearance); });
-    overflow_ |= report.overflow;
-    judge_cells(report);
-    share_ = std::min(share_, report.share);
-    for (const FacePair& pair : cells_->blocking())
-      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
-  }
-  if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
-  share_ *= kShareKept;
-  return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+  if (!moved) return;
+  near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
+                                    [this](std::uint32_t part) { return choice_[part] == Certificate::cells; }),
+                     near_fronts_.end());
+  cells_->set_near(near_cells_);
 }
 
 void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {

@@ -14,7 +14,8 @@ namespace tegotae {
 /// The path certificate over the near fixed parts: a motion is free only when its whole path is. A part that meets A in
 /// few places has a PatchFront of its own, kept from tick to tick as long as the part stays near; where the pairs of a
 /// front would be too many, as between surfaces that lie on each other, and for parts beyond the number of fronts, the
-/// CellFront takes over.
+/// CellFront takes over. Where no deadline bounds a check, what a new PatchMotionCheck proves is proved whatever was
+/// asked before.
 class PatchMotionCheck final : public MotionCheck {
  public:
   /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
@@ -56,8 +57,12 @@ class PatchMotionCheck final : public MotionCheck {
     double ceiling = std::numeric_limits<double>::infinity();  ///< and something of it no farther than this, m
   };
 
+  void take_up_near() noexcept;
+  void begin_anew() noexcept;
   void take_front(std::uint32_t part) noexcept;
   void move_to_cells(std::uint32_t part) noexcept;
+  MotionAnswer ask(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
+  void ask_fronts(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
   /// Sends parts back to fronts, from the next tick on, where cells do not pay.
   void judge_cells(const CertifyReport& report) noexcept;
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
@@ -92,11 +97,13 @@ class PatchMotionCheck final : public MotionCheck {
   std::unique_ptr<CellFront> cells_;
   std::vector<Certificate> choice_;  ///< of each part, for as long as it is near
   Vain vain_;
+  std::vector<std::uint32_t> near_;         ///< of the last begin()
   std::vector<std::uint32_t> near_fronts_;  ///< near parts that have fronts
   std::vector<std::uint32_t> near_cells_;   ///< the others
   WorkLimit limit_;
   double share_ = 0;
   bool overflow_ = false;
+  bool asked_ = false;  ///< since all began
 };
 
 }  // namespace tegotae

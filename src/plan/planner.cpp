@@ -63,12 +63,6 @@ class Planning {
     if (plan.found) improve(task, plan);
     tell({"certifying", result.iterations, result.poses, result.way});
     plan.clearance = certified(world_, plan.path);
-    if (plan.found && plan.clearance == 0) {
-      // What a world keeps of the motions before may cost a proof that a new one makes.
-      MotionWorld fresh(world_.scene(), world_.clearance());
-      plan.clearance = certified(fresh, plan.path);
-      count(fresh, plan);
-    }
     plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
     plan.interrupted = stopped();

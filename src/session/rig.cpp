@@ -8,6 +8,7 @@
 
 #include "loop/scene_parts.hpp"
 #include "servo/loop_priority.hpp"
+#include "session/guide_pull.hpp"
 #include "session/pen_port.hpp"
 #include "session/step_schedule.hpp"
 #include "session/weight_ramp.hpp"
@@ -50,11 +51,18 @@ struct Rig::State {
   std::atomic<bool> stop_requested{false};
   StepSchedule schedule;
   WeightRamp carried;
+  GuidePull pulled;
+  Scene rules;                           ///< the scene that it began with, without its parts
   std::optional<LoopPriority> priority;  ///< in run()
   std::string missing;
 
   State(const Scene& scene, const RigSettings& settings_in)
-      : settings(settings_in), loop(in_its_time(scene, settings.clock)), schedule(nanoseconds(settings.period)) {}
+      : settings(settings_in),
+        loop(in_its_time(scene, settings.clock)),
+        schedule(nanoseconds(settings.period)),
+        rules(scene) {
+    rules.parts.clear();
+  }
 
   bool simulated() const { return settings.clock == RigClock::simulated; }
   std::int64_t servo_period() const { return nanoseconds(settings.period) / servo_ticks; }
@@ -63,6 +71,7 @@ struct Rig::State {
   void grasp() noexcept {
     const Pose& X = loop.report().proxy.X;
     pen->grasp(loop.center(), loop.coupling(), X);
+    pulled.end();
     sample.state.pose = X;
     sample.state.velocity = {};
   }
@@ -71,7 +80,10 @@ struct Rig::State {
     const std::int64_t answered = now_ns;
     connected = pen->read(sample, now_ns);
     if (connected) {
-      loop.carry(carried.update(sample, dt));
+      const double share = carried.update(sample, dt);
+      loop.carry(share);
+      const Wrench pull = pulled.update(sample.state.pose, dt);
+      loop.pull({share * pull.force, share * pull.torque});
       const TickReport& report = loop.step(sample.state.pose, dt);
       if (report.flags.part_changed) grasp();
       pen->publish(report.proxy, report.planes, steps, sample.state.sequence, simulated() ? answered : monotonic_ns());
@@ -170,6 +182,11 @@ SceneChange Rig::change(Scene next) {
   Part& part = held_part(next);
   if (part.name == s.loop.held()) part.pose = s.loop.latest();
   return s.loop.change(in_its_time(std::move(next), s.settings.clock));
+}
+
+void Rig::guide(const std::vector<Pose>& path) {
+  State& s = *state_;
+  s.pulled.set(path.empty() ? std::nullopt : std::make_optional(guide_along(path, s.rules, s.loop)));
 }
 
 double Rig::time() const noexcept {

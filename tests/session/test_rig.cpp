@@ -192,3 +192,65 @@ TEST_CASE("what a rig cannot do it refuses", "[rig]") {
   none.parts[1].held = false;
   CHECK_THROWS_WITH(Rig(none, pen), Contains("no part is held"));
 }
+
+TEST_CASE("a rig guides the hand along a path, another one, and no more", "[rig][guide]") {
+  Scene scene = floor_scene();
+  const auto at = [](double x, double y) { return Pose{Quat::Identity(), Vec3(x, y, 0.015)}; };
+  SimulatedDevice pen({}, StylusScript({{0, at(0, 0)}}));
+  Rig rig(scene, pen, simulated());
+  rig.start();
+  double jump = 0, off = 0;
+  Vec3 last = Vec3::Zero();
+  const auto steps = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      rig.step();
+      const Vec3 force = rig.pen().wrench.force;
+      jump = std::max(jump, (force - last).norm());
+      last = force;
+      off += rig.pen().reason != ForceOff::none && rig.time() > 0.1 ? 1 : 0;
+    }
+    return last;
+  };
+  CHECK(steps(1000).norm() < 1e-6);
+  rig.guide({at(0, 0), at(0.1, 0)});
+  CHECK(steps(1000).x() == Approx(1).epsilon(0.01));
+  CHECK(std::abs(last.y()) < 0.01);
+  // The other one begins where the pull has taken the pen.
+  const Pose there = rig.pen().state.pose;
+  rig.guide({there, at(there.p.x(), 0.1)});
+  CHECK(steps(1000).y() > 0.9);
+  CHECK(last.norm() < 1.001);
+  rig.guide({});
+  CHECK(steps(1000).norm() < 0.01);
+  CHECK(jump < 0.02);
+  CHECK(off == 0);
+  // In the other part's hand nothing pulls.
+  rig.guide({at(0, 0), at(0.1, 0)});
+  steps(1000);
+  scene.parts[1].held = false;
+  scene.parts[1].pose = rig.part();
+  scene.parts[2].held = true;
+  scene.parts[2].pose.p.x() = 0.1;
+  rig.change(scene);
+  CHECK(steps(1000).norm() < 0.01);
+  CHECK(rig.loop().held() == "other");
+}
+
+TEST_CASE("a guided step allocates nothing; what knows no load is not guided", "[rig][guide]") {
+  const Pose start{Quat::Identity(), Vec3(0, 0, 0.015)};
+  Scene scene = floor_scene();
+  {
+    SimulatedDevice pen({}, press());
+    Rig rig(scene, pen, simulated());
+    rig.start();
+    rig.guide({start, {Quat::Identity(), Vec3(0.05, 0, 0.015)}});
+    for (int i = 0; i < 300; ++i) rig.step();
+    const AllocGuard guard;
+    for (int i = 0; i < 700; ++i) rig.step();
+    CHECK(guard.count() == 0);
+  }
+  scene.contact.resolver = ResolverKind::lp;
+  SimulatedDevice pen({}, press());
+  Rig rig(scene, pen, simulated());
+  CHECK_THROWS_WITH(rig.guide({start}), Contains("the resolver lp knows no load; qp does"));
+}

@@ -78,6 +78,14 @@ class Rig {
   /// thread may call it. Throws Error when the loop cannot hold the scene; then nothing changes.
   SceneChange change(Scene next);
 
+  /// Pulls the hand gently along `path` from the next step on: poses X_WF of the held part's file frame, as read_path()
+  /// gives them. It pulls along the path where that is nearest to the pen, and beside it also back; from 10 mm off the
+  /// path on it fades, beyond 20 mm (lengths of the hand) there is none. The pull is at most 1 N, and where
+  /// WeightSettings::max_force is set no more than that less half of the weight; it never moves the part into another
+  /// one. It comes over 0.3 s, and what pulled before goes as fast. No poses, and another held part, end it. Needs the
+  /// resolver "qp"; throws Error with another one. Allocates: call it between two steps, in their thread.
+  void guide(const std::vector<Pose>& path);
+
   double time() const noexcept;           ///< s since start(), as of the last step
   std::uint64_t steps() const noexcept;   ///< made since start()
   Pose part() const noexcept;             ///< X of the held part's file frame, to draw it; any thread may call it
