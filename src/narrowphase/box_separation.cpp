@@ -70,9 +70,10 @@ double BoxPair::mixed(const Vec3& n0, const Vec3& n1) const {
   return s;
 }
 
-bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane) {
+bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, double worth_of_a,
+                    MovingPlane& plane) {
   const Bulge bulge(sweep, reach, 0, 1);
-  if (stays_apart(pair, plane, plane, bulge, sweep, spare)) return true;
+  if (stays_apart(pair, plane.n0, plane.n1, bulge, sweep, spare)) return true;
   const BoxFaces at_start(pair.d0, pair.a0, pair.ha, pair.b, pair.hb);
   int first = 0;
   for (int k = 1; k < 6; ++k) {
@@ -84,14 +85,14 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
   double both = 0;
   for (int k = 0; k < 6; ++k) {
     if (at_end.sep[k] > at_end.sep[last]) last = k;
-    const double s = std::min(at_start.sep[k], at_end.sep[k]);
+    const double s = (k < 3 ? 1 : worth_of_a) * std::min(at_start.sep[k], at_end.sep[k]);
     if (at_start.sign[k] == at_end.sign[k] && s > both) both = s, together = k;
   }
   auto try_pair = [&](int i, int j) {
     const Vec3 n0 = at_start.sign[i] * box_axis(i, pair.a0, pair.b);
     const Vec3 n1 = at_end.sign[j] * box_axis(j, pair.a1, pair.b);
     if (!stays_apart(pair, n0, n1, bulge, sweep, spare)) return false;
-    plane = n1;
+    plane = {n0, n1, j >= 3};
     return true;
   };
   return (together >= 0 && try_pair(together, together)) || (at_end.sep[last] > 0 && try_pair(first, last));

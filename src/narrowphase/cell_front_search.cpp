@@ -151,8 +151,8 @@ double CellFront::free_until(std::uint32_t part, std::uint32_t face_a, std::uint
   double free = 0, met = 1;
   for (int i = 0; i < kHalvings; ++i) {
     const double s = 0.5 * (free + met);
-    Vec3 n = Vec3::UnitX();
-    if (separate_triangles(a, b, sweep_by(part, s * d), reach, n)) {
+    MovingPlane plane{Vec3::UnitX(), Vec3::UnitX()};
+    if (separate_triangles(a, b, sweep_by(part, s * d), reach, plane)) {
       free = s;
     } else {
       met = s;

@@ -296,7 +296,8 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
   const std::uint32_t face = e.place();
   const std::array<Vec3, 3> corners{query_.tree->corner(face, 0) - o, query_.tree->corner(face, 1) - o,
                                     query_.tree->corner(face, 2) - o};
-  if (separate_triangles(*face_of_a_, corners, *sweep_, a_->reach, n)) {
+  MovingPlane plane{n, n};
+  if (separate_triangles(*face_of_a_, corners, *sweep_, a_->reach, plane)) {
     passing_ = true;
     return Outcome::found;
   }

@@ -8,12 +8,6 @@
 namespace tegotae {
 namespace {
 
-/// Rounding of one gap in single precision: 32 units in the last place of the largest terms (about 20 from turning the
-/// normal and the products, 7 from the sums).
-constexpr double kLaneError = 1.0 / (1 << 19);
-/// The same in double precision: what the stored single-precision offset, center and edges are rounded by (half a unit
-/// in the last place each; doubled).
-constexpr double kFineError = 1.0 / (1 << 23);
 /// Searches of boxes, and splits undone, between two looks at the clock; pairs of the wide check.
 constexpr int kClockStride = 16, kRollBackStride = 64;
 constexpr std::uint32_t kChunk = 1024;
@@ -39,6 +33,8 @@ constexpr int kMinLooks = 512, kLookShare = 16;
 constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
 constexpr int kLateTries = 32;
+/// Where planes may go on with A: of two that are about as good the one that rests is as good later, and cheaper.
+constexpr double kWorthOfA = 0.5;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
 /// motion of late counts, since a blocked part stands still between two pushes. Not more than this (m), under the gap
 /// that motions leave: a part that is pressed to that gap could raise nothing at all.
@@ -51,8 +47,9 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
       // Every pair of a fan is in the front, so a tree of splits has less than twice as many pairs as the front; odd
       // fans leave unused places, which the factor allows for.
       pool_(4 * std::size_t{capacity.pairs} + kFan),
-      boxes_{LaneBlocks(capacity.pairs, kBoxFields), std::vector<std::uint32_t>(capacity.pairs), 0},
-      triangles_{LaneBlocks(capacity.pairs, kTriFields), std::vector<std::uint32_t>(capacity.pairs), 0},
+      groups_{Group(capacity.pairs, kBoxFields), Group(capacity.pairs, kTriFields),
+              Group(capacity.curved > 0 ? capacity.pairs : 0, kBoxFields),
+              Group(capacity.curved > 0 ? capacity.pairs : 0, kTriFields)},
       curved_(capacity.curved, capacity.curved > 0 ? kMaxAxisPairs : 0),
       failures_(capacity.pairs) {
   stack_.reserve(capacity.pairs);
@@ -66,7 +63,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   b_ = &b;
   center_ = center_A;
   offset_a_ = a.origin() - center_A;
-  boxes_.count = triangles_.count = 0;
+  for (Group& g : groups_) g.count = 0;
   curved_.attach(axes);
   blocking_.clear();
   splits_.clear();
@@ -74,10 +71,12 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
   debt_ = 0;
-  slides_ = axes != nullptr && !axes->empty();
+  sizes_ = {node_reach(a.nodes()[0]), a.radius() + offset_a_.norm(),
+            reach_from(b.nodes()[0].center_vec(), b.nodes()[0]), b.radius()};
+  slides_ = axes != nullptr && !axes->empty() && capacity_.curved > 0;
   effort_ = slides_ ? kSlidingTries : kMaxTries;
   motion_ = travel_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, {0, 0, 0}, 0, 0};
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, false, {0, 0, 0}, 0, 0};
   enter(0);
 }
 
@@ -116,47 +115,26 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
 }
 
 void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
-  sweep_ = Sweep(X_BA, d, center_, *b_, a_->radius() + offset_a_.norm(), clearance_);
+  sweep_ = Sweep(X_BA, d, center_, *b_, sizes_.radius_a, clearance_);
   curved_.begin(*a_, center_, *b_, sweep_);
-  const double carried = d.dp.norm() + node_reach(a_->nodes()[0]) * d.dr.norm();
+  const double carried = d.dp.norm() + sizes_.reach_a * d.dr.norm();
   if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
   travel_ += carried;
 }
 
-LaneSweep PatchFront::lane_sweep() const {
-  LaneSweep s;
-  auto fill = [this](auto& m) {
-    using Real = std::decay_t<decltype(m.bulge)>;
-    for (int i = 0; i < 3; ++i) {
-      m.t0[i] = static_cast<Real>(sweep_.start.t[i]);
-      m.t1[i] = static_cast<Real>(sweep_.end.t[i]);
-      for (int j = 0; j < 3; ++j) {
-        m.R0[3 * i + j] = static_cast<Real>(sweep_.start.R(i, j));
-        m.R1[3 * i + j] = static_cast<Real>(sweep_.end.R(i, j));
-      }
-    }
-    m.bulge = round_up<Real>(1.00001 * sweep_.theta2 / 8);
-    m.bulge_offset = round_up<Real>(1.00001 * sweep_.center_distance * sweep_.theta2 / 8);
-  };
-  fill(s.coarse);
-  fill(s.fine);
-  const double box_size = node_reach(a_->nodes()[0]);
-  const double terms = std::max(sweep_.start.t.norm(), sweep_.end.t.norm()) + 3 * box_size + 2 * b_->radius();
-  s.coarse.error = round_up<float>(kLaneError * terms + sweep_.floor);
-  s.fine.error = kFineError * terms + sweep_.floor;
-  return s;
-}
-
 bool PatchFront::collect_failures() {
-  const LaneSweep sweep = lane_sweep();
+  const std::array<LaneSweep, 2> seen = {seen_from_b(sweep_, sizes_), seen_from_a(sweep_, sizes_)};
   failure_count_ = 0;
-  for (const Group* g : {&triangles_, &boxes_}) {
-    const auto check = g == &boxes_ ? box_failures : triangle_failures;
-    for (std::uint32_t first = 0; first < g->count; first += kChunk) {
+  // The nearest first.
+  for (const std::size_t kind : {kFacesOnB, kFacesOnA, kBoxesOnB, kBoxesOnA}) {
+    const Group& g = groups_[kind];
+    const auto check = kind == kFacesOnB || kind == kFacesOnA ? triangle_failures : box_failures;
+    const LaneSweep& sweep = seen[kind == kFacesOnA || kind == kBoxesOnA ? 1 : 0];
+    for (std::uint32_t first = 0; first < g.count; first += kChunk) {
       if (past(limit_.deadline_ns)) return false;
       std::uint32_t* failed = failures_.data() + failure_count_;
-      const std::size_t n = check(g->lanes, first, std::min(g->count, first + kChunk), sweep, failed);
-      for (std::size_t i = 0; i < n; ++i) failed[i] = g->owner[failed[i]];
+      const std::size_t n = check(g.lanes, first, std::min(g.count, first + kChunk), sweep, failed);
+      for (std::size_t i = 0; i < n; ++i) failed[i] = g.owner[failed[i]];
       failure_count_ += n;
     }
   }
@@ -171,6 +149,10 @@ bool PatchFront::spend(bool triangles) {
   return (!triangles && report_.searches % kClockStride != 0) || !past(limit_.deadline_ns);
 }
 
+double PatchFront::worth_of_a() const {
+  return slides_ ? kWorthOfA : 1;
+}
+
 PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
   const std::size_t before = blocking_.size();
   stack_.clear();
@@ -180,12 +162,12 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     stack_.pop_back();
     const PairNode& p = pool_[id];
     if (!spend(faces(p))) return Outcome::out_of_work;
-    Vec3 n = plane(id);
+    MovingPlane known = moving(plane(id));
     if (faces(p)) {
       const auto a = face_a(p.a), b = face_b(p.b);
       const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
-      if (separate_triangles(a, b, sweep_, reach, n)) {
-        set_plane(id, n);
+      if (separate_triangles(a, b, sweep_, reach, known)) {
+        set_plane(id, last(known));
         continue;
       }
       blocking_.push_back({p.a, p.b});
@@ -199,9 +181,9 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     PatchNode scratch_a, scratch_b;
     const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
     const BoxPair boxes(a, node_center(a), b, sweep_);
-    if (separate_boxes(boxes, sweep_, node_reach(a), 0, n)) {
+    if (separate_boxes(boxes, sweep_, node_reach(a), 0, worth_of_a(), known)) {
       flatten(id);
-      set_plane(id, n);
+      set_plane(id, last(known));
       continue;
     }
     if (p.curved == 0 && bend(id, 0)) continue;
@@ -230,15 +212,18 @@ void PatchFront::raise() {
   effort_ = std::max(effort_, fewest);
   const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
   int tries = 0;
+  auto count = static_cast<std::uint32_t>(pairs());
   // Round robin over all groups, once around at most.
   for (int looks = std::min(pairs(), std::max(kMinLooks, pairs() / kLookShare));
        looks > 0 && report_.merges < wanted && tries < most; --looks) {
-    if (++cursor_ >= static_cast<std::uint32_t>(pairs())) cursor_ = 0;
+    if (++cursor_ >= count) cursor_ = 0;
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !may_raise(parent)) continue;
     if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
-    if (try_raise(parent)) ++report_.merges;
+    if (!try_raise(parent)) continue;
+    ++report_.merges;
+    count = static_cast<std::uint32_t>(pairs());
   }
   if (kPoorShare * report_.merges < tries) effort_ /= 2;
   if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, slides_ ? kSlidingTries : kMaxTries);
@@ -267,10 +252,10 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const double reach = node_reach(a);
   // With some gap to spare, or the next motion splits it again.
   const double spare = std::min(kRaiseSpare * motion_, kMaxSpare);
-  Vec3 n = plane(p.child);
-  if (separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, n)) {
+  MovingPlane known = moving(plane(p.child));
+  if (separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, worth_of_a(), known)) {
     collapse(id);
-    set_plane(id, n);
+    set_plane(id, last(known));
     return true;
   }
   if (bend(id, spare)) return true;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "narrowphase/certify.hpp"
 #include "narrowphase/curved_pairs.hpp"
+#include "narrowphase/lane_motion.hpp"
 #include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/patch_separate.hpp"
 #include "narrowphase/patch_tree.hpp"
@@ -54,16 +56,20 @@ class PatchFront {
   /// Length of the mean normal of all planes: 1 when they face one way, 0 when they face each other.
   double one_sidedness() const noexcept;
 
-  int pairs() const { return static_cast<int>(boxes_.count + triangles_.count + curved_.count()); }
+  int pairs() const {
+    std::uint32_t flat = 0;
+    for (const Group& g : groups_) flat += g.count;
+    return static_cast<int>(flat + curved_.count());
+  }
   /// Of them those that are kept apart about a common axis.
   int curved_pairs() const { return static_cast<int>(curved_.count()); }
 
   /// Calls f(a, a_is_face, b, b_is_face) for every pair of the front: nodes of the trees, or faces.
   template <typename F>
   void for_each_pair(F f) const {
-    for (const Group* g : {&boxes_, &triangles_}) {
-      for (std::uint32_t i = 0; i < g->count; ++i) {
-        const PairNode& p = pool_[g->owner[i]];
+    for (const Group& g : groups_) {
+      for (std::uint32_t i = 0; i < g.count; ++i) {
+        const PairNode& p = pool_[g.owner[i]];
         f(p.a, p.face_a, p.b, p.face_b);
       }
     }
@@ -77,19 +83,30 @@ class PatchFront {
     std::uint32_t parent;         ///< kNoPair for the root
     std::uint32_t child;          ///< first of `children` in a row
     std::uint32_t slot;           ///< in its group, while in the front
-    std::uint8_t children;        ///< 0: in the front
-    std::uint8_t curved;          ///< kept apart about the axis pair of this number less one; 0: by a plane
+    std::uint8_t children : 4;    ///< 0: in the front
+    std::uint8_t curved : 4;      ///< kept apart about the axis pair of this number less one; 0: by a plane
     bool face_a, face_b;          ///< which of a and b are faces
-    std::array<float, 3> normal;  ///< last plane, kept here while split or curved
+    bool with_a;                  ///< its plane is fixed to A, and not to B
+    std::array<float, 3> normal;  ///< last plane (see Plane), kept here while split or curved
     float wait;                   ///< travel between two tries to raise it, m
     double retry;                 ///< travel_ from which on it may be raised
   };
-  /// The pairs of the front of one kind, dense.
+  /// A plane between two nodes that is fixed to one of them: its normal, from B to A, in the axes of A or of B.
+  struct Plane {
+    Vec3 n;
+    bool with_a;
+  };
+  /// The pairs of the front of one kind, dense. Of pairs whose plane is fixed to A the lanes hold the mirror image: the
+  /// piece of B that moves past a plane over the piece of A.
   struct Group {
+    Group(std::uint32_t capacity, std::size_t fields) : lanes(capacity, fields), owner(capacity) {}
     LaneBlocks lanes;
     std::vector<std::uint32_t> owner;
     std::uint32_t count = 0;
   };
+
+  /// By what the pairs are of, and the part that their planes are fixed to.
+  enum GroupKind : std::size_t { kBoxesOnB, kFacesOnB, kBoxesOnA, kFacesOnA, kGroups };
 
   static constexpr std::uint32_t kNoPair = 0xffffffffu;
   /// Most children of a pair: all triangle pairs of two leaves.
@@ -98,7 +115,6 @@ class PatchFront {
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
   void set_sweep(const Pose& X_BA, const Displacement& d);
-  LaneSweep lane_sweep() const;
   bool collect_failures();
   Outcome settle(std::uint32_t top);
   bool spend(bool triangles);
@@ -117,10 +133,20 @@ class PatchFront {
   std::uint32_t allocate(std::uint32_t children);
   void enter(std::uint32_t id);
   void leave(std::uint32_t id);
-  void set_plane(std::uint32_t id, const Vec3& n);
-  Vec3 plane(std::uint32_t id) const;
+  void set_plane(std::uint32_t id, const Plane& plane);
+  void write_plane(std::uint32_t id, const Vec3& n);
+  void write_triangle(const PairNode& p);
+  void write_box(const PairNode& p);
+  Plane plane(std::uint32_t id) const;
+  MovingPlane moving(const Plane& plane) const;
+  Plane last(const MovingPlane& plane) const;
+  double worth_of_a() const;
   static bool faces(const PairNode& p) { return p.face_a && p.face_b; }
-  Group& group(const PairNode& p) { return faces(p) ? triangles_ : boxes_; }
+  static GroupKind kind(const PairNode& p) {
+    if (faces(p)) return p.with_a ? kFacesOnA : kFacesOnB;
+    return p.with_a ? kBoxesOnA : kBoxesOnB;
+  }
+  Group& group(const PairNode& p) { return groups_[kind(p)]; }
 
   /// The boxes of a pair that is not of two faces; a face's is written to `scratch`.
   const PatchNode& box_a(const PairNode& p, PatchNode& scratch) const {
@@ -130,7 +156,8 @@ class PatchFront {
     return p.face_b ? scratch = b_->face_box(p.b) : b_->nodes()[p.b];
   }
   Vec3 node_center(const PatchNode& n) const { return n.center_vec() + offset_a_; }
-  double node_reach(const PatchNode& n) const;
+  double node_reach(const PatchNode& n) const { return reach_from(node_center(n), n); }
+  static double reach_from(const Vec3& center, const PatchNode& n);
   std::array<Vec3, 3> face_a(std::uint32_t f) const;
   std::array<Vec3, 3> face_b(std::uint32_t f) const;
 
@@ -140,11 +167,12 @@ class PatchFront {
   const PatchTree* b_ = nullptr;
   Vec3 center_ = Vec3::Zero();    ///< A's center of mass, file frame
   Vec3 offset_a_ = Vec3::Zero();  ///< from the center of mass to the origin of A's tree
+  PairSizes sizes_{};
 
   std::vector<PairNode> pool_;
   std::uint32_t pool_used_ = 0;
   std::uint32_t free_twos_ = 0, free_fans_ = 0;  ///< heads of the free lists, linked through `child`
-  Group boxes_, triangles_;
+  std::array<Group, kGroups> groups_;
   CurvedPairs curved_;
   std::vector<std::uint32_t>
       failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check

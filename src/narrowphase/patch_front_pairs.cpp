@@ -46,17 +46,17 @@ bool PatchFront::split(std::uint32_t id) {
   }
   const std::uint32_t child = allocate(children);
   if (child == kNoPair) return false;
-  const Vec3 n = plane(id);
+  const Plane known = plane(id);
   leave(id);
   PairNode& parent = pool_[id];
   parent.child = child;
-  parent.children = static_cast<std::uint8_t>(children);
+  parent.children = children & 0xf;
   parent.curved = 0;
   parent.wait = 0;
   put_off(id);
-  for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(n[k]);
+  for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(known.n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, parent.normal, 0, 0};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, parent.normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -99,11 +99,11 @@ bool PatchFront::bend(std::uint32_t id, double spare) {
   if (curved_.full(found->axis)) return false;
   if (p.children > 0) collapse(id);
   flatten(id);
-  const Vec3 n = plane(id);
+  const Plane known = plane(id);
   leave(id);
   PairNode& bent = pool_[id];
-  for (int k = 0; k < 3; ++k) bent.normal[k] = static_cast<float>(n[k]);
-  bent.curved = static_cast<std::uint8_t>(found->axis + 1);
+  for (int k = 0; k < 3; ++k) bent.normal[k] = static_cast<float>(known.n[k]);
+  bent.curved = (found->axis + 1) & 0xf;
   bent.slot = curved_.enter(*found, bent.a, bent.b, id);
   return true;
 }
@@ -117,9 +117,11 @@ void PatchFront::flatten(std::uint32_t id) {
 }
 
 std::uint32_t PatchFront::in_front(std::uint32_t i) const {
-  if (i < boxes_.count) return boxes_.owner[i];
-  i -= boxes_.count;
-  return i < triangles_.count ? triangles_.owner[i] : curved_.owner(i - triangles_.count);
+  for (const Group& g : groups_) {
+    if (i < g.count) return g.owner[i];
+    i -= g.count;
+  }
+  return curved_.owner(i);
 }
 
 bool PatchFront::all_in_front(std::uint32_t id) const {
@@ -135,25 +137,36 @@ void PatchFront::enter(std::uint32_t id) {
   Group& g = group(p);
   p.slot = g.count++;
   g.owner[p.slot] = id;
-  if (faces(p)) {
-    const auto a = face_a(p.a);
-    double reach2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < 3; ++i) g.lanes.at(p.slot, kTriCorners + 3 * k + i) = static_cast<float>(a[k][i]);
-      reach2 = std::max(reach2, a[k].squaredNorm());
-    }
-    g.lanes.at(p.slot, kTriReach) = round_up<float>(std::sqrt(reach2));
-  } else {
-    PatchNode scratch;
-    const PatchNode& a = box_a(p, scratch);
-    const Vec3 c = node_center(a);
-    for (int i = 0; i < 3; ++i) {
-      g.lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
-      for (int k = 0; k < 3; ++k) g.lanes.at(p.slot, kBoxEdges + 3 * i + k) = a.half[i] * a.axis[i][k];
-    }
-    g.lanes.at(p.slot, kBoxReach) = round_up<float>(node_reach(a));
+  if (faces(p))
+    write_triangle(p);
+  else
+    write_box(p);
+  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+}
+
+/// The triangle that moves past the plane.
+void PatchFront::write_triangle(const PairNode& p) {
+  LaneBlocks& lanes = group(p).lanes;
+  const auto moving = p.with_a ? face_b(p.b) : face_a(p.a);
+  double reach2 = 0;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) lanes.at(p.slot, kTriCorners + 3 * k + i) = static_cast<float>(moving[k][i]);
+    reach2 = std::max(reach2, moving[k].squaredNorm());
   }
-  set_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+  lanes.at(p.slot, kTriReach) = round_up<float>(std::sqrt(reach2));
+}
+
+/// The box that moves past the plane.
+void PatchFront::write_box(const PairNode& p) {
+  LaneBlocks& lanes = group(p).lanes;
+  PatchNode scratch;
+  const PatchNode& moving = p.with_a ? box_b(p, scratch) : box_a(p, scratch);
+  const Vec3 c = p.with_a ? moving.center_vec() : node_center(moving);
+  for (int i = 0; i < 3; ++i) {
+    lanes.at(p.slot, kBoxCenter + i) = static_cast<float>(c[i]);
+    for (int k = 0; k < 3; ++k) lanes.at(p.slot, kBoxEdges + 3 * i + k) = moving.half[i] * moving.axis[i][k];
+  }
+  lanes.at(p.slot, kBoxReach) = round_up<float>(reach_from(c, moving));
 }
 
 void PatchFront::leave(std::uint32_t id) {
@@ -170,46 +183,71 @@ void PatchFront::leave(std::uint32_t id) {
   pool_[g.owner[slot]].slot = slot;
 }
 
-void PatchFront::set_plane(std::uint32_t id, const Vec3& n) {
+/// Gives a pair of the front, not a curved one, its plane.
+void PatchFront::set_plane(std::uint32_t id, const Plane& plane) {
+  PairNode& p = pool_[id];
+  if (p.with_a == plane.with_a) return write_plane(id, plane.n);
+  leave(id);
+  p.with_a = plane.with_a;
+  for (int k = 0; k < 3; ++k) p.normal[k] = static_cast<float>(plane.n[k]);
+  enter(id);
+}
+
+void PatchFront::write_plane(std::uint32_t id, const Vec3& n) {
   const PairNode& p = pool_[id];
-  Group& g = group(p);
+  LaneBlocks& lanes = group(p).lanes;
+  // From the piece that rests to the one that moves past it.
+  const double sign = p.with_a ? -1 : 1;
   Vec3 rounded;
   for (int k = 0; k < 3; ++k) {
-    g.lanes.at(p.slot, kBoxNormal + k) = static_cast<float>(n[k]);
-    rounded[k] = g.lanes.at(p.slot, kBoxNormal + k);
+    lanes.at(p.slot, kBoxNormal + k) = static_cast<float>(sign * n[k]);
+    rounded[k] = lanes.at(p.slot, kBoxNormal + k);
   }
   double support = -std::numeric_limits<double>::infinity();
   if (faces(p)) {
-    for (const Vec3& v : face_b(p.b)) support = std::max(support, rounded.dot(v));
+    for (const Vec3& v : p.with_a ? face_a(p.a) : face_b(p.b)) support = std::max(support, rounded.dot(v));
   } else {
     PatchNode scratch;
-    const PatchNode& b = box_b(p, scratch);
-    support = rounded.dot(b.center_vec());
-    for (int i = 0; i < 3; ++i) support += b.half[i] * std::abs(rounded.dot(b.axis_vec(i)));
+    const PatchNode& rests = p.with_a ? box_a(p, scratch) : box_b(p, scratch);
+    support = rounded.dot(p.with_a ? node_center(rests) : rests.center_vec());
+    for (int i = 0; i < 3; ++i) support += rests.half[i] * std::abs(rounded.dot(rests.axis_vec(i)));
   }
-  g.lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
+  lanes.at(p.slot, kBoxOffset) = static_cast<float>(support);
 }
 
-Vec3 PatchFront::plane(std::uint32_t id) const {
+PatchFront::Plane PatchFront::plane(std::uint32_t id) const {
   const PairNode& p = pool_[id];
-  if (p.curved > 0) return {p.normal[0], p.normal[1], p.normal[2]};
-  const LaneBlocks& lanes = (faces(p) ? triangles_ : boxes_).lanes;
-  return {lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2)};
+  if (p.curved > 0) return {{p.normal[0], p.normal[1], p.normal[2]}, p.with_a};
+  const LaneBlocks& lanes = groups_[kind(p)].lanes;
+  const Vec3 n(lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2));
+  return {p.with_a ? Vec3(-n) : n, p.with_a};
+}
+
+/// How the plane goes in the motion.
+MovingPlane PatchFront::moving(const Plane& plane) const {
+  if (!plane.with_a) return {plane.n, plane.n, false};
+  return {sweep_.start.R * plane.n, sweep_.end.R * plane.n, true};
+}
+
+/// The plane at the end of the motion, fixed to the part that it went with. Only parts that slide about a common axis
+/// meet the same faces for so long that a plane which turns with A pays.
+PatchFront::Plane PatchFront::last(const MovingPlane& plane) const {
+  if (!plane.with_a || !slides_) return {plane.n1, false};
+  return {sweep_.end.R.transpose() * plane.n1, true};
 }
 
 double PatchFront::one_sidedness() const noexcept {
-  Vec3 sum = Vec3::Zero();
-  for (const Group* g : {&boxes_, &triangles_})
-    for (std::uint32_t i = 0; i < g->count; ++i)
-      sum += Vec3(g->lanes.at(i, kBoxNormal), g->lanes.at(i, kBoxNormal + 1), g->lanes.at(i, kBoxNormal + 2));
-  return pairs() > 0 ? sum.norm() / pairs() : 0;
+  Vec3 to_a = Vec3::Zero();
+  for (const Group& g : groups_)
+    for (std::uint32_t i = 0; i < g.count; ++i) to_a += moving(plane(g.owner[i])).n1;
+  return pairs() > 0 ? to_a.norm() / pairs() : 0;
 }
 
-double PatchFront::node_reach(const PatchNode& n) const {
+double PatchFront::reach_from(const Vec3& center, const PatchNode& n) {
   // Half edges may not be quite orthogonal (single precision), which the sum of their lengths squared does not see.
   constexpr double kSkew = 1 + 1e-6;
   const double half2 = double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2];
-  return node_center(n).norm() + kSkew * std::sqrt(half2);
+  return center.norm() + kSkew * std::sqrt(half2);
 }
 
 std::array<Vec3, 3> PatchFront::face_a(std::uint32_t f) const {

@@ -11,7 +11,8 @@ namespace {
 
 // Parts that can have fronts at once.
 constexpr std::size_t kMaxFronts = 32;
-// Pairs of all fronts together (about 200 bytes each), and the least and the most of one.
+// Pairs of all fronts together (about 200 bytes each, 330 where parts have a common axis), and the least and the most
+// of one.
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kMinPairs = 1u << 13;
 constexpr std::size_t kMaxPairs = 1u << 15;

@@ -39,6 +39,7 @@ struct Sweep {
 /// A plane that moves: unit normals (B's axes, from B to A) at the start and the end of a motion.
 struct MovingPlane {
   Vec3 n0, n1;
+  bool with_a = false;  ///< it turned with A, and a plane that goes on to do so will last longest
 };
 
 /// A box of A at the two ends of a motion and a box of B, ready for separation.
@@ -70,13 +71,15 @@ struct TrianglePair {
 };
 
 /// Looks for a plane that keeps the boxes apart all along the motion. `reach` is the largest distance of a point of A's
-/// node from the center of mass (m). `spare` (m) asks for that much more at both ends. `plane` comes in as the last
-/// known normal and goes out as the normal at the end of the motion.
-bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, Vec3& plane);
+/// node from the center of mass (m). `spare` (m) asks for that much more at both ends. A gap along a face of A counts
+/// `worth_of_a` times what one along a face of B does, where there is a choice. `plane` comes in as the last known one
+/// and, where the boxes are apart, goes out as the one that keeps them so.
+bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, double worth_of_a,
+                    MovingPlane& plane);
 
 /// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
 /// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between.
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        Vec3& plane);
+                        MovingPlane& plane);
 
 }  // namespace tegotae

@@ -34,11 +34,20 @@ class Search {
   explicit Search(const TrianglePair& pair) : pair_(pair) {}
 
   /// A direction of the start and its counterpart at the end.
-  void offer(const Vec3& n0, const Vec3& n1) { keep(pair_.start(n0), pair_.end(n1), n0, n1); }
-  void offer_both_ways(const Vec3& n0, const Vec3& n1) {
+  void offer(const MovingPlane& p) { keep(pair_.start(p.n0), pair_.end(p.n1), p); }
+  void offer_both_ways(const Vec3& n0, const Vec3& n1, bool with_a) {
     const Span a0(n0, pair_.p0), b0(n0, pair_.q), a1(n1, pair_.p1), b1(n1, pair_.q);
-    if (a0.lo - b0.hi > b0.lo - a0.hi || a1.lo - b1.hi > b1.lo - a1.hi) keep(a0.lo - b0.hi, a1.lo - b1.hi, n0, n1);
-    if (a0.lo - b0.hi <= b0.lo - a0.hi || a1.lo - b1.hi <= b1.lo - a1.hi) keep(b0.lo - a0.hi, b1.lo - a1.hi, -n0, -n1);
+    if (a0.lo - b0.hi > b0.lo - a0.hi || a1.lo - b1.hi > b1.lo - a1.hi)
+      keep(a0.lo - b0.hi, a1.lo - b1.hi, {n0, n1, with_a});
+    if (a0.lo - b0.hi <= b0.lo - a0.hi || a1.lo - b1.hi <= b1.lo - a1.hi)
+      keep(b0.lo - a0.hi, b1.lo - a1.hi, {-n0, -n1, with_a});
+  }
+
+  /// Whether the direction of the start has the triangles farther apart there than any that is known has at both ends:
+  /// only then can it be the best for both ends at once.
+  bool promises(const Vec3& n0) const {
+    const Span a(n0, pair_.p0), b(n0, pair_.q);
+    return std::max(a.lo - b.hi, b.lo - a.hi) > both_;
   }
 
   /// Largest separation at the start and at the end.
@@ -47,21 +56,21 @@ class Search {
   const MovingPlane& best() const { return best_; }
 
   /// Tries the direction that is best for both ends at once, then the best of each.
-  bool accept(const Bulge& bulge, const Sweep& sweep, Vec3& plane) const {
+  bool accept(const Bulge& bulge, const Sweep& sweep, MovingPlane& plane) const {
     if (start_ < 0 || end_ < 0) return false;
     for (const MovingPlane& p : {together_, best_}) {
       if (!stays_apart(pair_, p.n0, p.n1, bulge, sweep, 0)) continue;
-      plane = p.n1;
+      plane = p;
       return true;
     }
     return false;
   }
 
  private:
-  void keep(double s0, double s1, const Vec3& n0, const Vec3& n1) {
-    if (s0 > start_) start_ = s0, best_.n0 = n0;
-    if (s1 > end_) end_ = s1, best_.n1 = n1;
-    if (std::min(s0, s1) > both_) both_ = std::min(s0, s1), together_ = {n0, n1};
+  void keep(double s0, double s1, const MovingPlane& p) {
+    if (s0 > start_) start_ = s0, best_.n0 = p.n0;
+    if (s1 > end_) end_ = s1, best_.n1 = p.n1, best_.with_a = p.with_a;
+    if (std::min(s0, s1) > both_) both_ = std::min(s0, s1), together_ = p;
   }
 
   const TrianglePair& pair_;
@@ -134,49 +143,59 @@ struct Edges {
 void offer_normals(const TrianglePair& t, Search& search) {
   auto normal = [](const std::array<Vec3, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); };
   const Vec3 b = normal(t.q);
-  search.offer_both_ways(b, b);
-  search.offer_both_ways(normal(t.p0), normal(t.p1));
+  search.offer_both_ways(b, b, false);
+  search.offer_both_ways(normal(t.p0), normal(t.p1), true);
   const Vec3 center = t.q[0] + t.q[1] + t.q[2];
-  search.offer((t.p0[0] + t.p0[1] + t.p0[2] - center).normalized(),
-               (t.p1[0] + t.p1[1] + t.p1[2] - center).normalized());
+  search.offer(
+      {(t.p0[0] + t.p0[1] + t.p0[2] - center).normalized(), (t.p1[0] + t.p1[1] + t.p1[2] - center).normalized()});
 }
 
-/// All directions that can separate two triangles; offered to `search` with their counterparts at the end.
-void offer_triangle_axes(const TrianglePair& t, Search& search) {
+enum class Axes : std::uint8_t { promising, all };
+
+/// Directions that can separate two triangles, all or those that the start does not rule out as the best for both ends;
+/// offered to `search` with their counterparts at the end.
+void offer_triangle_axes(const TrianglePair& t, Axes which, Search& search) {
   const Edges a0(t.p0), a1(t.p1), b(t.q);
-  if (!b.n.isZero(0)) search.offer_both_ways(b.n, b.n);
-  if (!a0.n.isZero(0)) search.offer_both_ways(a0.n, a1.n);
-  auto product = [&](const Vec3& x0, const Vec3& y0, const Vec3& x1, const Vec3& y1) {
-    const Vec3 m0 = x0.cross(y0), m1 = x1.cross(y1);
-    const double l0 = m0.norm(), l1 = m1.norm();
-    if (l0 < kParallel || l1 < kParallel) return;
-    search.offer_both_ways(m0 / l0, m1 / l1);
+  if (!b.n.isZero(0)) search.offer_both_ways(b.n, b.n, false);
+  if (!a0.n.isZero(0)) search.offer_both_ways(a0.n, a1.n, true);
+  auto product = [&](const Vec3& x0, const Vec3& y0, const Vec3& x1, const Vec3& y1, bool with_a) {
+    const Vec3 m0 = x0.cross(y0);
+    const double l0 = m0.norm();
+    if (l0 < kParallel) return;
+    const Vec3 n0 = m0 / l0;
+    if (which == Axes::promising && !search.promises(n0)) return;
+    const Vec3 m1 = x1.cross(y1);
+    const double l1 = m1.norm();
+    if (l1 < kParallel) return;
+    search.offer_both_ways(n0, m1 / l1, with_a);
   };
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) product(a0.e[i], b.e[j], a1.e[i], b.e[j]);
+    for (int j = 0; j < 3; ++j) product(a0.e[i], b.e[j], a1.e[i], b.e[j], false);
   }
   for (int i = 0; i < 3; ++i) {
-    product(b.n, b.e[i], b.n, b.e[i]);
-    product(a0.n, a0.e[i], a1.n, a1.e[i]);
+    product(b.n, b.e[i], b.n, b.e[i], false);
+    product(a0.n, a0.e[i], a1.n, a1.e[i], true);
   }
 }
 
 void offer_closest(const TrianglePair& t, Search& search) {
   const Vec3 n0 = edge_direction(t.p0, t.q), n1 = edge_direction(t.p1, t.q);
-  if (!n0.isZero(0) && !n1.isZero(0)) search.offer(n0, n1);
+  if (!n0.isZero(0) && !n1.isZero(0)) search.offer({n0, n1});
 }
 
 bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                   double s0, const Placement& from, double s1, const Placement& to, int halvings, Vec3& plane) {
+                   double s0, const Placement& from, double s1, const Placement& to, int halvings, MovingPlane& plane) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
-  if (stays_apart(pair, plane, plane, bulge, sweep, 0)) return true;
+  if (stays_apart(pair, plane.n0, plane.n1, bulge, sweep, 0)) return true;
   Search search(pair);
-  search.offer(plane, plane);
+  search.offer(plane);
   offer_normals(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
-  offer_triangle_axes(pair, search);
-  if (search.accept(bulge, sweep, plane)) return true;
+  for (const Axes which : {Axes::promising, Axes::all}) {
+    offer_triangle_axes(pair, which, search);
+    if (search.accept(bulge, sweep, plane)) return true;
+  }
   // The axes are complete, but for triangles without a plane.
   if (search.end() < 0 && !degenerate(a) && !degenerate(b)) return false;
   offer_closest(pair, search);
@@ -184,12 +203,11 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   if (search.end() < sweep.floor || search.start() < sweep.start_floor || halvings == 0) return false;
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
-  Vec3 half_plane = search.best().n0;
-  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, half_plane) ||
-      !separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, half_plane)) {
-    return false;
-  }
-  plane = half_plane;
+  MovingPlane first{search.best().n0, search.best().n0};
+  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, first)) return false;
+  MovingPlane second{first.n1, first.n1};
+  if (!separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, second)) return false;
+  plane = second;
   return true;
 }
 
@@ -217,7 +235,7 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        Vec3& plane) {
+                        MovingPlane& plane) {
   return separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, plane);
 }
 

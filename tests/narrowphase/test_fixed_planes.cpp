@@ -1,0 +1,219 @@
+// The wide check of planes that are fixed to one of the parts, against points followed along the motion in extended
+// precision.
+#include "catch.hpp"
+#include "narrowphase/lane_motion.hpp"
+#include "narrowphase/patch_front.hpp"
+#include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+using RealMat = Eigen::Matrix<long double, 3, 3>;
+
+/// A random motion of A past B, and where A is on both readings of its path.
+struct Motion {
+  Pose X;
+  Vec3 center, origin_b;
+  Displacement d;
+  Sweep sweep;
+  double size;  ///< m, of the parts
+
+  Motion(std::mt19937& rng, const PatchTree& b) : origin_b(b.origin()), size(std::pow(10.0, uniform(rng, -3, -0.5))) {
+    center = random_in_ball(rng, 2 * size);
+    X = Pose{rotation(random_in_ball(rng, 3)), random_in_ball(rng, 3 * size)};
+    const double length = std::pow(10.0, uniform(rng, -5, -0.5));
+    d = {random_in_ball(rng, length * size), random_in_ball(rng, std::pow(10.0, uniform(rng, -5, -0.5)))};
+    if (rng() % 8 == 0) d.dr.setZero();
+    if (rng() % 8 == 0) d.dp.setZero();
+    sweep = Sweep(X, d, center, b, size, 0);
+  }
+
+  struct At {
+    RealMat R;
+    Real3 center;  ///< of mass, from the origin of B's tree
+  };
+  At at(long double s, bool by_origin) const {
+    const long double angle = d.dr.cast<long double>().norm();
+    RealMat turn = RealMat::Identity();
+    if (angle > 0) {
+      const Real3 axis = d.dr.cast<long double>() / angle;
+      turn = Eigen::AngleAxis<long double>(s * angle, axis).toRotationMatrix();
+    }
+    const Real3 c0 = X.p.cast<long double>() + R0() * center.cast<long double>();
+    Real3 c = c0 + s * d.dp.cast<long double>();
+    if (by_origin) {
+      RealMat whole = RealMat::Identity();
+      if (angle > 0)
+        whole = Eigen::AngleAxis<long double>(angle, Real3(d.dr.cast<long double>() / angle)).toRotationMatrix();
+      const Real3 c1 = c0 + d.dp.cast<long double>(), arm = R0() * center.cast<long double>();
+      const Real3 p0 = c0 - arm, p1 = c1 - whole * arm;
+      c = p0 + s * (p1 - p0) + turn * arm;
+    }
+    return {turn * R0(), c - origin_b.cast<long double>()};
+  }
+
+ private:
+  RealMat R0() const { return X.q.cast<long double>().normalized().toRotationMatrix(); }
+};
+
+/// The corners of what moves past a plane, about the place of the part that they belong to: of B from the origin of its
+/// tree, of A from its center of mass.
+using Piece = std::vector<Real3>;
+
+/// Least of n · x over the piece as the part that holds the plane sees it, over samples of the motion.
+long double least(const Motion& m, bool on_a, const Real3& n, const Piece& piece, int samples) {
+  long double lowest = std::numeric_limits<long double>::infinity();
+  for (const bool by_origin : {false, true}) {
+    for (int i = 0; i <= samples; ++i) {
+      const Motion::At at = m.at(static_cast<long double>(i) / samples, by_origin);
+      for (const Real3& x : piece) {
+        const Real3 seen = on_a ? Real3(at.R.transpose() * (x - at.center)) : Real3(at.R * x + at.center);
+        lowest = std::min(lowest, n.dot(seen));
+      }
+    }
+  }
+  return lowest;
+}
+
+struct Count {
+  long asked = 0, apart = 0, wrong = 0;
+  double closest = 1e9;  ///< of the claims: what was left, in parts of what was taken off for the motion
+};
+
+/// kLanes pieces that go past planes at distances where the bulge decides.
+void ask(std::mt19937& rng, const PatchTree& tree_b, bool on_a, bool boxes, Count& count) {
+  const Motion m(rng, tree_b);
+  LaneBlocks lanes(kLanes, boxes ? std::size_t{kBoxFields} : std::size_t{kTriFields});
+  const double reach = 2 * m.size;
+  std::array<Piece, kLanes> pieces;
+  std::array<Real3, kLanes> normals;
+  std::array<long double, kLanes> offsets;
+  const double away = m.sweep.start.t.norm();
+  const PairSizes sizes{reach, reach, reach + away, reach + away};
+  const LaneSweep seen = on_a ? seen_from_a(m.sweep, sizes) : seen_from_b(m.sweep, sizes);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    // About where A is, so that B's pieces are near it.
+    const Vec3 about = on_a ? m.sweep.start.t : Vec3(Vec3::Zero());
+    const Vec3 center = about + random_in_ball(rng, m.size);
+    Vec3 n = random_in_ball(rng, 1).normalized();
+    // What turns and goes across the axis of the turn leaves its chord this way.
+    const Vec3 aside = m.sweep.start.R.transpose() * m.d.dr.cross(m.d.dp);
+    if (on_a && i % 2 == 0 && aside.norm() > 0) n = (aside.normalized() + 0.1 * n).normalized() * (i % 4 == 0 ? 1 : -1);
+    for (int k = 0; k < 3; ++k) {
+      lanes.at(i, kBoxNormal + k) = static_cast<float>(n[k]);
+      normals[i][k] = lanes.at(i, kBoxNormal + k);
+    }
+    double far = 0;
+    if (boxes) {
+      const Quat q = rotation(random_in_ball(rng, 3));
+      std::array<Real3, 3> edge;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 e = q * Vec3::Unit(k) * (0.3 * m.size * std::pow(10.0, uniform(rng, -3, 0)));
+        for (int j = 0; j < 3; ++j) edge[k][j] = lanes.at(i, kBoxEdges + 3 * k + j) = static_cast<float>(e[j]);
+        lanes.at(i, kBoxCenter + k) = static_cast<float>(center[k]);
+      }
+      for (int corner = 0; corner < 8; ++corner) {
+        Real3 x = center.cast<long double>();
+        for (int k = 0; k < 3; ++k) x += (corner >> k & 1 ? 1 : -1) * edge[k];
+        pieces[i].push_back(x);
+        far = std::max(far, static_cast<double>(x.norm()));
+      }
+      lanes.at(i, kBoxReach) = round_up<float>(far);
+    } else {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 x = center + random_in_ball(rng, 0.3 * m.size);
+        for (int j = 0; j < 3; ++j) lanes.at(i, kTriCorners + 3 * k + j) = static_cast<float>(x[j]);
+        pieces[i].push_back(x.cast<long double>());
+        far = std::max(far, x.norm());
+      }
+      lanes.at(i, kTriReach) = round_up<float>(far);
+    }
+    // Its corner at the ends of the motion, and the plane below it by about what is taken off.
+    const double taken = far * seen.fine.bulge + seen.fine.bulge_offset + seen.fine.error;
+    const long double low = least(m, on_a, normals[i], pieces[i], 1);
+    offsets[i] = low - uniform(rng, 0.9, 1.1) * taken;
+    lanes.at(i, kBoxOffset) = static_cast<float>(offsets[i]);
+  }
+  std::array<std::uint32_t, kLanes> failed;
+  const std::size_t failures = (boxes ? box_failures : triangle_failures)(lanes, 0, kLanes, seen, failed.data());
+  std::array<bool, kLanes> fails{};
+  for (std::size_t i = 0; i < failures; ++i) fails[failed[i]] = true;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    ++count.asked;
+    if (fails[i]) continue;
+    ++count.apart;
+    const long double left = least(m, on_a, normals[i], pieces[i], 8) - offsets[i];
+    count.wrong += !(left > 0);
+    const double bulge = seen.fine.bulge * static_cast<double>(pieces[i][0].norm()) + seen.fine.bulge_offset;
+    if (bulge > 100 * seen.fine.error) count.closest = std::min(count.closest, static_cast<double>(left) / bulge);
+  }
+}
+
+void check(long each) {
+  std::mt19937 rng(211);
+  const PatchTree b(soup(rng, 20, 0.05, 0.01));
+  for (const bool on_a : {false, true}) {
+    for (const bool boxes : {false, true}) {
+      Count count;
+      while (count.asked < each) ask(rng, b, on_a, boxes, count);
+      CAPTURE(on_a, boxes, count.asked, count.apart, count.closest);
+      CHECK(count.wrong == 0);
+      CHECK(5 * count.apart > count.asked);
+      CHECK(count.closest < 0.7);  // the bulge is needed
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("what keeps off a plane that is fixed to either part does so all the way", "[patch]") {
+  check(20000);
+}
+TEST_CASE("what keeps off a plane that is fixed to either part, at length", "[.long]") {
+  check(500000);
+}
+
+TEST_CASE("planes on the hollow side last while facets slide on each other", "[patch]") {
+  // A pin of 36 facets in a ring of as many, that turn against each other at 5 µm, less than their sagittas.
+  constexpr int kFacets = 36;
+  constexpr double kPin = 0.01;
+  std::vector<std::pair<double, double>> outer{{0, -0.005}}, inner;
+  line(outer, kPin, -0.005, 1);
+  line(outer, kPin, 0.025, 20);
+  line(outer, 0, 0.025, 1);
+  const double bore = (kPin + 5e-6) / std::cos(kPi / kFacets);
+  inner.emplace_back(bore, 0);
+  line(inner, bore, 0.02, 12);
+  line(inner, 2 * kPin, 0.02, 1);
+  line(inner, 2 * kPin, 0, 1);
+  line(inner, bore, 0, 1);
+  const MeshPtr pin = revolve(outer, kFacets), ring = revolve(inner, kFacets);
+  const Vec3 center = Vec3::Zero();
+  const auto searches = [&](const MeshPtr& held, const MeshPtr& fixed) {
+    const PatchTree a(held), b(fixed);
+    const Oracle oracle(held, fixed);
+    const ScrewFrame axis;
+    const std::vector<AxisPair> axes = {
+        {std::make_shared<const ProfileTree>(a, axis), std::make_shared<const ProfileTree>(b, axis)}};
+    PatchFront front(FrontCapacity{1u << 15, 32, 1u << 10});
+    front.attach(a, center, b, &axes);
+    long total = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Pose X{rotation(Vec3(0, 0, 1e-3 * i)), Vec3(0, 0, 0)};
+      const Displacement d{Vec3::Zero(), Vec3(0, 0, 1e-3)};
+      const CertifyReport r = front.certify(X, d);
+      REQUIRE(r.status == CertifyStatus::certified);
+      if (i % 20 == 0) REQUIRE(oracle.hits(X, center, d, 8) == 0);
+      if (i >= 20) total += r.searches;
+    }
+    return total;
+  };
+  const long ring_held = searches(ring, pin), pin_held = searches(pin, ring);
+  CAPTURE(ring_held, pin_held);
+  CHECK(ring_held > 0);
+  CHECK(ring_held < 2 * pin_held);
+  CHECK(pin_held < 2 * ring_held);
+}
