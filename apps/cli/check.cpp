@@ -7,6 +7,7 @@
 #include <iostream>
 #include <map>
 
+#include "mesh/t_junctions.hpp"
 #include "shared/run_options.hpp"
 #include "shared/start_text.hpp"
 #include "shared/status_line.hpp"
@@ -26,6 +27,10 @@ void print_mesh(const TriangleMesh& mesh, double unit_in_m, const char* unit) {
   if (r.boundary_edges + r.non_manifold_edges + r.degenerate_faces + r.duplicate_faces > 0)
     std::printf("  %zu boundary edges, %zu non-manifold edges, %zu degenerate faces, %zu duplicate faces\n",
                 r.boundary_edges, r.non_manifold_edges, r.degenerate_faces, r.duplicate_faces);
+  if (const std::size_t n = r.boundary_edges > 0 ? count_t_junctions(mesh) : 0; n > 0)
+    std::printf(
+        "  %zu vert%s on an edge of another face (T-junction%s): the surface is open there until that edge is split\n",
+        n, n == 1 ? "ex lies" : "ices lie", n == 1 ? "" : "s");
   if (r.inverted_shells > 0)
     std::printf("  %zu of %zu shells look%s the wrong way: a shell faces outwards, the wall of a cavity inwards\n",
                 r.inverted_shells, r.components, r.inverted_shells == 1 ? "s" : "");

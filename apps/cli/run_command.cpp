@@ -4,12 +4,15 @@
 #include <iostream>
 
 #include "import/file_check.hpp"
+#include "session/run_length.hpp"
+#include "shared/format.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::apps {
 namespace {
 
-constexpr double kLongestRun = 1e6;  // s: eleven days; far below where ticks or nanoseconds overflow
+// s: of longer scripts the length is said before they run.
+constexpr double kLongScript = 3600;
 
 /// What a run of a file of parts cannot be, before its parts are read.
 void check_parts(const RunCommand& options) {
@@ -33,6 +36,16 @@ void note_rest(const RunCommand& options, const SceneFile& file) {
             << ": --view takes the mouse, --device shm:NAME a pen, --script FILE a script\n";
 }
 
+/// A script of other times than seconds is often long: in virtual time nothing else says why the run does not end.
+void note_length(const RunCommand& options, const SceneFile& file) {
+  const double length = file.script.end() - file.script.begin();
+  if (length <= kLongScript || length > kMaxRunSeconds || options.run.seconds > 0 || !options.run.device.empty() ||
+      options.run.view)
+    return;
+  std::cerr << format("tegotae: note: the script lasts %.6g s (%.3g hours); --seconds S ends the run before\n", length,
+                      length / 3600);
+}
+
 }  // namespace
 
 CLI::App* add_run(CLI::App& app, RunCommand& options) {
@@ -46,7 +59,7 @@ CLI::App* add_run(CLI::App& app, RunCommand& options) {
   run->add_option("--seconds", options.run.seconds, "How long to run (default: to the end of the script)")
       ->check([](const std::string& text) -> std::string {
         double value = 0;  // CLI::PositiveNumber lets nan pass
-        if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kLongestRun) return "";
+        if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kMaxRunSeconds) return "";
         return "must be a positive number, at most a million";
       })
       ->type_name("S");
@@ -63,6 +76,7 @@ int run_scene(const RunCommand& options, const MeshLoader& load) {
       file.files.push_back(options.script);
     }
     note_rest(options, file);
+    note_length(options, file);
     return run_and_report(std::move(file), options.run, options.open.file);
   });
 }

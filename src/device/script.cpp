@@ -5,8 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 
+#include "core/wide_text.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -28,6 +30,14 @@ constexpr std::array<std::string_view, 8> kColumns = {"t", "px", "py", "pz", "qw
 // In place of the index of a column: it is not one of them, and is not read.
 constexpr std::size_t kOther = kColumns.size();
 
+/// `text` as a message shows it: on one line.
+std::string shown(std::string_view text) {
+  std::string line(text);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return line;
+}
+
 std::string_view trimmed(std::string_view s) {
   const std::size_t first = s.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
@@ -42,7 +52,9 @@ std::vector<std::string_view> split(std::string_view line) {
     for (bool quoted = false; comma != std::string_view::npos && (quoted || line[comma] == '"');
          comma = line.find_first_of(",\"", comma + 1))
       if (line[comma] == '"') quoted = !quoted;
-    cells.push_back(trimmed(line.substr(0, comma)));
+    std::string_view cell = trimmed(line.substr(0, comma));
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
+    cells.push_back(cell);
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
   }
@@ -74,7 +86,7 @@ std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells,
       continue;
     }
     if (found == kColumns.end())
-      throw Error("unknown column \"" + std::string(cell) + "\"; the header row is t,px,py,pz,qw,qx,qy,qz");
+      throw Error("unknown column \"" + shown(cell) + "\"; the header row is t,px,py,pz,qw,qx,qy,qz");
     const std::size_t column = found - kColumns.begin();
     if (std::find(order.begin(), order.end(), column) != order.end())
       throw Error("column " + std::string(cell) + " comes twice");
@@ -96,9 +108,29 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
     if (cells[i].size() > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars takes no plus
     const auto [rest, error] = std::from_chars(begin, end, value[order[i]]);
     if (error != std::errc() || rest != end)
-      throw Error(std::string(kColumns[order[i]]) + " is not a number: \"" + std::string(cells[i]) + "\"");
+      throw Error(std::string(kColumns[order[i]]) + " is not a number: \"" + shown(cells[i]) + "\"");
   }
   return {value[0], {Quat(value[4], value[5], value[6], value[7]), Vec3(value[1], value[2], value[3])}};
+}
+
+std::string read_all(const std::string& path, const std::string& what) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(path + ": cannot be opened as a " + what);
+  std::ostringstream text;
+  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+  if (file.bad() || text.bad()) throw Error(path + ": cannot be read as a " + what);
+  std::string bytes = text.str();
+  if (const char* encoding = wide_encoding(bytes))
+    throw Error(path + ": its text is in " + encoding + ": save it as UTF-8");
+  return bytes;
+}
+
+/// Lines end as on any system, with CR, LF or both.
+std::string_view take_line(std::string_view& rest) {
+  const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+  rest.remove_prefix(line.size());
+  rest.remove_prefix(std::min<std::size_t>(rest.substr(0, 2) == "\r\n" ? 2 : 1, rest.size()));
+  return line;
 }
 
 /// What a file is, for its messages, and whether it may have more columns.
@@ -108,15 +140,13 @@ struct KeyFile {
 };
 
 std::vector<StylusScript::Key> read_keys(const std::string& path, const KeyFile& kind) {
-  std::ifstream file(path);
-  if (!file) throw Error(path + ": cannot be opened as a " + kind.what);
+  const std::string bytes = read_all(path, kind.what);
+  std::string_view rest = bytes;
+  if (rest.substr(0, kByteOrderMark.size()) == kByteOrderMark) rest.remove_prefix(kByteOrderMark.size());
   std::vector<std::size_t> order;
   std::vector<StylusScript::Key> keys;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (number == 1 && line.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
-      line.erase(0, kByteOrderMark.size());
-    const std::string_view text = trimmed(line);
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::string_view text = trimmed(take_line(rest));
     if (text.empty() || text.front() == '#') continue;
     try {
       if (order.empty()) {
@@ -130,7 +160,6 @@ std::vector<StylusScript::Key> read_keys(const std::string& path, const KeyFile&
       throw Error(path + ":" + std::to_string(number) + ": " + error.what());
     }
   }
-  if (file.bad()) throw Error(path + ": cannot be read as a " + kind.what);
   if (order.empty())
     throw Error(path + ": empty; a " + kind.what + " begins with the header row t,px,py,pz,qw,qx,qy,qz");
   if (keys.empty()) throw Error(path + ": no row after the header row");

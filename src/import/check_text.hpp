@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
 
+#include "core/wide_text.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -40,6 +42,18 @@ inline std::size_t first_not_of(std::string_view text, std::string_view set, std
   throw Error(path + ": " + why);
 }
 
+/// Refuses text in UTF-16 or UTF-32: these formats are of single bytes.
+inline void require_single_bytes(const std::string& path, std::string_view bytes) {
+  if (const char* encoding = wide_encoding(bytes))
+    refuse(path, std::string("its text is in ") + encoding + ", which this format is not: save it as UTF-8");
+}
+
+/// Whether bytes behind the end of a file's content are nothing but padding: blanks, and one and the same byte.
+inline bool is_padding(std::string_view bytes) {
+  bytes.remove_prefix(std::min(bytes.find_first_not_of(kBlank), bytes.size()));
+  return bytes.find_first_not_of(bytes.substr(0, 1)) == bytes.npos;
+}
+
 /// What becomes of the text of a number that no double holds: 0 for the smallest, else infinite.
 inline double beyond_double(std::string_view text) {
   const bool negative = text.substr(0, 1) == "-";
@@ -68,6 +82,23 @@ bool take_number(std::string_view& text, T& value) {
     }
   }
   return error == std::errc();
+}
+
+/// The number `word` with the value `value` as assimp reads it: with a digit in front, with no more digits before the
+/// point than its integers hold, and with none behind that it drops although an exponent makes them count.
+inline std::string plain_number(std::string_view word, double value) {
+  constexpr std::size_t kIntegerDigits = 18, kDecimals = 15;
+  if (word.substr(0, 1) == "+") word.remove_prefix(1);
+  const std::string_view sign = word.substr(0, word.substr(0, 1) == "-" ? 1 : 0);
+  word.remove_prefix(sign.size());
+  const std::size_t exponent = word.find_first_of("eE"), end = std::min(exponent, word.size());
+  const std::size_t point = std::min(word.find('.'), end);
+  const bool dropped = exponent != word.npos && end - point > kDecimals + 1;
+  if (std::isfinite(value) && (point > kIntegerDigits || dropped)) {
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::scientific).ptr};
+  }
+  return std::string(sign) + (point == 0 ? "0" : "") + std::string(word);
 }
 
 }  // namespace tegotae

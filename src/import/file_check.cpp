@@ -56,14 +56,15 @@ PlainMesh plain_mesh(const std::string& path) {
   const std::string bytes = read_mesh_bytes(path);
   const std::string extension = lower_extension(path);
   if (extension == ".stl") return {plain_stl(path, bytes), "stl", {}};
-  if (extension == ".ply") return {plain_ply(path, bytes), "ply", {}};
-  if (extension == ".off") return {plain_off(path, bytes), "ply", {}};
-  if (extension != ".obj")
+  PlainMesh mesh{{}, extension == ".obj" ? "obj" : "ply", {}};
+  if (extension == ".ply")
+    mesh.bytes = plain_ply(path, bytes, mesh.notes);
+  else if (extension == ".off")
+    mesh.bytes = plain_off(path, bytes, mesh.notes);
+  else if (extension == ".obj")
+    mesh.bytes = plain_obj(path, bytes, mesh.notes);
+  else
     refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
-  std::size_t surface_line = 0;
-  PlainMesh mesh{plain_obj(path, bytes, surface_line), "obj", {}};
-  if (surface_line > 0)
-    mesh.notes.push_back("the free-form surfaces from line " + std::to_string(surface_line) + " on are not read");
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/whole_number.hpp"
+#include "import/check_text.hpp"
 #include "import/file_check.hpp"
 #include "import/gltf_buffers.hpp"
 #include "tegotae/core/error.hpp"
@@ -308,6 +309,7 @@ CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
   CheckedGltf out;
   const bool binary = lower_extension(path) == ".glb" ? bytes.substr(0, 1) != "{" : bytes.substr(0, 4) == "glTF";
   const std::string_view text = binary ? glb_json(path, bytes, out.chunk) : bytes;
+  require_single_bytes(path, text);
   const auto shallow = [&path](int depth, json::parse_event_t, json&) {
     if (depth > kDeepestJson)
       throw Error(path + ": its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");

@@ -5,15 +5,20 @@
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
 #include <STEPConstruct_ExternRefs.hxx>
+#include <StepBasic_Product.hxx>
 #include <StepBasic_ProductDefinition.hxx>
+#include <StepBasic_ProductDefinitionFormation.hxx>
 #include <StepBasic_ProductDefinitionRelationship.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepGeom_CartesianPoint.hxx>
 #include <StepGeom_CartesianTransformationOperator3d.hxx>
 #include <StepGeom_Direction.hxx>
+#include <StepRepr_ConstructiveGeometryRepresentation.hxx>
+#include <StepRepr_ConstructiveGeometryRepresentationRelationship.hxx>
 #include <StepRepr_MappedItem.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_ProductDefinitionShape.hxx>
+#include <StepRepr_PropertyDefinition.hxx>
 #include <StepRepr_RepresentationRelationshipWithTransformation.hxx>
 #include <StepRepr_Transformation.hxx>
 #include <StepShape_Block.hxx>
@@ -38,6 +43,7 @@
 #include <cmath>
 #include <filesystem>
 #include <gp_Vec.hxx>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -128,8 +134,15 @@ void require_rigid(const std::string& path, const Handle(StepData_StepModel) & m
   }
 }
 
+/// Construction lines and planes beside a shape, and what ties them to it: no part of the shape (ISO 10303-42).
+bool is_supplement(const Entity& entity) {
+  return entity->IsKind(STANDARD_TYPE(StepRepr_ConstructiveGeometryRepresentation)) ||
+         entity->IsKind(STANDARD_TYPE(StepRepr_ConstructiveGeometryRepresentationRelationship));
+}
+
 /// Whether shapes or places may be made of `entity`: what they are made of is reached from here.
 bool leads_to_shape(const Entity& entity) {
+  if (is_supplement(entity)) return false;
   return entity->IsKind(STANDARD_TYPE(StepBasic_ProductDefinition)) ||
          entity->IsKind(STANDARD_TYPE(StepBasic_ProductDefinitionRelationship)) ||
          entity->IsKind(STANDARD_TYPE(StepRepr_ProductDefinitionShape)) ||
@@ -181,6 +194,12 @@ bool is_constructive(const Entity& entity) {
          entity->IsKind(STANDARD_TYPE(StepShape_RightAngularWedge));
 }
 
+std::string product_name(const StepBasic_ProductDefinition& definition) {
+  const Handle(StepBasic_ProductDefinitionFormation) version = definition.Formation();
+  if (version.IsNull() || version->OfProduct().IsNull() || version->OfProduct()->Name().IsNull()) return "";
+  return version->OfProduct()->Name()->ToCString();
+}
+
 std::string named(const Handle(StepData_StepModel) & model, const Entity& entity) {
   return "#" + std::to_string(model->IdentLabel(entity)) + " is a " + step_name(entity->DynamicType()->Name());
 }
@@ -226,7 +245,7 @@ bool check_entities(const std::string& path, const Handle(XSControl_WorkSession)
     if (checks.Number() <= 0 || !checks.Value()->HasFailed()) continue;
     const Entity entity = model->Value(checks.Number());
     const std::string type = entity->DynamicType()->Name();
-    const bool beside = is_beside_shape(type) && !leads_to_shape(entity);
+    const bool beside = is_supplement(entity) || (is_beside_shape(type) && !leads_to_shape(entity));
     if (beside || !matters[static_cast<std::size_t>(checks.Number())]) {
       has_colors = has_colors && is_beside_color(type);
     } else if (is_constructive(entity)) {
@@ -254,6 +273,39 @@ std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & ses
     }
   }
   return unread;
+}
+
+std::vector<std::string> shared_shapes(const Handle(XSControl_WorkSession) & session) {
+  const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
+  using Definition = StepBasic_ProductDefinition;
+  std::set<const Standard_Transient*> placed;               // products, in others
+  std::map<int, std::vector<Handle(Definition)>> products;  // of each representation
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
+    if (!use.IsNull()) placed.insert(use->RelatedProductDefinition().get());
+    const auto shown = Handle(StepShape_ShapeDefinitionRepresentation)::DownCast(model->Value(i));
+    if (shown.IsNull() || shown->UsedRepresentation().IsNull()) continue;
+    const Handle(StepRepr_PropertyDefinition) property = shown->Definition().PropertyDefinition();
+    if (property.IsNull()) continue;
+    const Handle(Definition) product = property->Definition().ProductDefinition();
+    auto& others = products[model->IdentLabel(shown->UsedRepresentation())];
+    if (!product.IsNull() && std::find(others.begin(), others.end(), product) == others.end())
+      others.push_back(product);
+  }
+  std::vector<std::string> notes;
+  for (const auto& [shape, group] : products) {
+    if (group.size() < 2) continue;
+    std::string names;
+    for (const Handle(Definition) & product : group)
+      names += (names.empty() ? "\"" : ", \"") + product_name(*product) + '"';
+    const auto is_placed = [&](const Handle(Definition) & product) { return placed.count(product.get()) > 0; };
+    const auto alone = std::count_if(group.begin(), group.end(), [&](const auto& p) { return !is_placed(p); });
+    notes.push_back("the products " + names + " have one shape (#" + std::to_string(shape) + "), which is read " +
+                    (alone == 0 ? "at each place: its parts may be called after one of them"
+                     : alone == static_cast<std::ptrdiff_t>(group.size()) ? "once, not for each"
+                                                                          : "only where an assembly places it"));
+  }
+  return notes;
 }
 
 std::vector<std::string> unplaced(const Handle(XSControl_WorkSession) & session) {

@@ -1,11 +1,13 @@
 #include "import/plain_obj.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "import/check_text.hpp"
+#include "import/utf8.hpp"
 
 namespace tegotae {
 namespace {
@@ -14,14 +16,30 @@ constexpr std::string_view kSpace = " \t\v\f";
 // Names are cut there; no program makes longer ones.
 constexpr std::size_t kLongestName = 200;
 
+// Free-form surfaces, also as the format had them before.
+constexpr std::array<std::string_view, 4> kSurfaces = {"surf", "bsp", "bzp", "cdp"};
+// Statements of the format that nothing of a polygon's shape depends on.
+constexpr std::array<std::string_view, 32> kBesideShape = {
+    "vt",       "vn",   "vp",     "deg",    "bmat",       "step",      "cstype", "p",     "l",   "curv",  "curv2",
+    "parm",     "trim", "hole",   "scrv",   "sp",         "end",       "con",    "s",     "mg",  "bevel", "c_interp",
+    "d_interp", "lod",  "maplib", "usemap", "shadow_obj", "trace_obj", "ctech",  "stech", "cdc", "res"};
+
+template <class Words>
+bool is_one_of(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 /// The statements of an OBJ file, and the plain file as it becomes.
 class ObjReader {
  public:
   ObjReader(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {
+    require_single_bytes(path, bytes);
     if (rest_.substr(0, 3) == "\xef\xbb\xbf") rest_.remove_prefix(3);
+    // Padding, and how some systems marked the end of a text.
+    rest_ = rest_.substr(0, rest_.find_last_not_of(std::string_view("\0\x1a\x04", 3)) + 1);
   }
 
-  std::string plain(std::size_t& surface_line) {
+  std::string plain(std::vector<std::string>& notes) {
     while (!rest_.empty()) {
       line_ = next_line_;
       take_statement();
@@ -29,15 +47,26 @@ class ObjReader {
     }
     if (largest_ > vertices_)
       refuse(path_, "index out of range: line " + std::to_string(largest_line_) + " names vertex " +
-                        std::to_string(largest_) + " of " + std::to_string(vertices_));
-    surface_line = surface_line_;
+                        std::to_string(largest_) + " of " + std::to_string(vertices_) +
+                        (unknown_.empty() ? "" : "; " + unknown()));
+    if (!has_faces_) refuse(path_, "no triangles" + (unknown_.empty() ? "" : "; " + unknown()));
+    if (surface_line_ > 0)
+      notes.push_back("the free-form surfaces from line " + std::to_string(surface_line_) + " on are not read");
+    if (!unknown_.empty()) notes.push_back(unknown() + ": left out");
+    if (short_line_ > 0)
+      notes.push_back("faces of fewer than three corners are left out, the first in line " +
+                      std::to_string(short_line_));
     return std::move(out_);
   }
 
  private:
+  std::string unknown() const {
+    return "line " + std::to_string(unknown_line_) + " \"" + unknown_ + "\" is no statement that is known";
+  }
+
   [[noreturn]] void bad(const std::string& why) const {
     refuse(path_, (ends_file_ ? "truncated: the last line \"" : "damaged: line " + std::to_string(line_) + " \"") +
-                      statement_.substr(0, 60) + "\" " + why);
+                      printable(statement_.substr(0, 60)) + "\" " + why);
   }
 
   /// The next statement into `statement_`: a backslash at the end of a line goes on with the next, but in a comment,
@@ -74,9 +103,20 @@ class ObjReader {
       read_face(values.substr(0, values.find('#')));
     } else if (word == "o" || word == "g" || word == "usemtl" || word == "mtllib") {
       copy_name(word, values);
-    } else if (word == "surf" && surface_line_ == 0) {
-      surface_line_ = line_;
+    } else if (is_one_of(kSurfaces, word)) {
+      if (surface_line_ == 0) surface_line_ = line_;
+    } else if (!word.empty() && word[0] != '#' && !is_one_of(kBesideShape, word)) {
+      read_unknown(word);
     }
+  }
+
+  /// What is no statement of the format. One that does not begin with a word may be any, damaged.
+  void read_unknown(std::string_view word) {
+    if (std::any_of(word.begin(), word.end(), [](char c) { return c < '!' || c > '~'; }))
+      bad("does not begin with the word of a statement");
+    if (!unknown_.empty()) return;
+    unknown_ = printable(statement_.substr(0, 60));
+    unknown_line_ = line_;
   }
 
   /// Behind x, y and z stand a weight that only curves and surfaces use, or a color.
@@ -89,7 +129,7 @@ class ObjReader {
       std::string_view text = number;
       double value = 0;
       if (number.empty() || !take_number(text, value)) bad("has no coordinate where one belongs");
-      (out_ += ' ') += number[0] == '+' ? number.substr(1) : number;
+      (out_ += ' ') += plain_number(number, value);
     }
     out_ += '\n';
     ++vertices_;
@@ -112,8 +152,10 @@ class ObjReader {
     }
     if (corners.size() < 3) {
       if (ends_file_) bad("has fewer than three corners");
-      return;  // a point or a line
+      if (short_line_ == 0) short_line_ = line_;
+      return;
     }
+    has_faces_ = true;
     out_ += 'f';
     for (const std::uint64_t corner : corners) (out_ += ' ') += std::to_string(corner);
     out_ += '\n';
@@ -128,16 +170,17 @@ class ObjReader {
 
   const std::string& path_;
   std::string_view rest_;
-  std::string statement_, out_;
-  std::size_t line_ = 0, next_line_ = 1, largest_line_ = 0, surface_line_ = 0;
+  std::string statement_, out_, unknown_;
+  std::size_t line_ = 0, next_line_ = 1, largest_line_ = 0, surface_line_ = 0, unknown_line_ = 0, short_line_ = 0;
   std::uint64_t vertices_ = 0, largest_ = 0;
+  bool has_faces_ = false;
   bool ends_file_ = false;  // with the statement, and no line break behind it
 };
 
 }  // namespace
 
-std::string plain_obj(const std::string& path, std::string_view bytes, std::size_t& surface_line) {
-  return ObjReader(path, bytes).plain(surface_line);
+std::string plain_obj(const std::string& path, std::string_view bytes, std::vector<std::string>& notes) {
+  return ObjReader(path, bytes).plain(notes);
 }
 
 }  // namespace tegotae

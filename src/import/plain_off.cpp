@@ -16,19 +16,23 @@ class OffReader {
  public:
   OffReader(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {}
 
-  std::string plain() {
+  std::string plain(std::vector<std::string>& notes) {
     read_header();
     if (vertices_ > rest_.size() || faces_ > rest_.size())
       refuse(path_, "truncated: it announces more elements than it has bytes");
     PlyBytes out;
     for (std::uint64_t i = 0; i < vertices_; ++i) out.vertex(read_vertex(i));
     for (std::uint64_t i = 0; i < faces_; ++i) out.face(read_face(i));
+    if (!next_line().empty())
+      notes.push_back("lines behind its last face are not read: its counts announce fewer vertices and faces");
+    if (!out.has_faces()) refuse(path_, "no triangles");
     return out.file();
   }
 
  private:
   /// Up to the counts: "OFF" may be missing, as the format says; its prefixes tell what vertices have besides.
   void read_header() {
+    require_single_bytes(path_, rest_);
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 32 && kBlank.find(c) == kBlank.npos; };
     if (rest_.substr(0, 3) == "\xef\xbb\xbf") rest_.remove_prefix(3);
     if (std::any_of(rest_.begin(), rest_.end(), control))
@@ -128,8 +132,8 @@ class OffReader {
 
 }  // namespace
 
-std::string plain_off(const std::string& path, std::string_view bytes) {
-  return OffReader(path, bytes).plain();
+std::string plain_off(const std::string& path, std::string_view bytes, std::vector<std::string>& notes) {
+  return OffReader(path, bytes).plain(notes);
 }
 
 }  // namespace tegotae

@@ -106,6 +106,7 @@ class Body {
     return at_ == bytes_.size() || bytes_[at_] == '\n';
   }
 
+  std::string_view rest() const { return bytes_.substr(at_); }
   std::size_t left() const { return bytes_.size() - at_; }
 
  private:
@@ -194,6 +195,7 @@ Property read_property(const std::string& path, const Words& line) {
 
 Header read_header(const std::string& path, std::string_view bytes) {
   Header header;
+  require_single_bytes(path, bytes);
   if (bytes.substr(0, 3) == "\xef\xbb\xbf") header.size = 3;
   if (next_line(path, bytes, header.size) != Words{"ply"}) refuse(path, "damaged: it does not begin with ply");
   bool has_format = false;
@@ -254,7 +256,7 @@ class PlyReader {
       if (element.name == "vertex") vertices_ = element.count;
   }
 
-  std::string plain() {
+  std::string plain(std::vector<std::string>& notes) {
     for (const Element& element : header_.elements) {
       // Every element takes at least a byte, so a count that the file cannot hold is found without counting to it.
       if (element.count > body_.left()) {
@@ -263,6 +265,9 @@ class PlyReader {
       }
       for (std::uint64_t i = 0; i < element.count; ++i) read(element, i);
     }
+    if (!is_padding(body_.rest()))
+      notes.push_back("what stands behind its last element is not read: its header announces fewer elements");
+    if (!out_.has_faces()) refuse(path_, "no triangles");
     return out_.file();
   }
 
@@ -341,8 +346,8 @@ class PlyReader {
 
 }  // namespace
 
-std::string plain_ply(const std::string& path, std::string_view bytes) {
-  return PlyReader(path, bytes).plain();
+std::string plain_ply(const std::string& path, std::string_view bytes, std::vector<std::string>& notes) {
+  return PlyReader(path, bytes).plain(notes);
 }
 
 }  // namespace tegotae

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "import/check_text.hpp"
+#include "import/utf8.hpp"
 
 namespace tegotae {
 namespace {
@@ -30,6 +31,12 @@ bool is_aside(std::string_view word) {
   return word.substr(0, 1) == "#" || word.substr(0, 1) == ";" || word.substr(0, 2) == "//" || is_word(word, "color");
 }
 
+bool is_of_facet(std::string_view word) {
+  for (const char* keyword : {"outer", "loop", "vertex", "endloop", "endfacet", "facet", "endsolid"})
+    if (is_word(word, keyword)) return true;
+  return false;
+}
+
 /// The words of a text STL file, and the plain file as it becomes.
 class TextStl {
  public:
@@ -48,8 +55,8 @@ class TextStl {
       } else if (is_aside(word)) {
         rest_of_line();
       } else if (open_ || is_word(word, "facet")) {
-        refuse(path_,
-               "truncated or damaged: \"" + std::string(word.substr(0, 40)) + "\" where a facet or endsolid belongs");
+        refuse(path_, "truncated or damaged: \"" + printable(std::string(word.substr(0, 40))) +
+                          "\" where a facet or endsolid belongs");
       }
     }
     if (open_) refuse(path_, "truncated: the last solid has no endsolid");
@@ -95,9 +102,10 @@ class TextStl {
 
   void facet() {
     expect("normal");
-    while (!rest_.empty() && !is_word(TextStl(path_, rest_).next(), "outer")) {
-      if (next().empty()) break;  // what stands for a normal
-    }
+    // What stands for a normal may be anything but the words that follow it.
+    for (std::string_view word = TextStl(path_, rest_).next(); !word.empty() && !is_of_facet(word);
+         word = TextStl(path_, rest_).next())
+      next();
     expect("outer");
     expect("loop");
     out_ += "facet normal 0 0 0\nouter loop\n";
@@ -111,12 +119,12 @@ class TextStl {
     expect("vertex");
     out_ += "vertex";
     for (int k = 0; k < 3; ++k) {
-      std::string_view word = next(), text = word;
+      const std::string_view word = next();
+      std::string_view text = word;
       double value = 0;
       if (!take_number(text, value)) refuse(path_, "truncated or damaged: a vertex without three numbers");
       if (!std::isfinite(value)) refuse(path_, "a coordinate is not a finite number");
-      if (word.front() == '+') word.remove_prefix(1);
-      (out_ += ' ') += word;
+      (out_ += ' ') += plain_number(word, value);
     }
     out_ += '\n';
   }
@@ -155,10 +163,13 @@ std::string plain_stl(const std::string& path, std::string_view bytes) {
   const std::string_view text = text_of(bytes);
   if (is_word(text.substr(0, 5), "solid") && text.find('\0') == std::string_view::npos)
     return TextStl(path, text).plain();
+  // Bytes behind the last facet are padding, unless they may be facets: then the count is wrong. Facets of one and the
+  // same byte have all corners in one place.
+  if (facets > 0 && whole < bytes.size() && (room == facets || is_padding(bytes.substr(whole))))
+    return std::string(bytes.substr(0, whole));
+  require_single_bytes(path, bytes);
   if (is_text(bytes.substr(0, kHeader))) refuse(path, "damaged: a text STL file begins with \"solid\"");
   if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
-  // Bytes behind the last facet are padding, but for as many as a facet has: then the count is wrong.
-  if (facets > 0 && room == facets) return std::string(bytes.substr(0, whole));
   refuse(path, std::string(facets > room ? "truncated" : "damaged") + ": its header states " + std::to_string(facets) +
                    " triangles, the file has bytes for " + std::to_string(room));
 }

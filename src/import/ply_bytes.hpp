@@ -21,6 +21,7 @@ class PlyBytes {
     for (const std::uint32_t corner : corners) put(face_bytes_, corner);
     ++faces_;
   }
+  bool has_faces() const { return faces_ > 0; }
   std::string file() const {
     return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices_) +
            "\nproperty double x\nproperty double y\nproperty double z\nelement face " + std::to_string(faces_) +

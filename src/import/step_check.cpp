@@ -54,7 +54,9 @@ bool is_step(const std::string& path) {
 }
 
 std::string check_step(const std::string& path) {
-  std::string bytes = plain_step(path, read_bytes(path));
+  std::string bytes = read_bytes(path);
+  require_single_bytes(path, bytes);
+  bytes = plain_step(path, std::move(bytes));
   const std::string_view all(bytes);
   const std::size_t begin = all.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) throw Error(path + ": empty file");

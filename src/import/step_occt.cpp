@@ -160,6 +160,7 @@ class StepReader {
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
     for (const std::string& solid : unread_solids(session)) unread_.push_back(solid);
     unplaced_ = unplaced(session);
+    for (const std::string& note : shared_shapes(session)) assembly_.notes.push_back(note);
     check_named_files(reader);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());

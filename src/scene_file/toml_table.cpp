@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/wide_text.hpp"
 #include "scene_file/toml_levels.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -60,6 +61,9 @@ std::string read_file(const std::string& path) {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& path) {
+  if (const char* encoding = wide_encoding(text))
+    throw Error(ErrorKind::file, path + ": its text is in " + encoding + ", and TOML is UTF-8: save it as that",
+                {path, 0, {}, {}});
   check_toml_levels(text, path);
   try {
     return toml::parse(text, path);

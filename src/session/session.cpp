@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include "loop/held_weight.hpp"
 #include "loop/scene_parts.hpp"
@@ -13,6 +14,7 @@
 #include "session/pen_port.hpp"
 #include "session/run_check.hpp"
 #include "session/run_goal.hpp"
+#include "session/run_length.hpp"
 #include "session/run_segments.hpp"
 #include "session/step_schedule.hpp"
 #include "session/torsion.hpp"
@@ -64,12 +66,19 @@ SceneFile for_device(SceneFile file, const RunSettings& settings) {
   return file;
 }
 
-/// How long to run, s.
+/// How long to run, s. Throws Error when a script of damaged or other times would run for years.
 double duration(const SceneFile& file, const RunSettings& settings) {
   if (settings.seconds > 0) return settings.seconds;
   // What another process's hand does is not known.
   if (!settings.device.empty()) return std::numeric_limits<double>::infinity();
-  return file.script.end() - file.script.begin() + kSettleTime;
+  const double length = file.script.end() - file.script.begin();
+  if (length > kMaxRunSeconds) {
+    std::ostringstream text;
+    text << "the stylus script lasts " << length << " s, more than the " << kMaxRunSeconds
+         << " s of the longest run: are its times in s? A run of so many seconds as are given ends before";
+    throw Error(text.str());
+  }
+  return length + kSettleTime;
 }
 
 class Session {

@@ -114,6 +114,24 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
                 {"README.md:", "not valid TOML", "is this a scene file?"});
 }
 
+TEST_CASE("scripts longer than any run are refused, long ones named, and --seconds ends both before", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const auto run = [&](const std::string& end, const std::string& more) {
+    folder.write("long.csv", "t,px,py,pz,qw,qx,qy,qz\n1000,0,0,0.05,1,0,0,0\n" + end + ",0,0,0.05,1,0,0,0\n");
+    return run_program("tegotae",
+                       "run --fast " + (folder / "scene.toml") + " --script " + (folder / "long.csv") + more);
+  };
+  for (const char* end : {"1e9", "1e15", "1e300"}) {
+    check_refused(run(end, ""), {"the stylus script lasts", "longest run"});
+    const Output cut = run(end, " --seconds 0.01");
+    CHECK(cut.code == 0);
+    CHECK(cut.err.find("note: the script") == std::string::npos);
+  }
+  const std::string usage = " --seconds 0.01";
+  CHECK(run("5000", usage).err.find("note: the script") == std::string::npos);
+}
+
 TEST_CASE("bad usage is refused", "[bad_input]") {
   const TempFolder folder;
   write_small_scene(folder);

@@ -229,6 +229,15 @@ TEST_CASE("check and run tell what of a mesh is not as its file says", "[program
   }
 }
 
+TEST_CASE("check names T-junctions", "[programs]") {
+  const TempFolder folder;
+  // A tetrahedron of which one face is cut in two at the middle of a side, and the face beyond is not.
+  folder.write("t.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 0\nf 1 3 5\nf 5 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  CHECK_THAT(
+      run_program("tegotae", "check " + (folder / "t.obj")).out,
+      Catch::Contains("not closed") && Catch::Contains("  1 vertex lies on an edge of another face (T-junction)"));
+}
+
 TEST_CASE("check reports on meshes and scenes", "[programs]") {
   const TempFolder folder;
   write_small_scene(folder);

@@ -85,6 +85,28 @@ TEST_CASE("a script may have a byte order mark, and numbers a plus", "[device]")
   CHECK_THAT(error_of(kHeader + "0,+,0,0,1,0,0,0\n"), Catch::Contains(":2: px is not a number"));
 }
 
+TEST_CASE("a script may be as a spreadsheet writes it: any line ends, cells in quotes", "[device]") {
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    std::string text = "\"t\",\"px\",py,pz,qw,qx,qy,qz#0,1,2,3,1,0,0,0##\"0.5\",4,5,6,1,0,0,0#";
+    for (std::size_t at = 0; (at = text.find('#', at)) != std::string::npos;) text.replace(at, 1, end);
+    const ScriptFile file(text);
+    const StylusScript script = read_script(file.path);
+    CHECK(script.end() == 0.5);
+    CHECK(script.pose(0).p == Vec3(1, 2, 3));
+    CHECK_THAT(error_of(text + "x"), Catch::Contains(":5: 1 values"));
+  }
+}
+
+TEST_CASE("of a script that is no text of single bytes the reason is named, on one line", "[device]") {
+  std::string wide;
+  for (const char c : kHeader) (wide += c) += '\0';
+  CHECK_THAT(error_of("\xff\xfe" + wide), Catch::Contains("is in UTF-16"));
+  CHECK_THAT(error_of(wide), Catch::Contains("is in UTF-16"));
+  CHECK_THAT(error_of("t\x01\x7f,px\n"), Catch::Contains(":1: unknown column \"t??\""));
+  CHECK_THAT(error_of(kHeader + std::string("0,0,0,0,1,0,\0,0\n", 16)),
+             Catch::Contains(":2: qy is not a number: \"?\""));
+}
+
 TEST_CASE("a bad script is refused with file, line and reason", "[device]") {
   const std::string row = "0,0,0,0,1,0,0,0\n";
   CHECK_THROWS_WITH(read_script("/nonexistent/s.csv"), Catch::Contains("/nonexistent/s.csv: cannot be opened"));

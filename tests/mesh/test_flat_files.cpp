@@ -112,7 +112,7 @@ TEST_CASE("STL: letters, marks, blanks and names around the facets", "[flat]") {
   check_tetrahedron(folder, "end.stl", text_stl() + "\x1a");
 }
 
-TEST_CASE("STL: binary files may say solid, have attributes, and be padded by less than a facet", "[flat]") {
+TEST_CASE("STL: binary files may say solid, have attributes, and be padded", "[flat]") {
   const TempFolder folder;
   check_tetrahedron(folder, "solid.stl", binary_stl("solid part"));
   check_tetrahedron(folder, "color.stl", binary_stl("COLOR=\xff", 0x801f));
@@ -120,8 +120,17 @@ TEST_CASE("STL: binary files may say solid, have attributes, and be padded by le
     check_tetrahedron(folder, "pad.stl", binary_stl("exporter") + std::string(pad, '\0'));
     check_tetrahedron(folder, "solid_pad.stl", binary_stl("solid part") + std::string(pad, '\n'));
   }
-  CHECK_THAT(refusal(folder, "more.stl", binary_stl("x") + std::string(50, '\0')),
-             Catch::Contains("damaged: its header states 4 triangles"));
+  for (const std::size_t pad : {50u, 312u, 4096u})
+    for (const char c : {'\0', ' ', '\n', '\x1a', '\xff'}) {
+      check_tetrahedron(folder, "block.stl", binary_stl("exporter") + std::string(pad, c));
+      check_tetrahedron(folder, "solid_block.stl", binary_stl("solid part") + std::string(pad, c));
+    }
+  // A facet, of which the count does not know, is no padding.
+  const std::string facet = binary_stl("x").substr(84, 50);
+  CHECK_THAT(refusal(folder, "more.stl", binary_stl("x") + facet),
+             Catch::Contains("damaged: its header states 4 triangles, the file has bytes for 5"));
+  CHECK_THAT(refusal(folder, "mixed.stl", binary_stl("x") + std::string(50, '\0') + facet),
+             Catch::Contains("the file has bytes for 6"));
 }
 
 TEST_CASE("STL: facets of other than three corners, and text that is none, are refused", "[flat]") {

@@ -1,5 +1,7 @@
 // The ways in which OBJ and OFF files are written, and what STL and PLY files have around their facets: tests for rows
 // of docs/formats.md.
+#include <array>
+
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "tegotae/import/load.hpp"
@@ -41,6 +43,18 @@ std::string refused(const std::string& name, const std::string& bytes) {
   const TempFolder folder;
   folder.write(name, bytes);
   return test::refusal([&] { load_mesh(folder / name); });
+}
+
+/// The tetrahedron with `x` for its 2.
+std::string text_stl(const std::string& x) {
+  const std::string corners[4] = {"0 0 0", x + " 0 0", "0 1 0", "0 0 1"};
+  std::string s = "solid t\n";
+  for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    s += "facet normal 0 0 0\nouter loop\n";
+    for (const int i : face) s += "vertex " + corners[i] + '\n';
+    s += "endloop\nendfacet\n";
+  }
+  return s + "endsolid t\n";
 }
 
 /// A prism over a regular polygon, height 1, radius 1.
@@ -97,6 +111,117 @@ TEST_CASE("OBJ: free-form surfaces are told", "[flat]") {
   const TempFolder folder;
   folder.write("a.obj", kCorners + "surf 0 1 0 1 1 2 3 4\n" + kFaces);
   CHECK(has_note(read_assembly(folder / "a.obj"), "free-form"));
+}
+
+TEST_CASE("numbers without a digit before the point are numbers; those of many digits are as large as they say") {
+  for (const char* two : {"2.", "+2.", "0002.", ".2e1", "+.02E+002", "0.00000000000000000000000000002e29", "20000e-4",
+                          "200000000000000000000000000000e-29", "0000000000000000000000000000002"}) {
+    INFO(two);
+    check_tetrahedron("number.obj", replaced_all(kCorners, "v 2", std::string("v ") + two) + kFaces);
+    check_tetrahedron("number.off",
+                      "OFF\n4 4 6\n" + replaced_all(kOffCorners, "2 0 0", std::string(two) + " 0 0") + kOffFaces);
+    check_tetrahedron("number.stl", text_stl(two));
+  }
+  for (const char* half : {".5", "-.5", "+.5", "5.e-1", ".5E+0"}) {
+    INFO(half);
+    const TempFolder folder;
+    folder.write("a.obj", replaced_all(kCorners, "v 2", std::string("v ") + half) + kFaces);
+    const MeshReport r = report(load_mesh(folder / "a.obj"));
+    CHECK(r.vertices == 4);
+    CHECK(r.box_max.x() - r.box_min.x() == 0.5);
+  }
+  const std::string huge(30, '1');
+  CHECK_THAT(refused("huge.obj", replaced_all(kCorners, "v 2", "v " + huge) + kFaces),
+             Catch::Contains("beyond 1000 km"));
+  CHECK_THAT(refused("huge.stl", text_stl(huge)), Catch::Contains("beyond 1000 km"));
+}
+
+TEST_CASE("OBJ: statements that the format has not are told, and damaged ones refused", "[flat]") {
+  const TriangleMesh mesh = check_tetrahedron("call.obj", kCorners + "vx 1\ncall other.obj\n" + kFaces);
+  REQUIRE(mesh.notes.size() == 1);
+  CHECK_THAT(mesh.notes[0], Catch::Contains("line 5 \"vx 1\" is no statement"));
+  for (const char* beside : {"vp 1 2", "mg 1 0.1", "lod 3", "usemap off", "con 1 0 1 1 2 0 1 1", "shadow_obj s.obj"})
+    CHECK(check_tetrahedron("beside.obj", kCorners + beside + '\n' + kFaces).notes.empty());
+  // Were they left out, the corners of the faces would be others.
+  for (const std::string& damage : {std::string("\xc2\xa0"), std::string("\xe2\x80\x8b"), std::string("\xef\xbb\xbf"),
+                                    std::string(1, '\0'), std::string("\x01")}) {
+    const std::string more = "v 5 5 5\n" + replaced_all(kCorners, "v 2", "v" + damage + "2");
+    CHECK_THAT(refused("blank.obj", more + kFaces), Catch::Contains("line 3"));
+    CHECK_THAT(refused("front.obj", "#\n" + damage + more + kFaces), Catch::Contains("line 2"));
+  }
+}
+
+TEST_CASE("OBJ: faces of fewer than three corners are reported, and files without faces have no triangles", "[flat]") {
+  const TriangleMesh mesh = check_tetrahedron("edges.obj", kCorners + "f 1 2\n" + kFaces + "f 3\n");
+  REQUIRE(mesh.notes.size() == 1);
+  CHECK_THAT(mesh.notes[0], Catch::Contains("fewer than three corners") && Catch::Contains("line 5"));
+  CHECK_THAT(refused("none.obj", "v 0 0 0\n"), Catch::Contains("no triangles"));
+  CHECK_THAT(refused("case.obj", replaced_all(kCorners, "v", "V") + replaced_all(kFaces, "f", "F")),
+             Catch::Contains("no triangles; line 1 \"V 0 0 0\" is no statement"));
+  CHECK_THAT(refused("index.obj", replaced_all(kCorners, "v 2", "/v 2") + kFaces),
+             Catch::Contains("index out of range") && Catch::Contains("line 2 \"/v 2 0 0\" is no statement"));
+}
+
+TEST_CASE("OFF, PLY: what the counts do not announce is reported; files without faces have no triangles", "[flat]") {
+  const std::string head = "OFF\n4 4 6\n", body = kOffCorners + kOffFaces;
+  CHECK(check_tetrahedron("blank.off", head + body + " \n# end\n\n").notes.empty());
+  const TriangleMesh off = check_tetrahedron("more.off", head + body + "3 0 1 2\n");
+  REQUIRE(off.notes.size() == 1);
+  CHECK_THAT(off.notes[0], Catch::Contains("behind its last face"));
+  CHECK_THAT(refused("none.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), Catch::Contains("no triangles"));
+  CHECK_THAT(refused("nothing.off", "OFF\n0 0 0\n"), Catch::Contains("no triangles"));
+
+  const std::string vertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string list = "property list uchar int vertex_indices\nend_header\n", ply = "ply\nformat ascii 1.0\n";
+  for (const std::string& pad : {std::string(), std::string(60, '\0'), std::string("\n \n"), std::string(3, '\x1a')})
+    CHECK(check_tetrahedron("pad.ply", ply + vertex + "element face 4\n" + list + body + pad).notes.empty());
+  const TriangleMesh more =
+      check_tetrahedron("more.ply", ply + vertex + "element face 4\n" + list + body + "3 0 1 2\n");
+  REQUIRE(more.notes.size() == 1);
+  CHECK_THAT(more.notes[0], Catch::Contains("behind its last element"));
+  CHECK_THAT(refused("none.ply", ply + vertex + "element face 0\n" + list + kOffCorners),
+             Catch::Contains("no triangles"));
+}
+
+TEST_CASE("STL: a damaged facet swallows no other", "[flat]") {
+  for (const char* lost : {"outer loop\n", "endloop\n", "endfacet\n", "vertex 0 0 0\n", "loop", "outer"}) {
+    std::string text = text_stl("2");
+    text.erase(text.find(lost), std::string(lost).size());
+    INFO(lost);
+    CHECK_THAT(refused("lost.stl", text), Catch::Contains("damaged"));
+  }
+}
+
+TEST_CASE("OBJ: padding and marks at the end of a file are no statement", "[flat]") {
+  for (const std::string& end : {std::string(40, '\0'), std::string("\x1a"), std::string("\n\x1a\0\0", 4)}) {
+    check_tetrahedron("end.obj", kCorners + kFaces + end);
+    check_tetrahedron("line.obj", kCorners + kFaces.substr(0, kFaces.size() - 1) + end);
+  }
+}
+
+TEST_CASE("text in UTF-16 and UTF-32 is refused as such, whatever the format", "[flat]") {
+  const std::string gltf = R"({"asset":{"version":"2.0"}})";
+  const std::vector<std::pair<std::string, std::string>> files = {{"w.obj", kCorners + kFaces},
+                                                                  {"w.stl", text_stl("2")},
+                                                                  {"w.off", "OFF\n4 4 6\n" + kOffCorners + kOffFaces},
+                                                                  {"w.ply", "ply\nformat ascii 1.0\n"},
+                                                                  {"w.gltf", gltf}};
+  for (const auto& [name, text] : files)
+    for (const std::size_t width : {2u, 4u})
+      for (const bool big : {false, true})
+        for (const bool mark : {false, true}) {
+          INFO(name << ' ' << width << big << mark);
+          std::string wide;
+          const auto put = [&](char high, char low) {
+            std::string unit(width, '\0');
+            unit[big ? width - 1 : 0] = low;
+            unit[big ? width - 2 : 1] = high;
+            wide += unit;
+          };
+          if (mark) put('\xfe', '\xff');
+          for (const char c : text) put('\0', c);
+          CHECK_THAT(refused(name, wide), Catch::Contains(width == 2 ? "is in UTF-16" : "is in UTF-32"));
+        }
 }
 
 TEST_CASE("OBJ: what cannot be is refused with its line", "[flat]") {

@@ -275,3 +275,67 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   folder.write("a.step", naming(up + "/child.stp"));
   CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("no regular file in its folder or below"));
 }
+
+TEST_CASE("STEP: construction lines beside a shape refuse no file, whole or damaged", "[step]") {
+  const auto with = [](const std::string& item, const std::string& relation) {
+    StepText s;
+    const int plate = s.product("plate"), block = s.block();
+    const int shape = s.shape(plate, {s.origin(), block}, "FACETED_BREP_SHAPE_REPRESENTATION");
+    const int lines =
+        s.representation({item.empty() ? s.point(1, 2, 3) : 999999}, "CONSTRUCTIVE_GEOMETRY_REPRESENTATION");
+    std::string ends = relation;
+    for (const auto& [from, to] : {std::pair{"SHAPE", shape}, {"LINES", lines}, {"BLOCK", block}})
+      if (const auto at = ends.find(from); at != std::string::npos) ends.replace(at, 5, r(to));
+    s.add("CONSTRUCTIVE_GEOMETRY_REPRESENTATION_RELATIONSHIP('',$," + ends + ")");
+    return s;
+  };
+  for (const char* relation :
+       {"SHAPE,LINES", "LINES,SHAPE", "SHAPE,#999999", "#999999,LINES", "SHAPE,$", "$,$", "SHAPE,BLOCK"})
+    for (const char* item : {"", "missing"}) {
+      INFO(relation << ' ' << item);
+      const Assembly a = read(with(item, relation));
+      REQUIRE(a.parts.size() == 1);
+      check_block(a, 0);
+    }
+}
+
+TEST_CASE("STEP: products that have one shape between them are named", "[step]") {
+  StepText flat;
+  const int left = flat.product("left"), right = flat.product("right");
+  const auto shown_by = [](StepText& s, int product, int shape) {
+    s.add("SHAPE_DEFINITION_REPRESENTATION(" + r(s.add("PRODUCT_DEFINITION_SHAPE('',''," + r(product) + ")")) + "," +
+          r(shape) + ")");
+  };
+  const int shape = flat.shape(left, {flat.origin(), flat.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  CHECK(read(flat).notes.empty());
+  shown_by(flat, right, shape);
+  const Assembly once = read(flat);
+  CHECK(once.parts.size() == 1);
+  CHECK(has_note(once, "\"left\", \"right\" have one shape (" + r(shape) + "), which is read once"));
+
+  // One of them in an assembly, then both.
+  StepText s;
+  const int top = s.product("all"), a = s.product("left"), b = s.product("right"), o = s.origin();
+  const int one = s.shape(a, {o, s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
+  shown_by(s, b, one);
+  const int here = s.origin(), there = s.frame(s.point(100, 0, 0), s.direction(0, 0, 1), s.direction(1, 0, 0));
+  const int all = s.shape(top, {here, there});
+  s.instance(b, one, o, top, all, there, "R");
+  const Assembly placed = read(s);
+  REQUIRE(placed.parts.size() == 1);
+  check_block(placed, 0, 100);
+  CHECK(has_note(placed, "only where an assembly places it"));
+  s.instance(a, one, o, top, all, here, "L");
+  const Assembly both = read(s);
+  REQUIRE(both.parts.size() == 2);
+  const std::size_t l = both.parts[0].name == "L" ? 0 : 1;
+  check_block(both, l);
+  check_block(both, 1 - l, 100);
+  CHECK(has_note(both, "which is read at each place"));
+}
+
+TEST_CASE("STEP: text in UTF-16 is refused as such", "[step]") {
+  std::string wide = "\xff\xfe";
+  for (const char c : StepText().text()) (wide += c) += '\0';
+  CHECK_THAT(test::refusal([&] { read_step_text(wide); }), Catch::Contains("is in UTF-16"));
+}

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "catch.hpp"
+#include "mesh/t_junctions.hpp"
 #include "mesh/topology.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/constants.hpp"
@@ -191,6 +192,40 @@ TEST_CASE("slivers make no creases", "[topology]") {
       build_topology(mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0.5, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}));
   REQUIRE(alone.face_normals[0].isZero(0));
   REQUIRE(kind(alone, 0, 1) == EdgeKind::non_manifold);
+}
+
+TEST_CASE("T-junctions are counted, and nothing else is one", "[topology]") {
+  CHECK(count_t_junctions(shapes::box({1, 1, 1})) == 0);
+  TriangleMesh open = shapes::box({1, 1, 1});
+  open.triangles.pop_back();
+  CHECK(count_t_junctions(open) == 0);
+
+  // Faces of a sphere, no two of them neighbors, are cut in two at a point of one side: the face beyond is not.
+  TriangleMesh cut = shapes::sphere(0.04, 48, 24);
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> share(0.1, 0.9);
+  const Topology topology = build_topology(cut);
+  std::vector<bool> taken(cut.triangles.size(), false);
+  std::size_t cuts = 0;
+  for (std::uint32_t f = 0; f < topology.face_edges.size(); ++f) {
+    const std::uint32_t beyond = topology.twin[3 * f] / 3;
+    if (random() % 8 != 0 || taken[f] || taken[beyond]) continue;
+    taken[f] = taken[beyond] = true;
+    const auto [a, b, c] = cut.triangles[f];
+    const double s = share(random);
+    const Vec3 exact = (1 - s) * cut.vertices[a] + s * cut.vertices[b];
+    const auto m = static_cast<std::uint32_t>(cut.vertices.size());
+    cut.vertices.push_back(exact.cast<float>().cast<double>());
+    cut.triangles[f] = {a, m, c};
+    cut.triangles.push_back({m, b, c});
+    ++cuts;
+  }
+  REQUIRE(cuts > 100);
+  CHECK(count_t_junctions(cut) == cuts);
+  CHECK(report(cut).boundary_edges == 3 * cuts);
+  // Beside the edge by more than rounding it is a hole.
+  for (std::size_t i = cut.vertices.size() - cuts; i < cut.vertices.size(); ++i) cut.vertices[i] *= 1.0001;
+  CHECK(count_t_junctions(cut) == 0);
 }
 
 TEST_CASE("collapsed faces leave their neighbors linked", "[topology]") {

@@ -363,6 +363,14 @@ TEST_CASE("without a script the hand stays where the held part starts", "[scene_
     if (part.held) CHECK(file.script.pose(0).p == part.pose.p);
 }
 
+TEST_CASE("a scene file in UTF-16 is refused as such", "[scene_file]") {
+  const Folder folder;
+  std::string wide;
+  for (const char c : std::string("[[part]]\nname = \"a\"\n")) (wide += c) += '\0';
+  for (const char* mark : {"", "\xff\xfe"})
+    CHECK(folder.error(mark + wide) == "scene.toml: its text is in UTF-16, and TOML is UTF-8: save it as that");
+}
+
 TEST_CASE("a scene file that is not there is an error", "[scene_file]") {
   const Folder folder;
   CHECK_THROWS_WITH(load_scene(folder.scene_path()), folder.scene_path() + ": no such file");

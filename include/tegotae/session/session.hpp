@@ -184,9 +184,9 @@ inline constexpr double kSettleTime = 0.5;
 /// thread until the end of the run). In virtual time everything takes turns in the calling thread: the same scene,
 /// script and build give the same recording byte for byte.
 ///
-/// Throws Error when the loop cannot hold the scene (see HapticLoop), the guide's path cannot be read, the recording
-/// cannot be begun, or it would replace a file from which the scene was read (SceneFile::files). A recording that fails
-/// later does not end the run; the summary says what was lost.
+/// Throws Error when the loop cannot hold the scene (see HapticLoop), a script without RunSettings::seconds lasts more
+/// than 1e6 s, the guide's path cannot be read, the recording cannot be begun, or it would replace a file of the scene
+/// (SceneFile::files). A recording that fails later does not end the run; the summary says what was lost.
 RunSummary run_session(const SceneFile& file, const RunSettings& settings);
 
 }  // namespace tegotae

@@ -6,7 +6,7 @@ export function element(tag, text = "", className = "") {
   return e;
 }
 
-// What is nothing but rounding is told as small, not with its digits.
+// A value that is nothing but rounding is shown as small, without its digits.
 function cellText(value) {
   const rounding = typeof value === "number" && value !== 0 && Math.abs(value) < 1e-6;
   // A number and its unit stay on one line.

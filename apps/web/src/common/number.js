@@ -1,12 +1,12 @@
 // Numbers as people write them: no exponents, a true minus, and 0 for what is nothing but rounding.
-const leastShown = 1e-9;
-const mostPlaces = 6;
+const minShown = 1e-9;
+const maxPlaces = 6;
 
 // `digits` significant ones, and no zeros behind the last that says something.
 export function written(value, digits = 3) {
   if (!Number.isFinite(value)) return "–";
-  if (Math.abs(value) < leastShown) return "0";
-  const places = Math.min(mostPlaces, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
+  if (Math.abs(value) < minShown) return "0";
+  const places = Math.min(maxPlaces, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
   const text = value.toFixed(places);
   return signed(text.includes(".") ? text.replace(/\.?0+$/, "") : text);
 }
@@ -17,7 +17,7 @@ export const fixed = (value, places) => (Number.isFinite(value) ? signed(value.t
 // A length in m, in the unit that people would take for it.
 export function length(meters, digits = 4) {
   const size = Math.abs(meters);
-  if (size < leastShown) return "0\u00a0mm";
+  if (size < minShown) return "0\u00a0mm";
   return size < 1e-4 ? `${written(1e6 * meters, digits)}\u00a0µm` : `${written(1e3 * meters, digits)}\u00a0mm`;
 }
 

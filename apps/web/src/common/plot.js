@@ -18,10 +18,10 @@ const seriesColor = (i) => color(`--series-${i % 6}`);
 const tickText = (u, ticks) => ticks.map((v) => (v == null ? "" : Number(v.toPrecision(6)).toString().replace("-", "−")));
 
 // Over many decades only powers of ten; uPlot would draw nine lines in each.
-const kMostDecades = 4;
+const kMaxDecades = 4;
 function decades(u, axisIndex, low, high) {
   const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
-  const step = last - first > 2 * kMostDecades ? 3 : 1;
+  const step = last - first > 2 * kMaxDecades ? 3 : 1;
   return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, i) => 10 ** (first + i * step));
 }
 
@@ -33,7 +33,7 @@ function axis(spec, [low, high]) {
   return {
     label: spec.label,
     values: tickText,
-    ...(spec.log && Math.log10(high / low) > kMostDecades ? { splits: decades, filter: (u, ticks) => ticks } : {}),
+    ...(spec.log && Math.log10(high / low) > kMaxDecades ? { splits: decades, filter: (u, ticks) => ticks } : {}),
     ...(spec.whole ? { splits: wholeNumbers } : {}),
     stroke: color("--muted"),
     grid: { stroke: color("--line"), width: 1 },
@@ -44,7 +44,7 @@ function axis(spec, [low, high]) {
 
 const scale = (spec) => (spec.log ? { time: false, distr: 3 } : { time: false });
 
-// A little room on both sides, so that points at the ends are whole.
+// A margin on both sides, so that points at the ends are not cut off.
 const padded = (u, low, high) => (low == null ? [0, 1] : uPlot.rangeNum(low, high, { min: { pad: 0.04 }, max: { pad: 0.04 } }));
 
 function eachDrawn(u, series, draw) {

@@ -3,7 +3,7 @@ const stops = [[165, 0, 38], [244, 109, 67], [254, 224, 144], [116, 173, 209], [
 const beyond = [150, 156, 163];
 // Below, inside and above a band of clearances that was asked for.
 const zones = [[200, 38, 38], [240, 178, 50], [44, 123, 182]];
-const tickRoom = 0.24; // of the scale, for a label
+const tickMargin = 0.24; // of the scale, for a label
 
 // Red, green, blue from 0 to 255.
 export const zoneColor = (zone) => zones[zone];
@@ -29,11 +29,11 @@ export class ClearanceScale {
     const i = Math.min(Math.floor(x), stops.length - 2);
     return stops[i].map((c, k) => c + (x - i) * (stops[i + 1][k] - c));
   }
-  // Both ends, and powers of ten that have room between.
+  // Both ends, and powers of ten with space between.
   ticks() {
     if (this.band) return [this.band.low, this.band.high].filter((v) => v >= this.low && v <= this.high);
     const out = [this.low];
-    for (let v = 10 * this.low; this.at(v) < 1 - tickRoom; v *= 10) if (this.at(v) - this.at(out.at(-1)) > tickRoom) out.push(v);
+    for (let v = 10 * this.low; this.at(v) < 1 - tickMargin; v *= 10) if (this.at(v) - this.at(out.at(-1)) > tickMargin) out.push(v);
     return [...out, this.high];
   }
 }

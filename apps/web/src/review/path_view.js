@@ -1,4 +1,4 @@
-// The path in 3-D: the parts, the held one in the colors of its clearance, its ghosts along the way, and what happened where.
+// The path in 3-D: the parts, the held one in the colors of its clearance, its ghosts along the path, and what happened where.
 import * as THREE from "three";
 import { disk } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";

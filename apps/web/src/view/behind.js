@@ -2,9 +2,9 @@
 // a face in front of them.
 import * as THREE from "three";
 
-const periodMs = 250; // a look costs rays through all triangles
+const periodMs = 250; // a query casts rays through all triangles
 const keepMs = 1200; // so that parts do not flicker with the contacts
-const mostRays = 6;
+const maxRays = 6;
 const margin = 1e-3; // of the scene's radius: a contact lies on the faces that touch
 
 export class Behind {
@@ -29,7 +29,7 @@ export class Behind {
     if (now - this.looked < periodMs) return this.later();
     this.looked = now;
     if (this.stage.section !== null || this.stage.explosion > 0) return this.clear();
-    for (const pair of frame.pairs.filter((p) => p.touching).slice(0, mostRays)) for (const i of this.before(pair.point)) this.seen.set(i, now);
+    for (const pair of frame.pairs.filter((p) => p.touching).slice(0, maxRays)) for (const i of this.before(pair.point)) this.seen.set(i, now);
     for (const [i, when] of this.seen) if (now - when > keepMs) this.seen.delete(i);
     this.stage.seeThrough(new Set(this.seen.keys()));
     if ([...this.seen.values()].some((when) => when < now)) this.later();

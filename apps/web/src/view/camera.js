@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-// From where one looks: right, back, up. Straight from above it turns a hair aside, or up would be undefined.
+// The view directions: right, back, up. The view from straight above is tilted by a hair, or up would be undefined.
 export const views = [
   ["Front", [0, -1, 0]],
   ["Back", [0, 1, 0]],

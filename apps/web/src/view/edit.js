@@ -169,7 +169,7 @@ export class Parts {
     }
   }
 
-  // "" takes back what this has told, and nothing else.
+  // "" removes the message that this has shown, and no other.
   tell(text) {
     if (text || this.told) this.onMessage(text);
     this.told = text !== "";

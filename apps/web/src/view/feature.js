@@ -5,8 +5,8 @@ const flat = Math.cos((0.3 * Math.PI) / 180); // faces in one plane
 const smooth = Math.cos((40 * Math.PI) / 180); // neighbors on one round surface
 const sharp = Math.cos((20 * Math.PI) / 180); // an edge that one sees
 const roundness = 2e-3; // of the radius: how far points of a round thing may be off
-const fewestFacets = 4; // of a cylinder
-const fewestChords = 8; // of a circle
+const minFacets = 4; // of a cylinder
+const minChords = 8; // of a circle
 
 // A mesh, and which face lies across each of its edges.
 export class Surface {
@@ -108,7 +108,7 @@ function edgeNear(surface, region, point, reach) {
   if (!best) return null;
   const [row, closed] = chain(edges, best);
   const points = row.map(([a]) => surface.vertex(a));
-  if (closed && points.length >= fewestChords) {
+  if (closed && points.length >= minChords) {
     const third = Math.floor(points.length / 3);
     const circle = circleThrough(points[0], points[third], points[2 * third]);
     if (circle && points.every((p) => Math.abs(size(sub(p, circle.center)) - circle.radius) < roundness * circle.radius))
@@ -157,7 +157,7 @@ function cylinderThrough(surface, face, own, axis, beside) {
   const off = (p) => Math.abs(size(sub(across(p), center)) - radius);
   const on = surface.grow(face, (g, f) => dot(surface.normal(f), surface.normal(g)) > smooth && surface.corners(g).every((p) => off(p) < roundness * radius));
   const normals = new Set([...on].map((f) => surface.normal(f).map((v) => Math.round(v * 100)).join()));
-  if (normals.size < fewestFacets) return null;
+  if (normals.size < minFacets) return null;
   const heights = [...on].flatMap((f) => surface.corners(f)).map((p) => dot(p, axis));
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const inner = dot(surface.normal(face), sub(across(own[0]), center)) < 0;

@@ -5,7 +5,7 @@ import { norm } from "./frame.js";
 
 const ringSegments = 32;
 const sides = 8;
-const mostVertices = 6 * 2 * (ringSegments + sides + 3);
+const maxVertices = 6 * 2 * (ringSegments + sides + 3);
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -39,7 +39,7 @@ export function coneSegments({ point, normal, friction, mu, slides }, scale, len
 export class FrictionCones {
   constructor(material) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * mostVertices), 3));
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * maxVertices), 3));
     this.object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(material));
     this.object.frustumCulled = false;
     this.object.renderOrder = 11;

@@ -1,4 +1,4 @@
-// A running session: frames come in a stream, commands go out one after the other.
+// A live run: frames come in a stream, commands go out one after the other.
 import { readBundle } from "./bundle.js";
 import { frameFloats, readFrame } from "./frame.js";
 

@@ -1,5 +1,5 @@
 // A mesh with fewer triangles, to be drawn while things move: vertices in one cell of a grid become one, their mean.
-const mostTries = 10;
+const maxTrials = 10;
 const keySide = 2 ** 17; // cells a side that a key tells apart
 
 function clustered(positions, indices, low, cell) {
@@ -34,7 +34,7 @@ export function coarseMesh(positions, indices, most) {
   const side = Math.max(...high.map((v, k) => v - low[k]));
   let [coarse, fine] = [side, side / 1024];
   let best = clustered(positions, indices, low, coarse);
-  for (let i = 0; i < mostTries; ++i) {
+  for (let i = 0; i < maxTrials; ++i) {
     const cell = Math.sqrt(coarse * fine);
     const next = clustered(positions, indices, low, cell);
     if (next.indices.length <= 3 * most) [best, coarse] = [next, cell];

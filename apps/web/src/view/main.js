@@ -1,4 +1,4 @@
-// The page of a live run and of a recording: puts the pieces together.
+// The page of a live run and of a recording: puts its modules together.
 import { setDark, systemIsDark } from "../common/theme.js";
 import { length } from "../common/number.js";
 import { Behind } from "./behind.js";

@@ -6,7 +6,7 @@ export const fadedOpacity = 0.22;
 // Lines lie on the surface: it steps back a little, so that they win.
 const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 
-// Inner sides in one flat color look like the cut that a section plane makes: what lies behind it is inside the part.
+// Inner sides have one flat color, like the face that a section plane makes: what lies behind it is inside the part.
 // Hatched as in a drawing, by the part's number in another direction or at another pitch.
 const cutVertex = `
 #include <clipping_planes_pars_vertex>

@@ -7,10 +7,10 @@ import { round125 } from "./compass.js";
 import { norm } from "./frame.js";
 import { FrictionCones } from "./friction.js";
 
-const mostPairs = 128;
-const mostForces = 6;
+const maxPairs = 128;
+const maxForces = 6;
 // An arrow shorter than this share of the held part's radius is left out.
-const leastArrow = 0.05;
+const minArrow = 0.05;
 
 const over = { depthTest: false, depthWrite: false, transparent: true };
 
@@ -43,7 +43,7 @@ class Arrow {
 
 function dots(size) {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * mostPairs), 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * maxPairs), 3));
   const object = new THREE.Points(geometry, new THREE.PointsMaterial({ size, map: disk(), sizeAttenuation: false, ...over }));
   object.frustumCulled = false;
   return object;
@@ -51,7 +51,7 @@ function dots(size) {
 
 function segments() {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * mostPairs), 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * maxPairs), 3));
   const object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(over));
   object.frustumCulled = false;
   return object;
@@ -74,7 +74,7 @@ export class Overlay {
     this.stage = stage;
     this.force = new Arrow(false);
     this.torque = new Arrow(true);
-    this.exerted = Array.from({ length: mostForces }, () => new Arrow(false));
+    this.exerted = Array.from({ length: maxForces }, () => new Arrow(false));
     this.cones = new FrictionCones(over);
     this.contacts = dots(9);
     this.normals = segments();
@@ -128,7 +128,7 @@ export class Overlay {
     this.seen = [frame.force, frame.torque.map((v) => 100 * v), frame.pairs.map((p) => [p.touching, p.part, ...p.point.map((v) => (100 * v) / this.unit)])].map(rounded);
     const arrow = (shape, layer, from, vector, scale) => {
       const scaled = vector.map((v) => v * scale);
-      shape.show(from, norm(scaled) < leastArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
+      shape.show(from, norm(scaled) < minArrow * this.unit ? [0, 0, 0] : scaled, 0.035 * this.unit);
       shape.group.visible &&= this.enabled[layer];
     };
     arrow(this.force, "arrows", center, frame.force, this.metersPerNewton);

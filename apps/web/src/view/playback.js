@@ -2,7 +2,7 @@
 // that the page has seen.
 import { forceFloats, frameFloats, pairFloats, readFrame } from "./frame.js";
 
-const mostRemembered = 12_000; // frames of a live run: 6 minutes
+const maxRemembered = 12_000; // frames of a live run: 6 minutes
 
 // Frames in a row: count, time(i), frame(i) come from who extends it.
 class Playback {
@@ -88,7 +88,7 @@ export class Memory {
     const last = this.frames.at(-1);
     if (last && (frame.t < last.t || frame.generation !== last.generation)) this.frames = [];
     this.frames.push(frame);
-    if (this.frames.length > mostRemembered) this.frames.shift();
+    if (this.frames.length > maxRemembered) this.frames.shift();
   }
 }
 

@@ -5,10 +5,10 @@ import { fixed, written } from "../common/number.js";
 import { cssColor } from "../common/theme.js";
 import { distance, norm } from "./frame.js";
 
-const [leastHeight, mostHeight] = [52, 150];
+const [minHeight, maxHeight] = [52, 150];
 const captionHeight = 17, axisHeight = 16; // px; only the last plot has the axis of time
 const windowSeconds = 15;
-const mostPoints = 1200; // of a live plot; a frame comes every 33 ms
+const maxPoints = 1200; // of a live plot; a frame comes every 33 ms
 const redrawMs = 80;
 const xyz = [["x", "--series-1"], ["y", "--series-2"], ["z", "--series-0"]];
 
@@ -87,7 +87,7 @@ export class Plots {
   size(p) {
     const place = this.parent.parentElement;
     const room = place.clientHeight - this.parent.offsetTop - 8 - axisHeight;
-    const height = Math.min(mostHeight, Math.max(leastHeight, Math.floor(room / this.seen.length) - captionHeight));
+    const height = Math.min(maxHeight, Math.max(minHeight, Math.floor(room / this.seen.length) - captionHeight));
     return { width: p.frame.clientWidth || 300, height: height + (p === this.seen.at(-1) ? axisHeight : 0) };
   }
   fit() {
@@ -185,7 +185,7 @@ export class Plots {
     if (frame.t < this.t) this.clear();
     this.t = frame.t;
     this.append(frame);
-    if (this.times.length > mostPoints) for (const list of [this.times, ...this.frames.flatMap((p) => p.columns)]) list.shift();
+    if (this.times.length > maxPoints) for (const list of [this.times, ...this.frames.flatMap((p) => p.columns)]) list.shift();
     this.redraw();
   }
 

@@ -1,4 +1,4 @@
-// Asks the program for a report, and saves it; saves what the hand did as a stylus script.
+// Requests a report from the program and saves it; saves the motion of the hand as a stylus script.
 function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

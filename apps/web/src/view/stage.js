@@ -7,7 +7,7 @@ import { pick } from "./picking.js";
 import { Quality } from "./quality.js";
 import { shadedSurface } from "./surface.js";
 
-const mostPixelRatio = 1.5;
+const maxPixelRatio = 1.5;
 const fixedColors = 5;
 const heavyTriangles = 30_000; // more of them are drawn coarsely while things move
 const coarseTriangles = 9_000; // then, all together
@@ -243,7 +243,7 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    const ratio = Math.min(devicePixelRatio, mostPixelRatio);
+    const ratio = Math.min(devicePixelRatio, maxPixelRatio);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.quality.resize(width, height, ratio);

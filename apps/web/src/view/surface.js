@@ -1,7 +1,7 @@
 // From shared vertices to what looks right: normals that are smooth where the surface is, and lines where it is not.
 const smoothCosine = Math.cos((32 * Math.PI) / 180);
 const edgeCosine = Math.cos((24 * Math.PI) / 180);
-const mostFaces = 512; // at a vertex; a hub of more keeps its flat normals
+const maxFaces = 512; // at a vertex; a hub of more keeps its flat normals
 
 function faceNormals(positions, indices) {
   const normals = new Float32Array(indices.length); // twice the area long
@@ -41,7 +41,7 @@ export function shadedSurface(positions, indices) {
     const v = indices[i];
     const own = i - (i % 3);
     const sum = [0, 0, 0];
-    const hub = begin[v + 1] - begin[v] > mostFaces;
+    const hub = begin[v + 1] - begin[v] > maxFaces;
     for (let k = begin[v]; k < begin[v + 1]; ++k) {
       const other = corners[k] - (corners[k] % 3);
       if (other !== own && (hub || cosine(flat, own, other) < smoothCosine)) continue;

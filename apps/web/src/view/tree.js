@@ -1,7 +1,7 @@
 // The parts as a tree of the assembly's groups, with a search; shows and hides them.
 import { element } from "../common/dom.js";
 
-const mostOpen = 60; // rows; a larger tree begins with its groups closed
+const maxOpen = 60; // rows; a larger tree begins with its groups closed
 const separator = "\u0000";
 
 // [{key, name, depth, parts: [numbers]}] and parts between them, in the order of the file: what stands where in the list.
@@ -39,7 +39,7 @@ export class Tree {
   show(parts) {
     this.parts = parts;
     const rows = treeRows(parts);
-    this.closed ??= new Set(rows.length > mostOpen ? rows.filter((r) => r.group).map((r) => r.group.key) : []);
+    this.closed ??= new Set(rows.length > maxOpen ? rows.filter((r) => r.group).map((r) => r.group.key) : []);
     this.search.parentElement.hidden = parts.length < 8 && !rows.some((r) => r.group);
     const wanted = this.search.value.trim().toLowerCase();
     const found = (row) => parts[row.part].name.toLowerCase().includes(wanted) || parts[row.part].path.some((name) => name.toLowerCase().includes(wanted));
