@@ -344,7 +344,7 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
   std::string many = binary_stl();
   std::memset(&many[80], 0xff, 4);
   refuse("many.stl", many, "truncated");
-  refuse("long.stl", binary_stl() + std::string(50, '\0'), "damaged");
+  refuse("long.stl", binary_stl() + std::string(25, '\0') + std::string(25, '\1'), "damaged");
 }
 
 TEST_CASE("a file cut anywhere is refused, or it was whole but for its last line break", "[load]") {
