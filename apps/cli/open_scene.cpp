@@ -35,8 +35,7 @@ void hold_smallest(SceneFile& file, bool quiet) {
   for (Part& part : parts) part.held = part.name == name;
   const auto held = std::find_if(parts.begin(), parts.end(), is_held);
   file.script = StylusScript({{0, held->pose}});
-  (quiet ? std::cerr : std::cout) << "The hand holds " << name
-                                  << "; take another one in the page (--view), or with --hold NAME" << std::endl;
+  (quiet ? std::cerr : std::cout) << "The hand holds " << name << "; --hold NAME takes another one" << std::endl;
 }
 
 }  // namespace
@@ -65,9 +64,10 @@ int with_scene(const OpenOptions& options, const MeshLoader& load, const std::fu
   const SceneOptions how{options.hold, options.held_needed && !of_parts, {}, load};
   SceneFile file = options.quiet ? load_scene(path, how) : load_with_progress(path, how);
   print_notes(file.scene);
-  if (of_parts || !options.held_needed) hold_smallest(file, options.quiet);
+  if (of_parts && options.held_needed) hold_smallest(file, options.quiet);
   // Parts of an assembly as people have them overlap here and there; what is told at the start names them.
   if (of_parts) file.scene.contact.initial_overlap = InitialOverlap::ignore;
+  if (of_parts) file.path = options.file;  // the scene made of it is nothing that anybody has named
   return then(std::move(file));
 }
 

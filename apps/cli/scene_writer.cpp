@@ -121,6 +121,7 @@ void write_scene(const Assembly& assembly, const std::string& source, const std:
     write_ply(*shape, mesh, unit);
   }
   std::string text = "unit = " + quoted(assembly.unit) + "\n";
+  if (assembly.up != UpAxis::z) text += "up = " + quoted(to_string(assembly.up)) + "\n";
   for (const AssemblyPart& part : assembly.parts)
     text += part_text(part, files[part.shape], !hold.empty() && part.name == hold);
   replace_file((fs::path(folder) / "scene.toml").string(), text);

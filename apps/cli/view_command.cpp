@@ -1,16 +1,32 @@
 #include "cli/view_command.hpp"
 
+#include <algorithm>
+#include <iostream>
+
 #include "import/file_check.hpp"
 #include "review/review_command.hpp"
+#include "tegotae/core/error.hpp"
 
 namespace tegotae::apps {
+namespace {
+
+/// Where no part is held one looks, until the page takes one.
+void note_nothing_held(const SceneFile& file, const RunOptions& run) {
+  const auto& parts = file.scene.parts;
+  if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.held; })) return;
+  if (!run.guide.empty()) throw Error("--guide leads a held part: name the one that the path is of with --hold NAME");
+  std::cout << "Nothing is held: pick a part in the page and press Hold" << std::endl;
+}
+
+}  // namespace
 
 CLI::App* add_view(CLI::App& app, ViewOptions& options) {
   CLI::App* view = app.add_subcommand("view", "Look at a scene, an assembly, a mesh or a recording in a page");
   view->add_option("FILE", options.open.file,
                    "Scene (.toml), STEP, glTF, 3MF, STL, OBJ, PLY, OFF, recording (.csv, .mcap)")
       ->required();
-  view->add_option("--hold", options.open.hold, "Name of the part to hold (the scene's, or the smallest)")
+  view->add_option("--hold", options.open.hold,
+                   "Name of the part to hold (the scene's; where it has none, the page takes one)")
       ->type_name("NAME");
   add_unit_option(*view, options.open.import);
   add_guide_option(*view, options.run);
@@ -32,6 +48,7 @@ int view_file(const ViewOptions& options, const MeshLoader& load) {
   open.held_needed = false;
   return with_scene(open, load, [&](SceneFile file) {
     file.scene.contact.initial_overlap = InitialOverlap::ignore;  // the page says which parts overlap
+    note_nothing_held(file, options.run);
     return run_and_report(std::move(file), options.run, name);
   });
 }

@@ -51,7 +51,7 @@ std::vector<std::string> path_files(const std::string& folder) {
 void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
                 const std::optional<review::BandFindings>& band, const std::string& folder) {
   write_file(folder + "/path.csv", review::path_csv(file.scene, rows, scan, band));
-  write_file(folder + "/path.glb", review::path_gltf(file.scene, rows, true));
+  write_file(folder + "/path.glb", review::path_gltf(file.scene, file.up, rows, true));
   write_file(folder + "/script.csv", review::path_script(file, rows, scan.center));
   RecordingInfo info;
   info.scene = file.path;

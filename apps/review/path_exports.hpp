@@ -20,7 +20,7 @@ std::string path_csv(const Scene& scene, const std::vector<RecordFrame>& rows, c
 std::string path_script(const SceneFile& file, const std::vector<RecordFrame>& rows, const Vec3& center);
 
 /// The path as glTF 2.0 (Y up): a node for each part, the held one animated. Binary (GLB) when `binary`, else JSON with
-/// its data inside.
-std::string path_gltf(const Scene& scene, const std::vector<RecordFrame>& rows, bool binary);
+/// its data inside. `up`: of the scene, SceneFile::up.
+std::string path_gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows, bool binary);
 
 }  // namespace tegotae::review

@@ -15,15 +15,21 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsigned = 5125, kVertices = 34962, kIndices = 34963;
 constexpr std::size_t kMaxKeys = 20000;
 
+/// What turns the scene's axis that is up to y, which is up in glTF; x, y, z, w.
+Json turned_up(UpAxis up) {
+  const double half = std::sqrt(0.5);
+  if (up == UpAxis::y) return {0, 0, 0, 1};
+  return up == UpAxis::x ? Json{0, 0, half, half} : Json{-half, 0, 0, half};
+}
+
 /// Everything of the file but its container.
 class Gltf {
  public:
-  Gltf(const Scene& scene, const std::vector<RecordFrame>& rows) {
+  Gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "tegotae " TEGOTAE_VERSION_STRING}};
     json_["scene"] = 0;
     json_["scenes"] = Json::array({{{"nodes", {0}}}});
-    // z is up in the scene, y in glTF.
-    json_["nodes"] = Json::array({{{"name", "world"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}});
+    json_["nodes"] = Json::array({{{"name", "world"}, {"rotation", turned_up(up)}}});
     for (const Part& part : scene.parts) add_part(part);
     animate(rows);
     json_["bufferViews"] = views_;
@@ -152,8 +158,8 @@ class Gltf {
 
 }  // namespace
 
-std::string path_gltf(const Scene& scene, const std::vector<RecordFrame>& rows, bool binary) {
-  Gltf gltf(scene, rows);
+std::string path_gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows, bool binary) {
+  Gltf gltf(scene, up, rows);
   return binary ? gltf.binary() : gltf.text();
 }
 

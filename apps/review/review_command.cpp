@@ -94,7 +94,7 @@ int run_review(const ReviewOptions& o) {
   }
   if (!o.script.empty()) write_file(o.script, path_script(r.file, rows, r.center));
   if (!o.gltf.empty())
-    write_file(o.gltf, path_gltf(r.file.scene, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
+    write_file(o.gltf, path_gltf(r.file.scene, r.file.up, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
   std::cout << r.verdict.headline << "\n";
   for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";

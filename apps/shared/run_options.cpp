@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <iostream>
+#include <optional>
 
 #include "shared/format.hpp"
 #include "shared/open_browser.hpp"
@@ -92,16 +93,18 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
     if (!options.json && !start.guide.empty()) std::cout << format("%-12s ", "guide:") << start.guide << std::endl;
   };
 
-  RunSummary summary;
+  std::optional<RunSummary> run;
   {
     ProgressLine line(progress, !options.json && !options.view);
-    summary = options.view
-                  ? view::run_viewed(
-                        file, settings, page_address(options.page), interrupted,
-                        [&](const view::Server& server) { return announce_page(server, options.page, options.json); },
-                        options.review)
-                  : run_session(file, settings);
+    run = options.view
+              ? view::run_viewed(
+                    file, settings, page_address(options.page), interrupted,
+                    [&](const view::Server& server) { return announce_page(server, options.page, options.json); },
+                    options.review)
+              : run_session(file, settings);
   }
+  if (!run) return kDone;  // somebody looked, and held nothing
+  const RunSummary& summary = *run;
   const Blocker blocker =
       watch.find(file.scene);  // of a run that was looked at nobody knows: its scene may have changed
   if (options.json)

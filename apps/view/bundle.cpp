@@ -46,6 +46,18 @@ void add_script(Bundle& bundle, const StylusScript& script) {
   bundle.about["goal"] = pose_json(script.pose(script.end()));
 }
 
+void add_guide(Bundle& bundle, const std::vector<Pose>& path, const Vec3& center) {
+  constexpr std::size_t kMaxPoints = 20'000;
+  const std::size_t every = path.size() / kMaxPoints + 1;
+  std::vector<float> points;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (i % every != 0 && i + 1 < path.size()) continue;
+    const Vec3 p = path[i] * center;
+    for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(p[k]));
+  }
+  bundle.about["guide"] = bundle.add(points);
+}
+
 void add_scene(Bundle& bundle, const Scene& scene, const Vec3& center) {
   std::size_t total = 0;
   std::map<const TriangleMesh*, int> numbers;

@@ -39,4 +39,7 @@ nlohmann::json pose_json(const Pose& pose);
 /// rests.
 void add_script(Bundle& bundle, const StylusScript& script);
 
+/// Adds the way of `center` (of mass of the held part, file frame, m) along the poses of a guide: about.guide.
+void add_guide(Bundle& bundle, const std::vector<Pose>& path, const Vec3& center);
+
 }  // namespace tegotae::view

@@ -23,13 +23,18 @@ namespace {
 
 // How often a held run looks whether it may go on.
 constexpr auto kPausePoll = std::chrono::milliseconds(2);
+// How often who waits for a part to be held, or put down, looks whether the program ends.
+constexpr auto kEndPoll = std::chrono::milliseconds(20);
 // Most ticks that one command may ask for.
 constexpr int kMaxSteps = 10'000;
 // A pen farther from the world's origin (m) is a mistake.
 constexpr double kFarthest = 100;
 
-Vec3 center_of(const Part& part, double density) {
-  return mass_properties(*part.mesh, report(*part.mesh).closed, density).center;
+/// Center of mass of the held part in its file frame; zero when nothing is held.
+Vec3 held_center(const PageParts& parts, double density) {
+  if (!parts.any_held()) return Vec3::Zero();
+  const TriangleMesh& mesh = *parts.all()[parts.held()].mesh;
+  return mass_properties(mesh, report(mesh).closed, density).center;
 }
 
 /// Why the force is off, by number.
@@ -42,7 +47,7 @@ json force_off_names() {
 std::array<double, 7> words(const Pose& X) {
   return {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()};
 }
-Pose pose_of(const std::array<double, 7>& v) {
+Pose pose_of(const double* v) {
   return {Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
 }
 
@@ -63,8 +68,9 @@ struct LiveView::Segment {
 };
 
 LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, bool led, std::atomic<bool>& stop,
-                   ScriptReview review)
+                   ScriptReview review, const std::string& guide)
     : file_(file),
+      loose_(!PageParts(file.scene).any_held()),
       virtual_time_(virtual_time),
       restartable_(restartable),
       led_(led),
@@ -76,30 +82,71 @@ LiveView::LiveView(const SceneFile& file, bool virtual_time, bool restartable, b
                    {"title", file.path},
                    {"virtual_time", virtual_time_},
                    {"restartable", restartable_},
+                   {"loose", loose_},
+                   {"up", to_string(file.up)},
                    {"led", led_},
                    {"reviewable", review_ != nullptr},
                    {"reasons", force_off_names()}};
   add_scene(bundle_, file.scene, Vec3::Zero());
-  add_script(bundle_, file.script);
-  begin();
+  if (!loose_) add_script(bundle_, file.script);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  show(PageParts(file_.scene));
+  if (!guide.empty()) add_guide(bundle_, read_path(guide), center_);
 }
 
 LiveView::~LiveView() = default;
 
-void LiveView::begin() {
-  PageParts parts(file_.scene);
-  auto segment = std::make_shared<Segment>(parts, generation_ + 1);
-  by_number_[0] = looped_ = segment.get();
+std::optional<SceneFile> LiveView::next() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!parts_.any_held()) {
+    if (stop_) return std::nullopt;
+    changed_.wait_for(lock, kEndPoll);
+  }
+  by_number_[0] = looped_ = segment_.get();
   paced_ns_ = 0;
+  SceneFile file = file_;
+  if (loose_) {
+    file.scene.parts = parts_.in_scene();
+    file.script = StylusScript({{0, parts_.all()[parts_.held()].pose}});
+  }
+  return file;
+}
+
+bool LiveView::refused(const std::string& why) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!loose_) return false;
+  PageParts parts = parts_;
+  parts.put_down(parts.all()[parts.held()].pose);
+  show(std::move(parts));
+  if (std::exchange(request_, Request::none) != Request::none) stop_ = false;  // what was to end has not begun
+  if (start_ == Start::asked) start_ = Start::refused;
+  refusal_ = why;
+  changed_.notify_all();
+  return true;
+}
+
+bool LiveView::again() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Request request = std::exchange(request_, Request::none);
+  if (request == Request::none) return false;
+  PageParts parts = request == Request::restart ? PageParts(file_.scene) : parts_;
+  const bool ticked = frame_.generation == generation_;
+  if (request == Request::put_down) parts.put_down(ticked ? pose_of(frame_.x) : parts.all()[parts.held()].pose);
+  show(std::move(parts));
+  stop_ = false;
+  return true;
+}
+
+/// A session that is not yet, or none. With mutex_ held.
+void LiveView::show(PageParts parts) {
   session_ = std::make_shared<Session>();
+  auto segment = std::make_shared<Segment>(parts, generation_ + 1);
   show(std::move(parts), std::move(segment));
 }
 
 /// With mutex_ held.
 void LiveView::show(PageParts parts, std::shared_ptr<Segment> segment) {
-  const std::size_t held = parts.held();
-  if (generation_ == 0 || held != parts_.held()) center_ = center_of(parts.all()[held], file_.scene.contact.density);
+  if (generation_ == 0 || parts.held() != parts_.held()) center_ = held_center(parts, file_.scene.contact.density);
   parts_ = std::move(parts);
   segment_ = std::move(segment);
   bundle_.about["generation"] = generation_ = segment_->generation;
@@ -110,11 +157,6 @@ void LiveView::show(PageParts parts, std::shared_ptr<Segment> segment) {
         {{"held", part.held}, {"pose", pose_json(part.pose)}, {"removed", parts_.removed(i)}});
   }
   bytes_.reset();
-}
-
-bool LiveView::take_request() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return std::exchange(requested_, false);
 }
 
 void LiveView::before_tick(double t) {
@@ -140,6 +182,14 @@ void LiveView::before_tick(double t) {
 }
 
 void LiveView::started(const InitialContactReport& start) noexcept {
+  note_suspended(start);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (start_ == Start::asked) start_ = Start::begun;
+  changed_.notify_all();
+}
+
+/// Of the contact loop's thread.
+void LiveView::note_suspended(const InitialContactReport& start) noexcept {
   looped_->suspended_count = 0;
   for (const InitialContact& pair : start.pairs) {
     const bool suspended = pair.state == InitialContactState::filtered;
@@ -150,7 +200,7 @@ void LiveView::started(const InitialContactReport& start) noexcept {
 
 void LiveView::after_tick(const TickView& tick) noexcept {
   looped_ = by_number_[tick.segment % kSlots].load(std::memory_order_acquire);
-  if (tick.loop.report().filtered != looped_->suspended_count) started(tick.loop.start());
+  if (tick.loop.report().filtered != looped_->suspended_count) note_suspended(tick.loop.start());
   looped_->maker.fill(tick, frame_);
   frame_.generation = looped_->generation;
   ring_.push(frame_);
@@ -189,6 +239,7 @@ void LiveView::command(const json& command) {
   const std::string what = command.at("do");
   if (what == "lead") return lead(command);
   if (what == "restart") return restart();
+  if (what == "put_down") return put_down();
   if (what == "hold" || what == "remove" || what == "add" || what == "move") return edit(command);
   if (!virtual_time_) throw Error(json(what).dump() + " needs virtual time (--fast)");
   if (what == "pause") {
@@ -214,10 +265,11 @@ std::string LiveView::review(const std::string& script) {
   SceneFile file = file_;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (!parts_.any_held()) throw Error("nothing is held");
     file.scene.parts = parts_.in_scene();
     // The scene's script is of the part that the scene holds.
     const Part& held = parts_.all()[parts_.held()];
-    if (held.name != held_part(file_.scene).name) file.script = StylusScript({{0, held.pose}});
+    if (loose_ || held.name != held_part(file_.scene).name) file.script = StylusScript({{0, held.pose}});
   }
   return review_(std::move(file), script);
 }
@@ -235,7 +287,7 @@ void LiveView::lead(const json& command) {
   const Pose wanted = {q.normalized(), Vec3(v[0], v[1], v[2])};
   PenSpace space{};
   if (!pen_.read(space)) return;
-  const Pose P = pose_of(space.raw), Y = pose_of(space.Y);
+  const Pose P = pose_of(space.raw.data()), Y = pose_of(space.Y.data());
   const Vec3 center(space.center.data());
   // The hand is where it would be if it had brought the part there: the mapping from pen to part is rigid, but for
   // scale.
@@ -251,6 +303,7 @@ void LiveView::lead(const json& command) {
 void LiveView::edit(const json& command) {
   const std::lock_guard<std::mutex> one(editing_);
   std::unique_lock<std::mutex> lock(mutex_);
+  if (!parts_.any_held()) return edit_at_rest(command, lock);
   PageParts parts = parts_;
   const std::shared_ptr<Session> session = session_;
   const std::uint64_t generation = generation_ + 1;
@@ -271,10 +324,33 @@ void LiveView::edit(const json& command) {
   if (session == session_) show(std::move(parts), std::move(segment));
 }
 
+/// No session is in the way. Holding a part asks for one, and waits until it has begun.
+void LiveView::edit_at_rest(const json& command, std::unique_lock<std::mutex>& lock) {
+  PageParts parts = parts_;
+  parts.edit(command);
+  show(std::move(parts));
+  if (!parts_.any_held()) return;
+  start_ = Start::asked;
+  changed_.notify_all();
+  while (start_ == Start::asked && !stop_) changed_.wait_for(lock, kEndPoll);
+  if (std::exchange(start_, Start::none) == Start::refused) throw Error("It cannot be held: " + refusal_);
+}
+
+/// The session ends, and what was held stays where it is.
+void LiveView::put_down() {
+  if (!loose_) throw Error("the scene holds a part; hold another one instead");
+  const std::lock_guard<std::mutex> one(editing_);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!parts_.any_held()) throw Error("nothing is held");
+  request_ = Request::put_down;
+  stop_ = true;
+}
+
 void LiveView::restart() {
   if (!restartable_) throw Error("a recorded run cannot restart");
   const std::lock_guard<std::mutex> lock(mutex_);
-  requested_ = true;
+  if (!parts_.any_held()) return show(PageParts(file_.scene));
+  request_ = Request::restart;
   stop_ = true;
 }
 

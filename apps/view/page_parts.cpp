@@ -41,6 +41,12 @@ std::size_t PageParts::held() const {
   return static_cast<std::size_t>(held - parts_.begin());
 }
 
+void PageParts::put_down(const Pose& X) {
+  Part& part = parts_[held()];
+  part.held = false;
+  part.pose = X;
+}
+
 void PageParts::edit(const nlohmann::json& command) {
   const std::string what = command.at("do");
   const auto number = whole_number<std::int64_t>(command.at("part"));
@@ -55,7 +61,7 @@ void PageParts::edit(const nlohmann::json& command) {
   if (removed_[i]) throw Error(part.name + " is not in the scene; add it first");
   if (part.held) throw Error(part.name + " is held, so the pen moves it; hold another part first");
   if (what == "hold") {
-    parts_[held()].held = false;
+    if (any_held()) parts_[held()].held = false;
     part.held = true;
   } else if (what == "remove") {
     removed_[i] = true;

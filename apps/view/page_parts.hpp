@@ -26,7 +26,10 @@ class PageParts {
 
   const std::vector<Part>& all() const { return parts_; }
   bool removed(std::size_t part) const { return removed_[part]; }
-  std::size_t held() const;
+  bool any_held() const { return held() < parts_.size(); }
+  std::size_t held() const;  ///< the number of parts when none is
+  /// Nothing is held any more; what was stays at `X`.
+  void put_down(const Pose& X);
 
  private:
   std::vector<Part> parts_;

@@ -128,6 +128,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   // After a change of the scene the script may be of another part.
   if (recording.info.continues.empty()) add_script(bundle, file.script);
   bundle.about["mode"] = "replay";
+  bundle.about["up"] = to_string(file.up);
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
   bundle.about["title"] = path.substr(path.find_last_of('/') + 1);

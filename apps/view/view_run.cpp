@@ -28,25 +28,34 @@ void wait_for_page(const Server& server, const std::atomic<bool>& stop) {
 
 }  // namespace
 
-RunSummary run_viewed(const SceneFile& file, RunSettings settings, const Address& address, std::atomic<bool>& stop,
-                      const std::function<bool(const Server&)>& announce, const ScriptReview& review) {
-  LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop, review);
+std::optional<RunSummary> run_viewed(SceneFile& file, RunSettings settings, const Address& address,
+                                     std::atomic<bool>& stop, const std::function<bool(const Server&)>& announce,
+                                     const ScriptReview& review) {
+  LiveView live(file, !settings.real_time, settings.record.empty(), settings.device.empty(), stop, review,
+                settings.guide_path);
   Server server(address, live);
-  if (announce(server) && settings.real_time) wait_for_page(server, stop);
+  const bool held = PageParts(file.scene).any_held();
+  if (announce(server) && settings.real_time && held) wait_for_page(server, stop);
   if (settings.seconds == 0) settings.seconds = kForever;
   settings.observer = &live;
   settings.on_start = [&live, told = settings.on_start](const RunStart& start) {
     live.started(start.parts);
     if (told) told(start);
   };
-  for (;;) {
+  std::optional<RunSummary> last;
+  while (std::optional<SceneFile> run = live.next()) {
+    file = *std::move(run);
     settings.guide = &live.guide();
     settings.edits = &live.edits();
-    const RunSummary summary = run_session(file, settings);
-    if (!live.take_request()) return summary;
-    live.begin();
-    stop = false;
+    try {
+      last = run_session(file, settings);
+    } catch (const std::exception& e) {
+      if (!live.refused(e.what())) throw;
+      continue;
+    }
+    if (!live.again()) break;
   }
+  return last;
 }
 
 }  // namespace tegotae::view

@@ -45,7 +45,10 @@ std::string name_of(const cgltf_node& node) {
 
 class GltfReader {
  public:
-  GltfReader(const std::string& path, const cgltf_data& data) : path_(path), data_(data) { file_.unit = "m"; }
+  GltfReader(const std::string& path, const cgltf_data& data) : path_(path), data_(data) {
+    file_.unit = "m";
+    file_.up = UpAxis::y;
+  }
 
   PartFile read() {
     if (data_.animations_count > 0) file_.notes.push_back("animations are not read: parts stand where the nodes are");

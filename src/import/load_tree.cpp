@@ -40,6 +40,7 @@ class TreeReader {
   Assembly read() {
     if (options_.unit) file_.unit = *options_.unit;
     assembly_.unit = file_.unit;
+    assembly_.up = file_.up;
     assembly_.notes = std::move(file_.notes);
     for (const PartFile::Placed& part : file_.parts) add(part);
     return std::move(assembly_);

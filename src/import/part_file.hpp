@@ -25,7 +25,8 @@ struct PartFile {
   };
   std::vector<TriangleMesh> meshes;
   std::vector<Placed> parts;
-  std::string unit;                ///< "m", "mm", ...
+  std::string unit;  ///< "m", "mm", ...
+  UpAxis up = UpAxis::z;
   std::vector<std::string> notes;  ///< what is not as the file says, a line each
 };
 

@@ -134,6 +134,11 @@ std::string one_of(const TomlTable& t, const char* key, const std::string& other
   t.fail(key, "unknown " + std::string(key) + " " + value + " (known: " + list + ")");
 }
 
+UpAxis read_up(const TomlTable& t) {
+  const std::string axis = one_of(t, "up", to_string(UpAxis::z), {"x", "y", "z"});
+  return axis == "x" ? UpAxis::x : axis == "y" ? UpAxis::y : UpAxis::z;
+}
+
 void read_contact(const TomlTable& t, ContactSettings& s) {
   if (t.has("l_min")) s.l_min = t.positive("l_min", 0);
   if (t.has("l_0")) s.l_0 = t.positive("l_0", 0);
@@ -237,8 +242,10 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   check_is_scene(path);  // before all of it is read
   std::string text = read_file(path);
   const toml::table parsed = parse_toml(text, path);
-  const TomlTable top(parsed, path, "",
-                      {"unit", "weight", "gravity", "part", "contact", "friction", "coupling", "safety", "device"});
+  const TomlTable top(
+      parsed, path, "",
+      {"unit", "up", "weight", "gravity", "part", "contact", "friction", "coupling", "safety", "device"});
+  const UpAxis up = read_up(top);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::vector<std::string> files = {path};
   Scene scene;
@@ -266,7 +273,7 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   if (!script) script = rest(scene);
   scene.scale = read_scale(device);
   if (!coupling.has("torsional_stiffness")) scene.max_torsional_stiffness = torsion_bound(settings, scene.coupling);
-  return {path, std::move(scene), settings, std::move(*script), safety, std::move(text), std::move(files)};
+  return {path, std::move(scene), settings, std::move(*script), safety, std::move(text), std::move(files), up};
 }
 
 }  // namespace tegotae

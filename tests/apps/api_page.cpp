@@ -49,7 +49,8 @@ const Task kMap[] = {
     {"run a scene file, record it, watch it", "session/session.hpp record/recorder.hpp record/recording.hpp"},
     {"bring a resolver", "resolve/kind.hpp resolve/resolver.hpp lp/low_rank_matrix.hpp lp/friction_problem.hpp"},
     {"poses, errors, clock, version",
-     "core/pose.hpp core/error.hpp core/clock.hpp core/constants.hpp core/version.hpp core/export.hpp"},
+     "core/pose.hpp core/error.hpp core/clock.hpp core/constants.hpp core/up_axis.hpp core/version.hpp "
+     "core/export.hpp"},
     {"start large scenes sooner", "narrowphase/hierarchy_cache.hpp"},
 };
 

@@ -231,6 +231,7 @@ TEST_CASE("shaft and cover of a STEP assembly are taken out and put back, also t
   INFO(gltf.err);
   REQUIRE(gltf.code == 0);
   CHECK(gltf.out.find("7 parts, 5 meshes") != std::string::npos);
+  CHECK(load_scene(folder / "gltf/scene.toml", {{}, false, {}}).up == UpAxis::y);
   check_shaft(folder, folder / "gltf/scene.toml");
   check_cover(folder, folder / "gltf/scene.toml");
 }

@@ -42,10 +42,8 @@ void look(view::LiveView& view, std::atomic<bool>& stop) {
   const auto& speed = status.at("speed");
   require(speed.is_null() || (speed.get<double>() >= 0.01 && speed.get<double>() <= 10), "the speed is in its range");
   require(status.at("paused").is_boolean(), "it is paused or not");
-  if (view.take_request()) {
-    require(stop, "a new session ends the old one");
-    stop = false;
-  }
+  const bool ended = stop;
+  require(view.again() == ended, "what the page wants instead of a session ends that");
   require(!stop, "nothing but a new session ends this one");
 }
 

@@ -93,6 +93,7 @@ TEST_CASE("a glTF tree keeps names, groups, instances, places and colors", "[ass
     INFO(file);
     const Assembly a = read_assembly(folder / file);
     CHECK(a.unit == "m");
+    CHECK(a.up == UpAxis::y);
     REQUIRE(a.parts.size() == 4);
     CHECK(a.parts[0].name == "Stein");
     CHECK(a.parts[1].name == "Stein_3");  // Stein_2 is taken

@@ -87,6 +87,7 @@ TEST_CASE("a scene of parts and a script loads with every default", "[scene_file
   CHECK(peg.pose.q.coeffs() == Quat::Identity().coeffs());
   CHECK(peg.mesh == block.mesh);  // one file, one unit: one mesh in memory
   CHECK(peg.mesh->triangles.size() == 4);
+  CHECK(file.up == UpAxis::z);
   CHECK(!file.scene.contact.l_min);
   CHECK(!file.scene.contact.l_0);
   CHECK(file.scene.coupling.stiffness == CouplingSettings().stiffness);
@@ -98,6 +99,7 @@ TEST_CASE("a scene of parts and a script loads with every default", "[scene_file
 TEST_CASE("every key of a scene file arrives", "[scene_file]") {
   const Folder folder;
   const SceneFile file = folder.load(R"(
+up = "x"
 [[part]]
 name = "a"
 mesh = "tet.obj"
@@ -149,6 +151,7 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(a_max == Approx(0.1));
   CHECK(b_max == Approx(0.254));
   const ContactSettings& contact = file.scene.contact;
+  CHECK(file.up == UpAxis::x);
   CHECK(contact.l_min == 1e-6);
   CHECK(contact.l_0 == 2e-6);
   CHECK(contact.resolver == ResolverKind::lp);
@@ -260,6 +263,7 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       {good + "scale = 1000\n", "scene.toml:12: device.scale: must be from 0.01 to 100"},
       // Wrong types.
       {replaced(good, "\"mm\"", "1"), "scene.toml:1: unit: must be a string"},
+      {"up = \"w\"\n" + good, "scene.toml:1: up: unknown up w (known: x, y, z)"},
       {replaced(good, "\"block\"", "7"), "scene.toml:3: part.name: must be a string"},
       {replaced(good, "held = true", "held = 1"), "scene.toml:8: part.held: must be true or false"},
       {replaced(good, "[0, 0, 0.1]", "[0, 0]"), "scene.toml:9: part.position: must be a list of 3 numbers"},

@@ -1,47 +1,17 @@
 // The first hour at the page: open it, look, measure, hold, move, report; on three widths, light and dark, the narrowest
 // with a finger. With TEGOTAE_PICTURES=FOLDER it leaves a picture of each.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { folder, test } from "./cases.mjs";
-import { drag, pushesBack, writeFloor } from "./floor.mjs";
-import { open, patience, serve, state, until } from "./program.mjs";
+import { pushesBack, writeFloor } from "./floor.mjs";
+import { open, serve, state, until } from "./program.mjs";
+import { at, dragTo, figure, fits, nothingComplains, openOn, picture, press, reported, saved, size } from "./screens.mjs";
 
 const screens = [
   { width: 1366, height: 768, dark: false },
   { width: 768, height: 1024, dark: true },
   { width: 390, height: 844, dark: false, touch: true },
 ];
-
-async function openOn(browser, url, { width, height, dark, touch = false }) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light", hasTouch: touch, acceptDownloads: true });
-  const page = await open({ newPage: () => context.newPage() }, url, { play: true });
-  page.tapAt = (at) => (touch ? page.touchscreen.tap(...at) : page.mouse.click(...at));
-  page.narrow = width <= 1000;
-  page.panel = async (name) => page.narrow && (await press(page, `#tabs [data-panel="${name}"]`));
-  return { page, context };
-}
-
-// Without Playwright's waiting for two pictures in which a button stands still: software rendering on a busy machine may
-// take longer than its patience.
-const press = (page, selector) => page.click(selector, { force: true });
-
-const at = (page, point) => page.evaluate((p) => window.__tegotae.project(p), point);
-const size = (page, selector) => page.evaluate((s) => document.querySelector(s).getBoundingClientRect().toJSON(), selector);
-
-async function nothingComplains(page) {
-  assert.equal(await page.isVisible("#message"), false, "no error is the first thing one sees");
-  assert.equal(await page.textContent("#force"), "");
-  assert.deepEqual(page.complaints, []);
-}
-
-// The picture has the width, and nothing sticks out.
-async function fits(page, screen) {
-  const canvas = await size(page, "#stage canvas");
-  assert.ok(canvas.width >= (page.narrow ? 0.99 : 0.55) * screen.width, `the picture is ${canvas.width} px wide`);
-  assert.ok(canvas.height >= 0.4 * screen.height, `and ${canvas.height} px high`);
-  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight));
-}
 
 async function look(page) {
   await page.click("#views button:nth-child(2)");
@@ -69,8 +39,6 @@ async function look(page) {
   await page.keyboard.press("7");
   await page.keyboard.press("f");
 }
-
-const figure = (s, name) => s.measured.find(([what]) => what === name)?.[2];
 
 // The block is a cube of 10 mm whose middle is at the pose that the program reports; the floor's top is at z = 0.
 async function measure(page) {
@@ -112,24 +80,11 @@ async function hold(page) {
   await page.panel("");
 }
 
-// One finger does what the mouse does.
-async function dragByFinger(page, context, below) {
-  const session = await context.newCDPSession(page);
-  const center = await page.evaluate(() => window.__tegotae.center());
-  const [from, to] = [await at(page, center), await at(page, [center[0], center[1], center[2] - below])];
-  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x, y })) });
-  await touch("touchStart", [from]);
-  for (let i = 1; i <= 12; ++i) {
-    await touch("touchMove", [[from[0], from[1] + ((to[1] - from[1]) * i) / 12]]);
-    await page.waitForTimeout(30);
-  }
-  return () => touch("touchEnd", []);
-}
-
-async function move(page, context, screen) {
+async function move(page, context) {
   await page.keyboard.press("1");
   await until(page, (s) => Math.abs(s.camera[0]) < 1e-6 && s.frame.forceOn);
-  const letGo = screen.touch ? await dragByFinger(page, context, 0.008) : (await drag(page, 0.008), () => page.mouse.up());
+  const center = await page.evaluate(() => window.__tegotae.center());
+  const letGo = await dragTo(page, context, center, [center[0], center[1], center[2] - 0.008]);
   const pressed = await until(page, pushesBack);
   assert.ok(pressed.frame.x[2] >= 0.005, "the block stays over the floor");
   await letGo();
@@ -150,25 +105,19 @@ async function askContact(page) {
   await until(page, (s) => s.frame.forceOn && s.force < 0.1);
 }
 
-async function pictures(page, name) {
-  if (!process.env.TEGOTAE_PICTURES) return;
-  await page.waitForTimeout(1500);
-  await page.screenshot({ path: join(process.env.TEGOTAE_PICTURES, `${name}.png`), timeout: patience });
-}
-
 for (const screen of screens) {
   const name = `${screen.width}-${screen.dark ? "dark" : "light"}`;
   test(`the first hour, ${name}`, async (browser) => {
     const program = await serve("tegotae", "run", writeFloor(), "--view", "--fast");
-    const { page, context } = await openOn(browser, program.url, screen);
+    const { page, context } = await openOn(browser, program.url, screen, { play: true });
     await fits(page, screen);
     await nothingComplains(page);
     await look(page);
     await measure(page);
     await hold(page);
-    await move(page, context, screen);
+    await move(page, context);
     if (!page.narrow) await askContact(page);
-    await pictures(page, `page-${name}`);
+    await picture(page, `page-${name}`);
     // The other light, and the panels.
     const light = (await state(page)).background;
     await press(page, "#theme");
@@ -187,19 +136,12 @@ for (const screen of screens) {
 
 // What the mouse did, as a script and as a report.
 async function report(page) {
-  const saved = async (button, file) => {
-    const saving = page.waitForEvent("download", { timeout: 4 * patience });
-    await press(page, button);
-    const download = await saving;
-    await download.saveAs(file);
-    return readFileSync(file, "utf8");
-  };
-  const rows = (await saved("#save", join(folder, "hand.csv"))).trim().split("\n");
+  const rows = (await saved(page, "#save", join(folder, "hand.csv"))).trim().split("\n");
   assert.equal(rows[0], "t,px,py,pz,qw,qx,qy,qz");
   const heights = rows.slice(1).map((row) => Number(row.split(",")[3]));
   assert.ok(Math.min(...heights) < 0.005, "the hand was led below where the block can be");
-  const html = await saved("#review", join(folder, "hand.html"));
-  const about = Buffer.from(html.match(/id="data">([^<]+)</)[1], "base64").toString("latin1");
+  const html = await saved(page, "#review", join(folder, "hand.html"));
+  const about = reported(html);
   assert.ok(about.includes('"headline"') && about.includes('"clearance"'), "a report with a verdict");
 }
 

@@ -1,7 +1,10 @@
 // Live runs in a real browser.
 import assert from "node:assert/strict";
-import { scene, test } from "./cases.mjs";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { folder, scene, test } from "./cases.mjs";
 import { drag, pushesBack, writeFloor } from "./floor.mjs";
+import { orbit, ringTriangles, writeRings } from "./rings.mjs";
 import { open, plotted, serve, state, until } from "./program.mjs";
 
 async function lookFromFront(page) {
@@ -223,6 +226,47 @@ test("virtual time: stands, steps, goes on", async (browser) => {
   const still = await state(page);
   assert.equal(still.frame.tick, stood.frame.tick);
   assert.equal(still.drawn, stood.drawn, "nothing is drawn while nothing changes");
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("the path of a guide is drawn in a color of its own while its part is held", async (browser) => {
+  const path = join(folder, "way.csv");
+  writeFileSync(path, "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.008,1,0,0,0\n1,0,0,0.02,1,0,0,0\n2,0.01,0,0.02,1,0,0,0\n");
+  const program = await serve("tegotae", "run", writeFloor(), "--guide", path, "--view", "--fast");
+  const page = await open(browser, program.url, { play: true });
+  const drawn = await until(page, (s) => s.guide.points === 3);
+  assert.equal(new Set([drawn.guide.color, ...drawn.guide.others]).size, 1 + new Set(drawn.guide.others).size, "no contact, pair, force or torque has it");
+  await page.uncheck("#layers label:last-child input");
+  await until(page, (s) => s.guide.points === 0);
+  await page.check("#layers label:last-child input");
+  await page.click("#parts li:nth-child(1) .do");
+  await until(page, (s) => s.parts[0].held && s.guide.points === 0);
+  await page.click("#undo");
+  await until(page, (s) => s.parts[1].held && s.guide.points === 3);
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+  assert.equal(await program.stop(), 0);
+});
+
+test("300 000 triangles: while one orbits fewer triangles and pixels are drawn, at rest all of them", async (browser) => {
+  const program = await serve("tegotae", "view", writeRings(folder));
+  const page = await open(browser, program.url, { runs: false });
+  const rest = (s) => s.last && !s.last.coarse;
+  const fine = await until(page, rest);
+  assert.ok(fine.last.triangles >= ringTriangles, `${fine.last.triangles} triangles`);
+  await orbit(page, 2000);
+  const moving = await state(page);
+  const drawn = moving.drawn - fine.drawn;
+  assert.ok(drawn > 2 && moving.coarse - fine.coarse >= drawn - 1, `${moving.coarse} of ${moving.drawn} pictures are coarse`);
+  const coarse = await page.evaluate(() => new Promise((done) => {
+    dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight" }));
+    requestAnimationFrame(() => requestAnimationFrame(() => done(window.__tegotae.state.last)));
+  }));
+  assert.ok(coarse.coarse && coarse.triangles < 0.04 * ringTriangles, `${coarse.triangles} triangles while it moves`);
+  assert.ok(coarse.pixels < 0.37 * fine.last.pixels, `${coarse.pixels} of ${fine.last.pixels} pixels while it moves`);
+  assert.deepEqual((await until(page, rest)).last, fine.last, "at rest all of it again");
+  assert.deepEqual(page.complaints, []);
   await page.close();
   assert.equal(await program.stop(), 0);
 });

@@ -37,13 +37,14 @@ export async function serve(program, ...options) {
 }
 
 export async function run(program, ...options) {
-  const child = spawn(`${bin}/${program}`, options, { stdio: ["ignore", "ignore", "inherit"] });
+  const child = spawn(program.includes("/") ? program : `${bin}/${program}`, options, { stdio: ["ignore", "ignore", "inherit"] });
   const code = await new Promise((resolve) => child.on("exit", resolve));
   if (code !== 0) throw new Error(`${program} ${options.join(" ")} ended with ${code}`);
 }
 
-// A page that notes every complaint in `page.complaints`. `play`: a run in virtual time goes on.
-export async function open(browser, url, { dark = false, width = 1366, height = 680, play = false } = {}) {
+// A page that notes every complaint in `page.complaints`. `play`: a run in virtual time goes on. `runs`: there is a run,
+// or a recording of one.
+export async function open(browser, url, { dark = false, width = 1366, height = 680, play = false, runs = true } = {}) {
   const page = await browser.newPage({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
   page.setDefaultTimeout(patience);
   page.complaints = [];
@@ -51,7 +52,7 @@ export async function open(browser, url, { dark = false, width = 1366, height = 
   page.on("pageerror", (error) => page.complaints.push(String(error.stack)));
   await page.goto(url);
   if (play) await page.click("#play");
-  await until(page, (s) => s.frame);
+  await until(page, (s) => (runs ? s.frame : s.status.generation));
   return page;
 }
 

@@ -79,6 +79,17 @@ async function narrow() {
   await picture(page, "view-narrow.png");
 }
 
+// The peg at rest over its hole, and the way that a guide would draw it.
+async function guide() {
+  const program = await serve("tegotae", "run", scene, "--guide", `${root}models/insert_0.94.csv`, "--view", "--fast");
+  const page = await open(browser, program.url, { width: 1100, height: 620, play: true });
+  await page.click("#play");
+  await page.keyboard.press("1");
+  for (const key of ["ArrowUp", "ArrowUp", "ArrowRight", "ArrowRight", "f"]) await page.keyboard.press(key);
+  await picture(page, "view-guide.png");
+  await program.stop();
+}
+
 async function review() {
   const recording = join(folder, "peg.csv"), file = join(folder, "review.html");
   await run("tegotae", "run", scene, "--fast", "--record", recording);
@@ -93,6 +104,7 @@ async function review() {
 await light();
 await dark();
 await narrow();
+await guide();
 await review();
 await browser.close();
 rmSync(folder, { recursive: true });

@@ -153,7 +153,7 @@ TEST_CASE("anything can be looked at: a mesh, a scene that holds nothing, a reco
     CHECK(ask(s.port, get(s, "/scene")) == 200);
     s.interrupt();
     CHECK(s.wait() == 0);
-    CHECK((s.out().find("take another one in the page") != std::string::npos) == (file != "r.csv"));
+    CHECK((s.out().find("Nothing is held: pick a part in the page") != std::string::npos) == (file != "r.csv"));
     // What was made of a mesh is gone with the page.
     for (const auto& left : std::filesystem::directory_iterator(temporary / ""))
       CHECK(left.path().filename().string().rfind("tegotae-view", 0) != 0);

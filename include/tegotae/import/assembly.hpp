@@ -9,6 +9,7 @@
 
 #include "tegotae/core/export.hpp"
 #include "tegotae/core/pose.hpp"
+#include "tegotae/core/up_axis.hpp"
 #include "tegotae/mesh/color.hpp"
 #include "tegotae/mesh/triangle_mesh.hpp"
 
@@ -28,6 +29,7 @@ struct Assembly {
   std::vector<std::shared_ptr<const TriangleMesh>> shapes;  ///< distinct; named for people, welded, m, own frame
   std::vector<AssemblyPart> parts;                          ///< leaves of the tree, in the order of the file
   std::string unit;                ///< unit of the file, or the one in which its lengths were read: "m", "mm", ...
+  UpAxis up = UpAxis::z;           ///< y for glTF, whose format says so; z where no format does
   std::vector<std::string> notes;  ///< deviations of the assembly from its file, one line each
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tegotae/core/export.hpp"
+#include "tegotae/core/up_axis.hpp"
 #include "tegotae/device/script.hpp"
 #include "tegotae/device/simulated_device.hpp"
 #include "tegotae/import/load.hpp"
@@ -24,6 +25,7 @@ struct SceneFile {
   /// All files that were read: the scene file itself, and the meshes and the script that it names. A recording replaces
   /// none of them.
   std::vector<std::string> files{};
+  UpAxis up = UpAxis::z;  ///< as the file says; for those who show the scene
 };
 
 /// Reads one mesh file, whose unit has this length in m: load_mesh, or load_mesh_isolated for files of unknown origin.

@@ -22,10 +22,16 @@ export class Behind {
     this.stage.seeThrough(new Set());
   }
 
+  // No part is held, so none has contacts.
+  rest() {
+    this.frame = null;
+    this.clear();
+  }
+
   // Also where nothing but the eye has moved, and until what is seen through no longer has to be.
   show(frame, now = performance.now()) {
     this.frame = frame;
-    if (!this.on || this.waiting) return;
+    if (!this.on || !frame || this.waiting) return;
     if (now - this.looked < periodMs) return this.later();
     this.looked = now;
     if (this.stage.section !== null || this.stage.explosion > 0) return this.clear();

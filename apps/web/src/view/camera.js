@@ -131,8 +131,8 @@ export class Viewpoint {
     return distance;
   }
 
-  lookAtHeld() {
-    this.look(null, new THREE.Box3().setFromObject(this.stage.held.group).expandByScalar(this.stage.held.radius * 0.5));
+  lookAt(part) {
+    this.look(null, new THREE.Box3().setFromObject(part.group).expandByScalar(part.radius * 0.5));
   }
 
   orbit(right, up) {

@@ -22,11 +22,13 @@ function checkbox(label, checked, change) {
   return line;
 }
 
-export function showLayers(overlay, behind) {
+// guide: null where none pulls.
+export function showLayers(overlay, behind, guide) {
   const names = { contacts: "Contacts and normals", pairs: "Nearest features", forces: "Contact forces", arrows: "Force and torque" };
   $("layers").replaceChildren(
     ...Object.entries(names).map(([layer, name]) => checkbox(name, overlay.enabled[layer], (on) => overlay.enable(layer, on))),
     checkbox("Contacts through parts", behind.on, (on) => behind.set(on)),
+    ...(guide ? [checkbox("Guide", guide.wanted, (on) => guide.enable(on))] : []),
   );
 }
 

@@ -8,7 +8,8 @@ const $ = (id) => document.getElementById(id);
 
 // What takes a command back, given what was before.
 function inverse(command, held) {
-  if (command.do === "hold") return { do: "hold", part: held };
+  if (command.do === "hold" && held < 0) return { do: "put_down" };
+  if (command.do === "hold" || command.do === "put_down") return { do: "hold", part: held };
   if (command.do === "remove") return { do: "add", part: command.part };
   if (command.do === "add") return { do: "remove", part: command.part };
   const [x, y, z] = command.turn;
@@ -20,8 +21,9 @@ function inverse(command, held) {
 
 export class Parts {
   // edit(command): a promise that throws what the program says against it; null where nothing can be changed.
-  constructor(stage, edit, onMessage) {
-    Object.assign(this, { stage, onMessage, selected: null, busy: false, edit, undoable: [], isolated: null });
+  // loose: parts can be put down. onShow(): something of what this shows has changed.
+  constructor(stage, edit, { loose = false, onMessage, onShow }) {
+    Object.assign(this, { stage, onMessage, onShow, loose, selected: null, busy: false, edit, undoable: [], isolated: null });
     this.tree = new Tree($("parts"), $("search"), {
       item: (part, i) => this.row(part, i),
       onShow: (numbers, visible) => this.setVisible(numbers, visible),
@@ -31,7 +33,7 @@ export class Parts {
     $("show-all").addEventListener("click", () => this.showAll());
     for (const id of ["hold", "remove", "move", "undo"]) $(id).hidden = !edit;
     if (!edit) return;
-    $("hold").addEventListener("click", () => this.send({ do: "hold", part: this.selected }));
+    $("hold").addEventListener("click", () => this.hold());
     $("remove").addEventListener("click", () => this.send({ do: this.stage.parts[this.selected].removed ? "add" : "remove", part: this.selected }));
     $("undo").addEventListener("click", () => this.undo());
     $("move").addEventListener("submit", (event) => {
@@ -46,6 +48,14 @@ export class Parts {
     $("undo").disabled = this.busy || this.undoable.length === 0;
     $("show-all").disabled = this.stage.parts.every((part) => part.visible && !part.faded);
     this.showSelected();
+    this.onShow();
+  }
+
+  // The selected part is taken, or put down when it is held.
+  hold() {
+    const { held, removed } = this.stage.parts[this.selected] ?? { removed: true };
+    if (!this.edit || this.busy || removed || (held && !this.loose)) return;
+    this.send(held ? { do: "put_down" } : { do: "hold", part: this.selected });
   }
 
   setVisible(numbers, visible) {
@@ -96,10 +106,11 @@ export class Parts {
     $("selected-name").textContent = [...part.path, part.name].join(" › ");
     $("isolate").setAttribute("aria-pressed", String(this.isolated === this.selected));
     $("fade").setAttribute("aria-pressed", String(part.faded));
-    $("selected-note").textContent = !this.edit ? "" : part.held ? "The pen moves it. Hold another part to move or remove it here." :
+    $("selected-note").textContent = !this.edit ? "" : part.held ? `The pen moves it. ${this.loose ? "Put it down" : "Hold another part"} to move or remove it here.` :
       part.removed ? "Removed: neither shown nor felt." : "Hidden parts are still felt; removed ones are not.";
     $("remove").textContent = part.removed ? "Add back" : "Remove";
-    $("hold").disabled = part.held || part.removed || this.busy;
+    $("hold").textContent = part.held && this.loose ? "Put down" : "Hold";
+    $("hold").disabled = (part.held && !this.loose) || part.removed || this.busy;
     $("remove").disabled = part.held || this.busy;
     for (const field of $("move").elements) field.disabled = part.held || part.removed || this.busy;
   }

@@ -39,6 +39,12 @@ export class ForceNotice {
     this.place.classList.toggle("bad", !frame.forceOn && !frame.waiting);
   }
 
+  // There is none to speak of; the next run begins anew.
+  rest() {
+    Object.assign(this, { off: null, late: null, back: null, seenOn: false });
+    this.place.textContent = "";
+  }
+
   text(frame, reasons, hand) {
     const why = frame.waiting && (frame.reason === none || frame.reason === software) ? "" : `: ${reasons[frame.reason] ?? "unknown"}`;
     if (!frame.waiting) return `The force is off${why}.`;

@@ -25,6 +25,7 @@ export class Hand {
     this.goal = null;
     this.grip = null;
     this.keys = false;
+    this.frame = null; // that there is, is of another part
     this.changed("");
   }
 

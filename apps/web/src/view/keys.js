@@ -11,11 +11,11 @@ export const help = [
     ["left drag or finger on the held part", "move it in the plane of the screen; let go to stop pressing"],
     ["Shift + left drag on it, or G before", "turn it"],
     ["wheel while dragging", "move it away or nearer"],
-    ["H", "hold it by keys: arrows and Page Up / Down move, with Shift turn; Esc lets go"],
+    ["H", "hold the selected part where none is held; then hold it by keys: arrows and Page Up / Down move, with Shift turn; Esc lets go"],
   ]],
   ["Looking", [
     ["1 … 7", "front, back, left, right, top, bottom, isometric"],
-    ["F, C", "show everything, show the held part"],
+    ["F, C", "show everything, show the held part (or the selected one)"],
     ["arrows, Shift + arrows, + −", "orbit, pan, zoom"],
     ["O, U", "with or without perspective, another axis up"],
     ["S, [ and ]", "section plane: across x, y, z, off; move it. Its handle: drag, with Shift tilt"],

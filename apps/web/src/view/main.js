@@ -10,6 +10,7 @@ import { addHelp, addPanels, addViews, listenToClicks, listenToKeys, showLayers 
 import { Parts } from "./edit.js";
 import { Ended } from "./ended.js";
 import { ForceNotice } from "./force.js";
+import { GuideLine } from "./guide.js";
 import { Hand } from "./hand.js";
 import { Live } from "./live.js";
 import { Measure } from "./measure.js";
@@ -17,6 +18,7 @@ import { Numbers } from "./numbers.js";
 import { Overlay } from "./overlay.js";
 import { Memory, Recorded, Remembered } from "./playback.js";
 import { Plots } from "./plots.js";
+import { Rest } from "./rest.js";
 import { addReview, saveScript, stylusScript } from "./review.js";
 import { Section } from "./section.js";
 import { Stage } from "./stage.js";
@@ -33,11 +35,13 @@ const viewpoint = new Viewpoint(stage);
 // Clicks come before whoever drags.
 listenToClicks(stage.canvas, click);
 const overlay = new Overlay(stage);
+const guide = new GuideLine(stage);
 const behind = new Behind(stage);
 const compass = new Compass(viewpoint, document.querySelector("#compass svg"), document.querySelector("#compass .bar"));
 const section = new Section(stage, viewpoint, () => lastNormal);
 const measure = new Measure(stage, viewpoint, $("measured"), (on) => {
   $("measure").setAttribute("aria-pressed", String(on));
+  rest.show(!stage.held && !on);
   allowHand();
 });
 const contact = new ContactCard(stage, $("contact"));
@@ -46,7 +50,7 @@ const force = new ForceNotice($("force"));
 const memory = new Memory();
 const hand = new Hand(stage, viewpoint, { lead: (pose) => { led = true; live.send({ do: "lead", pose, generation: about.generation }); }, changed: showHand });
 // player: what is played back instead of what is live.
-let parts, plots, ended = null, live = null, player = null, about = null, frame = null, frames = 0, status = {}, led = false, lastNormal = null;
+let parts, plots, rest, ended = null, live = null, player = null, about = null, frame = null, frames = 0, status = {}, led = false, lastNormal = null;
 
 stage.onDraw = () => {
   compass.show();
@@ -59,12 +63,15 @@ function showMessage(text) {
   $("message").hidden = !text;
 }
 
+// Fingers have neither Shift nor a wheel.
+const fingers = matchMedia("(pointer: coarse)").matches;
+
 function showHand(what) {
   stage.canvas.classList.toggle("grabbing", what === "drag");
   $("hand").textContent = {
-    drag: hand.turns ? "Turns the part; G: moves it" : "Shift turns, the wheel moves away or nearer",
+    drag: fingers ? "" : hand.turns ? "Turns the part; G: moves it" : "Shift turns, the wheel moves away or nearer",
     keys: "Holding by keys: arrows, Page Up / Down, Shift turns, Esc lets go",
-    take: "Drag the blue part. Shift turns it, the wheel moves it away or nearer.",
+    take: fingers ? "Drag the blue part." : "Drag the blue part. Shift turns it, the wheel moves it away or nearer.",
   }[what] ?? "";
 }
 
@@ -114,23 +121,42 @@ function showScene(bundle) {
   allowHand();
   section.apply();
   parts.show();
-  showLayers(overlay, behind);
+  if (about.guide) guide.setScene(bundle.floats(about.guide), stage.held);
+  showLayers(overlay, behind, about.guide ? guide : null);
   const thinned = about.meshes.some((mesh) => mesh.shown < mesh.triangles);
   const total = (key) => about.parts.reduce((sum, part) => sum + about.meshes[part.mesh][key], 0).toLocaleString("en");
   $("notes").textContent = [`${total("triangles")} triangles${thinned ? `, drawn with ${total("shown")}` : ""}`, ...(about.notes ?? [])].join("\n");
 }
 
+// Another part is held, or none: then the page is for looking only.
 function showHeld() {
-  if (!stage.held) return;
-  overlay.setScene(about);
+  const held = stage.held !== null;
+  const rested = held && document.body.classList.contains("rest");
   hand.setScene(about);
+  document.body.classList.toggle("rest", !held);
+  $("near").title = held ? "Show the held part (C)" : "Show the selected part (C)";
+  for (const id of ["save", "review"]) $(id).disabled = !held && live !== null;
+  overlay.hide(!held || stage.explosion > 0);
+  if (!held) {
+    frame = null;
+    behind.rest();
+    force.rest();
+    contact.close();
+    if (document.body.dataset.panel === "right") $("tabs").querySelector('[data-panel=""]').click();
+    $("clock").textContent = "";
+    $("scale").textContent = "";
+    return;
+  }
+  overlay.setScene(about);
+  if (rested) showHand("take");
   $("scale").textContent = `Arrows: ${length(overlay.metersPerNewton)} for 1 N on the pen or of a contact,\n${length(1e-3 * overlay.metersPerNewtonMeter)} for 1 N·mm`;
 }
 
 // The hand is led only in what is live and as it is.
 function allowHand() {
-  hand.enabled = about?.led === true && !player && !measure.on && stage.explosion === 0;
-  $("turns").hidden = about?.led !== true;
+  const leads = about?.led === true && stage.held !== null;
+  hand.enabled = leads && !player && !measure.on && stage.explosion === 0;
+  $("turns").hidden = !leads;
   $("turns").disabled = !hand.enabled;
 }
 
@@ -153,7 +179,12 @@ async function loadParts() {
   if (!next.parts) return;
   if (player) playLive();
   Object.assign(about, next);
-  if (stage.setParts(about.parts)) showHeld();
+  if (stage.setParts(about.parts)) {
+    showHeld();
+    showRun();
+    allowHand();
+  }
+  guide.show();
   // The script's goal is that of the part that it began with.
   plots.goal = about.parts[about.scripted]?.held ? about.goal : null;
   section.apply();
@@ -209,6 +240,7 @@ function setTheme(on) {
   setDark(dark);
   stage.applyTheme();
   overlay.applyTheme();
+  guide.applyTheme();
   measure.draw();
   section.apply();
   parts.show();
@@ -224,7 +256,7 @@ function showRun() {
   $("restart").title = about.restartable ? "Begin the run anew (R)" : "A run that is recorded cannot begin anew";
   $("timeline").hidden = player === null;
   $("live").hidden = live === null;
-  $("mode").textContent = player ? (live ? "Replay" : "Recording") : about.virtual_time ? "Live, virtual time" : "Live";
+  $("mode").textContent = !stage.held ? "Nothing held" : player ? (live ? "Replay" : "Recording") : about.virtual_time ? "Live, virtual time" : "Live";
   $("mode").classList.toggle("live", !player);
   $("speed").replaceChildren(...(player ? speeds.replay : speeds.live).map((factor) => {
     const text = factor === null ? "fastest" : `${factor} ×`;
@@ -235,7 +267,8 @@ function showRun() {
 function explode(factor) {
   $("explode").value = factor;
   stage.explode(factor);
-  overlay.hide(factor > 0);
+  overlay.hide(factor > 0 || !stage.held);
+  guide.show();
   allowHand();
   section.apply();
 }
@@ -265,7 +298,7 @@ function connect() {
   addViews(viewpoint);
   addPanels();
   const buttons = {
-    play: control.play, step: control.step, restart: control.restart, fit: () => viewpoint.look(), near: () => viewpoint.lookAtHeld(), theme: () => setTheme(!dark), ask: help,
+    play: control.play, step: control.step, restart: control.restart, fit: () => viewpoint.look(), near: showPart, theme: () => setTheme(!dark), ask: help,
     parallel: () => setParallel(!viewpoint.parallel), measure: () => measure.toggle(), live: playLive, turns: turnsOnDrag,
   };
   for (const [id, action] of Object.entries(buttons)) $(id).addEventListener("click", action);
@@ -282,7 +315,7 @@ function connect() {
     m: buttons.measure, e: () => explode(stage.explosion > 0 ? 0 : 0.8), g: turnsOnDrag,
     v: () => parts.toggleVisible(), i: () => parts.isolate(), x: () => parts.fade(), a: () => parts.showAll(), "ctrl+z": () => parts.edit && parts.undo(),
     "/": () => $("search").focus(),
-    h: () => hand.toggleKeys(), escape: () => (measure.on ? measure.toggle(false) : hand.letGo()),
+    h: () => (stage.held ? hand.toggleKeys() : parts.hold()), escape: () => (measure.on ? measure.toggle(false) : hand.letGo()),
   };
   for (let i = 0; i < 7; ++i) actions[String(i + 1)] = () => viewpoint.look(i);
   listenToKeys({ actions, viewpoint, hand });
@@ -292,9 +325,15 @@ function connect() {
   });
 }
 
+// The held part, or where none is, the selected one.
+function showPart() {
+  const part = stage.held ?? stage.parts[parts.selected];
+  if (part) viewpoint.lookAt(part);
+}
+
 function takePart() {
   stage.canvas.focus();
-  viewpoint.lookAtHeld();
+  showPart();
   showHand("take");
 }
 
@@ -323,19 +362,20 @@ async function begin() {
     $("save").addEventListener("click", () => memory.frames.length > 1 && saveScript(memory.frames, title));
     if (bundle.about.reviewable) addReview($("review"), () => live.review(stylusScript(memory.frames)), title, showMessage);
   }
-  parts = new Parts(stage, live && ((command) => live.edit(command)), showMessage);
+  parts = new Parts(stage, live && ((command) => live.edit(command)), { loose: bundle.about.loose, onMessage: showMessage, onShow: () => rest.show(!stage.held && !measure.on) });
+  rest = new Rest($("rest"), parts);
   plots = new Plots($("plots"), null, withoutValues(bundle.about), bundle.about.goal ?? null);
   bundle.about.scripted = bundle.about.parts.findIndex((part) => part.held);
   showScene(bundle);
   showRun();
   connect();
-  viewpoint.look(6);
+  setUp(about.up ?? "z");
   ended = new Ended($("ended"), { take: about.led ? takePart : null, again: playAgain, anew: about.restartable ? control.restart : null });
   if (recording) play(new Recorded(bundle, { onFrame: showFrame, onStatus: ({ paused }) => showPaused(paused) }));
   else live.watch();
 }
 
-addTestDoor({ stage, viewpoint, overlay, hand, section, measure, get now() { return { about, parts, plots, player, frame, frames, status }; } });
+addTestDoor({ stage, viewpoint, overlay, guide, hand, section, measure, get now() { return { about, parts, plots, player, frame, frames, status }; } });
 
 begin().catch((error) => {
   showMessage(error.message);

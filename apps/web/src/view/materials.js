@@ -49,11 +49,12 @@ export function partMaterials(number) {
   };
 }
 
-// color: of the part; held: its lines say so; faded: one sees through it; cut: the section plane, or null.
-export function dress({ surface, cut, lines }, { color, held, faded, section }) {
+// color: of the part; held, selected: its lines say so; faded: one sees through it; cut: the section plane, or null.
+export function dress({ surface, cut, lines }, { color, held, selected, faded, section }) {
   surface.color.set(color);
-  lines.color.set(cssColor(held ? "--ghost" : "--edge"));
-  lines.opacity = faded ? 0.35 : 0.6;
+  surface.emissive.set(selected ? cssColor("--selected") : "#000000");
+  lines.color.set(cssColor(held || selected ? "--ghost" : "--edge"));
+  lines.opacity = selected ? 1 : faded ? 0.35 : 0.6;
   cut.uniforms.color.value.set(color).lerp(new THREE.Color(cssColor("--cut")), 0.25);
   cut.uniforms.ink.value.set(cssColor("--edge"));
   cut.uniforms.hatched.value = section ? 0.55 : 0;

@@ -12,6 +12,7 @@ const fixedColors = 5;
 const heavyTriangles = 30_000; // more of them are drawn coarsely while things move
 const coarseTriangles = 9_000; // then, all together
 const restMs = 160; // after the last motion
+const longestGapMs = 1500; // between two pictures of one motion
 // How long (ms) a picture waits for its turn where edges are no longer smoothed while things move, and where they are
 // again. The browser gives turns as fast as pictures get done.
 const slowMs = 45, fastMs = 22;
@@ -41,11 +42,13 @@ export class Stage {
     this.scene.add(this.world);
     this.section = null; // a plane: what is behind it is not drawn
     this.seesThrough = new Set(); // numbers of parts that something must be seen behind
+    this.selected = null; // number of the part in another light
     this.explosion = 0;
     this.drawn = 0; // pictures drawn, for tests
     this.drawnCoarse = 0; // of them
+    this.last = null; // what the newest one was of
     this.scheduled = false;
-    Object.assign(this, { moving: false, movedAt: -Infinity, wait: slowMs, slow: true });
+    Object.assign(this, { moving: false, movedAt: -Infinity, coarseAt: -Infinity, wait: slowMs, slow: true });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
@@ -91,6 +94,7 @@ export class Stage {
       pose: null, visible: true, faded: color !== null && color[3] < 0.99, materials,
       mesh3d: new THREE.Mesh(surface, materials.surface), inside: new THREE.Mesh(surface, materials.cut), lines3d: new THREE.LineSegments(edges, materials.lines),
     };
+    part.radius = surface.boundingSphere.radius;
     part.inside.renderOrder = 2;
     part.group.add(part.mesh3d, part.inside, part.lines3d);
     this.world.add(part.group);
@@ -119,11 +123,8 @@ export class Stage {
     const another = held !== this.held;
     this.held = held;
     if (another && this.ghost) this.world.remove(this.ghost);
-    if (another) this.ghost = null;
-    if (another && held) {
-      held.radius = this.geometry[held.mesh].surface.boundingSphere.radius;
-      this.addGhost(this.geometry[held.mesh]);
-    }
+    if (another) this.ghost = this.shownY = null;
+    if (another && held) this.addGhost(this.geometry[held.mesh]);
     if (held) {
       setPose(this.ghost, held.pose);
       this.ghost.visible = held.visible;
@@ -144,7 +145,9 @@ export class Stage {
 
   // Part number `i`, or none for null, in another light.
   highlight(i) {
-    this.parts.forEach((part, k) => part.materials.surface.emissive.set(k === i ? cssColor("--selected") : "#000000"));
+    const changed = [this.parts[this.selected], this.parts[i]];
+    this.selected = i;
+    for (const part of changed) if (part) this.dress(part);
     this.draw();
   }
 
@@ -189,7 +192,8 @@ export class Stage {
 
   dress(part) {
     const faded = part.faded || this.seesThrough.has(this.parts.indexOf(part));
-    dress(part.materials, { color: this.colorOf(part), held: part.held, faded, section: this.section });
+    const selected = part === this.parts[this.selected];
+    dress(part.materials, { color: this.colorOf(part), held: part.held, selected, faded, section: this.section });
     part.inside.visible = (this.section !== null && !faded) || !this.geometry[part.mesh].closed;
     part.mesh3d.renderOrder = faded ? 3 : 0;
   }
@@ -243,10 +247,7 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    const ratio = Math.min(devicePixelRatio, maxPixelRatio);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
-    this.quality.resize(width, height, ratio);
+    this.quality.resize(width, height, Math.min(devicePixelRatio, maxPixelRatio));
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.onResize?.();
@@ -268,13 +269,22 @@ export class Stage {
       const coarse = moving && (this.heavy === true || this.slow);
       if (this.heavy) this.useCoarse(coarse);
       this.onDraw?.();
-      this.quality.draw(this.scene, this.camera, coarse);
+      const triangles = this.quality.draw(this.scene, this.camera, coarse);
       ++this.drawn;
+      this.last = { coarse, triangles, pixels: this.canvas.width * this.canvas.height };
       if (!coarse) return;
       ++this.drawnCoarse;
-      clearTimeout(this.rest);
-      this.rest = setTimeout(() => this.draw(), restMs + 20);
+      this.rests();
     });
+  }
+
+  // The fine picture comes when no coarse one has followed for twice the time between the last two: a slow machine must not
+  // draw it in the middle of a motion.
+  rests() {
+    const now = performance.now(), gap = now - this.coarseAt;
+    this.coarseAt = now;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.draw(), Math.max(restMs + 20, gap < longestGapMs ? 2 * gap : 0));
   }
 
   // Whether this machine is too slow for smooth edges while things move. It is until it has shown that it is not.

@@ -4,7 +4,7 @@ import { distance, norm } from "./frame.js";
 import { project } from "./picking.js";
 
 export function addTestDoor(page) {
-  const { stage, viewpoint, overlay, hand, section, measure } = page;
+  const { stage, viewpoint, overlay, guide, hand, section, measure } = page;
   const length = (arrow) => (arrow.group.visible ? arrow.length : 0);
   window.__tegotae = {
     get state() {
@@ -14,7 +14,7 @@ export function addTestDoor(page) {
         parts: stage.parts?.map(({ name, held, visible, removed }) => ({ name, held, visible, removed })),
         places: stage.parts?.map(({ group }) => group.position.toArray()),
         faded: stage.parts?.filter((part) => part.materials.surface.transparent).map((part) => part.name),
-        drawn: stage.drawn, coarse: stage.drawnCoarse, background: cssColor("--stage"),
+        guide: { points: guide.shown, color: cssColor("--guide"), others: ["--contact", "--pair", "--force", "--torque", "--ghost"].map(cssColor) }, drawn: stage.drawn, coarse: stage.drawnCoarse, last: stage.last, background: cssColor("--stage"),
         arrows: { force: length(overlay.force), torque: length(overlay.torque) },
         force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0,
         camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), up: viewpoint.up, parallel: viewpoint.parallel,

@@ -1,4 +1,5 @@
-// Writes the assembly that docs/python.md takes apart: write_assembly FILE.step
+// Writes the assembly that docs/python.md takes apart and that the page is walked through with: write_assembly
+// FILE.step
 #include <cstdio>
 
 #include "mesh/step_assembly.hpp"
