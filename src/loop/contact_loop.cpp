@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "loop/contact_margin.hpp"
 #include "loop/friction_pairs.hpp"
-#include "loop/kept_gap.hpp"
 #include "loop/lag.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -15,8 +15,8 @@ namespace tegotae {
 namespace {
 
 std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
-  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxLimits);
-  auto own = settings.custom_resolver(kMaxLimits);
+  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxConstraints);
+  auto own = settings.custom_resolver(kMaxConstraints);
   if (!own) throw Error("contact.custom_resolver made no resolver");
   return own;
 }
@@ -30,56 +30,57 @@ Metric metric_of(const Scene& scene, const ContactSettings& settings, const Mass
   return is_in_mass_metric(settings) ? Metric(mass) : Metric(coupling_radius(scene.coupling, scene.scale));
 }
 
-// Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
+// Triangle pairs that block a trial and become contacts: what is left out shows up in the next trial.
 constexpr int kMaxBlocking = 256;
-// Pieces in one tick; a pen faster than that leaves X behind for a while.
+// Sub-steps in one tick; a pen faster than that leaves X behind for a while.
 constexpr int kMaxMotions = 16;
 // How much faster than the pen X may follow.
 constexpr double kCatchUp = 2.0;
-// A piece of at least this share of its longest was cut short by that, not by contacts.
+// A sub-step of at least this share of its longest was cut short by that, not by contacts.
 constexpr double kFullShare = 0.99;
-// What of a piece was proved in the time there was is tried so many times as long next.
+// After a timeout the next sub-step tries this many times the length that was proved.
 constexpr double kProvedGrowth = 2;
-// Programs solved for one piece before it is shortened instead.
+// Programs solved for one sub-step before it is shortened instead.
 constexpr int kMaxResolves = 6;
-// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of its
-// length is tried without them, so often in one tick.
+// One-shot planes that leave little of a motion hold the part where no surface does: the tick tries a sub-step of this
+// share of its length without them, at most this often.
 constexpr double kShorter = 0.25;
 constexpr int kMaxShorter = 3;
-// Halvings of a piece that still intersects.
+// Halvings of a sub-step that still intersects.
 constexpr int kMaxHalvings = 4;
-// Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
+// A blocked sub-step is made as far as it is free, from this share on; below it, shorter ones are tried.
 constexpr double kWorthwhile = 0.25;
 // Contacts are kept at this share of l_min, so that rounding and curvature do not make a resting contact come and go.
-constexpr double kKeepShare = 0.5;
-// Between the gap kept in the closest fits and l_min the room is looked at every so many ticks; the gap grows by this
-// factor where there is room for more.
+constexpr double kMarginShare = 0.5;
+// Every so many ticks the loop tests whether the fit has clearance for a wider margin; the margin grows by this factor
+// where it has.
 constexpr int kAdaptTicks = 8;
-constexpr double kKeepGrowth = 1.1;
+constexpr double kMarginGrowth = 1.1;
 // A part that moved less than this in a tick (m) stands; normals with less than this dot product are of opposite sides,
-// looked for among about so many limits.
+// looked for among about so many constraints.
 constexpr double kStanding = 2e-6, kOpposite = -0.3;
 constexpr std::size_t kMaxWedging = 64;
-// A part that stands between opposite sides and may go along them by this share of its way, if the limits give way by
-// the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
+// A part that stands between opposite sides and may go along them by this share of its way, if the constraints give way
+// by the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
 constexpr double kAlongShare = 1e-2;
-// Forces of a piece that are remembered until the end of the tick.
+// Forces of a sub-step that are remembered until the end of the tick.
 constexpr std::size_t kMaxForces = 64;
-// Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
-constexpr double kMinKeep = 2e-6;
-// A motion that carries no point farther than this (m) is rest.
+// The margin in the closest fits (m): under half of 5 µm radial clearance, over kGapFloor.
+constexpr double kMinMargin = 2e-6;
+// A motion that moves no point farther than this (m) counts as rest.
 constexpr double kRest = 1e-10;
-// Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
-// more than the second doubles it; it never falls below this many times the pen's motion of the tick.
-// It never falls below this length (m), or a part whose way was blocked would not try again.
+// Trust region: a sub-step that brought less than the first share of the promised decrease of the squared error halves
+// it, more than the second doubles it; it never falls below this many times the pen's motion of the tick. It never
+// falls below this length (m), or a part whose way was blocked would not try again.
 constexpr double kMinTrust = 1e-8;
 // In the mass metric a rotation error larger than this (rad) is taken in parts: the metric of a rotation vector has its
 // slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
 // always.
 constexpr double kMaxTurn = 0.5;
-// While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
-// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. While
-// X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a long way.
+// While the pen stands still and X has arrived, a sub-step must take this share off the squared error for every tick
+// since then, up to so many: like static friction, it ends the creep that is left where constraints change with every
+// sub-step. While X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a
+// long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMaxStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
@@ -97,15 +98,15 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       center_(mass.center),
       at_(scene, settings, mass),
       metric_(metric_of(scene, settings, mass)),
-      most_turn_(is_in_mass_metric(settings) ? kMaxTurn : std::numeric_limits<double>::infinity()),
+      max_turn_(is_in_mass_metric(settings) ? kMaxTurn : std::numeric_limits<double>::infinity()),
       resolver_(resolver_of(settings)),
-      rows_(kMaxLimits),
-      bounds_(kMaxLimits),
-      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxLimits),
-      planes_(kMaxLimits, scene.coupling, scene.scale) {
-  trust_ = piece_cap_ = at_.check->longest_motion();
-  most_keep_ = keep_ = kKeepShare * *settings_.l_min;
-  least_keep_ = scene.contact.l_min ? most_keep_ : std::min(kMinKeep, most_keep_);
+      rows_(kMaxConstraints),
+      bounds_(kMaxConstraints),
+      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxConstraints),
+      planes_(kMaxConstraints, scene.coupling, scene.scale) {
+  trust_ = substep_cap_ = at_.check->longest_motion();
+  max_margin_ = margin_ = kMarginShare * *settings_.l_min;
+  min_margin_ = scene.contact.l_min ? max_margin_ : std::min(kMinMargin, max_margin_);
   recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
@@ -122,7 +123,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   last_Y_ = Y;
   tracked_ = false;
   owed_.reset();
-  keep_ = std::clamp(kKeepShare * last.contact_gap, least_keep_, most_keep_);
+  margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
   return true;
 }
 
@@ -131,10 +132,10 @@ void ContactLoop::stand_at(const Pose& X) {
   at_.contacts->clear();
   near_.clear();
   at_.check->begin(near_, kNoDeadline);  // nothing is near: what the check knew of parts that were goes
-  tracked_ = was_cut_ = comes_ = looked_ = false;
+  tracked_ = timed_out_ = comes_ = queried_ = false;
   owed_.reset();
-  keep_ = most_keep_;
-  trust_ = piece_cap_;
+  margin_ = max_margin_;
+  trust_ = substep_cap_;
   moved_ = 0;
   still_ticks_ = 0;
 }
@@ -148,8 +149,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   last_Y_ = Y;
   still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMaxStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
-  const double travel = std::max(piece_cap_, kCatchUp * pen);
-  if (at_.look_at_start(X_)) tracked_ = false;
+  const double travel = std::max(substep_cap_, kCatchUp * pen);
+  if (at_.poll_initial_contacts(X_)) tracked_ = false;
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
@@ -165,41 +166,43 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     owed_.reset();
   } else {
     at_.check->begin(near_, deadline_ns_);
-    if (track()) adapt_keep(Y);
+    if (track()) adapt_margin(Y);
     trust_ = std::max(trust_, kMinTrust);
-    if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));
     int shorter = 0;
     for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
-      const double cap = std::min({trust_, piece_cap_, travel - made_});
-      const double length = move_piece(Y, cap, report);
+      const double cap = std::min({trust_, substep_cap_, travel - made_});
+      const double length = move_substep(Y, cap, report);
       if (length > 0) report.substeps.push_back(X_);
-      // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
+      // A sub-step shorter than it could be is the resolver's own end, but where planes of a longer motion made it
+      // short.
       if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
       made_ += length;
     }
     if (report.substeps.empty()) report.substeps.push_back(X_);
     if (!late()) track();
   }
-  at_.tell(keep_ / kKeepShare, report);
+  at_.fill_report(margin_ / kMarginShare, report);
   // Where the kept gap has shrunk, contacts may hold the part a little above it.
-  if (report.contacts == 0 && wanted > keep_ && report.gap <= *settings_.l_min) at_.tell(*settings_.l_min, report);
+  if (report.contacts == 0 && wanted > margin_ && report.gap <= *settings_.l_min)
+    at_.fill_report(*settings_.l_min, report);
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
   const double left = size(displacement(X_, Y, center_));
   report.lag_reason = reason_for(left, report);
-  // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
-  // took away what it touched it comes back to the pen through the air.
+  // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
+  // that removed what it touched, it comes back to the pen through the air.
   comes_ = near_.empty() || made_ >= kFullShare * travel;
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > keep_);
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > margin_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
   report.flags.timed_out |= late();
-  was_cut_ = report.flags.timed_out;
-  tell_forces(Y, report);
-  tell_slip(moved, report.forces);
+  timed_out_ = report.flags.timed_out;
+  report_forces(Y, report);
+  report_slip(moved, report.forces);
   report.flags.timed_out |= late();  // forces with friction may have run out of time
-  // What the tick leaves over gets ready for the first touch.
+  // The time that the tick leaves over prepares for the first touch.
   if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
     const Displacement to_pen = displacement(X_, Y, center_);
     at_.check->prepare(X_, {to_pen.dp + pen_moved.dp, to_pen.dr + pen_moved.dr},
@@ -207,17 +210,17 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   }
 }
 
-void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
+void ContactLoop::report_forces(const Pose& Y, TickReport& report) {
   report.planes.count = 0;
   report.forces = {};
   // Where X is not what the coupling's law gives, the wrench is not the contacts', and planes would make it another X.
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), deadline_ns_,
+    planes_.pick(at_.contacts->constraints(), metric_, friction_, X_, Y, center_, margin_, known_forces(), deadline_ns_,
                  report.planes, report.forces);
   } else {
-    // Out of time, the limits may be those of an earlier pose.
+    // Out of time, the constraints may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));
   }
   // What holds the part back is no contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
@@ -239,44 +242,45 @@ bool ContactLoop::track() {
   return tracked_;
 }
 
-void ContactLoop::adapt_keep(const Pose& Y) {
-  // A wide gap makes certificates cheap, but in a fit that has no room for it the part sticks. There is room for a gap
-  // when a motion exists that leaves twice as much everywhere; out of a hole there always is one, so a part that stands
-  // wedged between opposite sides has none either. The gap never grows under a part at rest: it would push it about.
-  const auto& limits = at_.contacts->limits();
-  if (least_keep_ == most_keep_ || limits.empty() || ++ticks_ % kAdaptTicks != 0) return;
+void ContactLoop::adapt_margin(const Pose& Y) {
+  // A wide margin makes certificates cheap, but in a fit without clearance for it the part sticks. There is clearance
+  // when a motion exists that leaves twice the margin everywhere. Out of a hole such a motion always exists, so a part
+  // that is wedged between opposite sides counts as without. The margin never grows under a part at rest, which it
+  // would push around.
+  const auto& constraints = at_.contacts->constraints();
+  if (min_margin_ == max_margin_ || constraints.empty() || ++ticks_ % kAdaptTicks != 0) return;
   const bool standing = moved_ < kStanding;
-  const bool holds = standing && size(displacement(X_, Y, center_)) > most_keep_ && wedged();
-  // Gaps that are a little short of the least one may lock a part that has room to turn out of where it stands.
-  recover_below_ = holds && keep_ == least_keep_ ? kRecoverWedged : kRecoverBelow;
+  const bool holds = standing && size(displacement(X_, Y, center_)) > max_margin_ && wedged();
+  // Gaps a little below the smallest margin may lock a part that could turn out of where it stands.
+  recover_below_ = holds && margin_ == min_margin_ ? kRecoverWedged : kRecoverBelow;
   if (holds) {
-    keep_ = std::max(0.5 * keep_, least_keep_);
+    margin_ = std::max(0.5 * margin_, min_margin_);
     return;
   }
   metric_.set_orientation(X_.q);
   rows_.clear();
-  for (const Contact& c : limits) {
+  for (const Contact& c : constraints) {
     if (c.age == kOneShotAge) continue;  // planes for one motion, not surfaces
-    bounds_[static_cast<std::size_t>(rows_.rows())] = 2 * keep_ - c.gap;
+    bounds_[static_cast<std::size_t>(rows_.rows())] = 2 * margin_ - c.gap;
     rows_.push_row(metric_.row(c));
   }
   const bool room = resolver_->resolve(rows_, bounds_.data(), Vec6::Zero()).status != ResolveStatus::infeasible;
-  if (!room) keep_ = std::max(0.5 * keep_, least_keep_);
-  if (room && !standing) keep_ = std::min(kKeepGrowth * keep_, most_keep_);
+  if (!room) margin_ = std::max(0.5 * margin_, min_margin_);
+  if (room && !standing) margin_ = std::min(kMarginGrowth * margin_, max_margin_);
 }
 
 bool ContactLoop::wedged() const {
-  const auto& limits = at_.contacts->limits();
-  // Of many limits an even sample: neighbors in the list are of one side.
-  const std::size_t stride = limits.size() / kMaxWedging + 1;
-  const auto presses = [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= keep_ / kKeepShare; };
-  for (std::size_t i = 0; i < limits.size(); i += stride)
-    for (std::size_t j = 0; j < i && presses(limits[i]); j += stride)
-      if (presses(limits[j]) && limits[i].n.dot(limits[j].n) < kOpposite) return true;
+  const auto& constraints = at_.contacts->constraints();
+  // Of many constraints an even sample: neighbors in the list are of one side.
+  const std::size_t stride = constraints.size() / kMaxWedging + 1;
+  const auto presses = [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= margin_ / kMarginShare; };
+  for (std::size_t i = 0; i < constraints.size(); i += stride)
+    for (std::size_t j = 0; j < i && presses(constraints[i]); j += stride)
+      if (presses(constraints[j]) && constraints[i].n.dot(constraints[j].n) < kOpposite) return true;
   return false;
 }
 
-double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) {
   held_by_planes_ = false;
   if (!track()) return 0;
   if (owed_) {
@@ -286,15 +290,15 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
   const double turn = error.dr.norm();
-  if (turn > most_turn_) error.dr *= most_turn_ / turn;
-  const Pose goal = turn > most_turn_ ? displaced(X_, center_, error) : Y;
+  if (turn > max_turn_) error.dr *= max_turn_ / turn;
+  const Pose goal = turn > max_turn_ ? displaced(X_, center_, error) : Y;
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
   bool free = false;
   for (int i = 0; i < kMaxResolves; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
-      if (i + 1 < kMaxResolves && look_around()) continue;
+      if (i + 1 < kMaxResolves && query_around()) continue;
       held_by_contacts_ = only_contacts();
       if (!resolver_->projects()) trust_ *= 0.5;
       if (cutting()) shorter_than(cap);
@@ -304,8 +308,8 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (free) break;
     if (late() && !blocking_.empty()) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
-      // Out of time or work: what is proved of the motion is made, and the next piece is not much longer, or as long as
-      // all that was proved in this tick.
+      // Out of time or work: what is proved of the motion is made, and the next sub-step is not much longer, or as long
+      // as all that was proved in this tick.
       scale(trial, at_.check->free_share());
       trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kMinTrust});
       X_ = trial.X;
@@ -327,11 +331,11 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
   if (!worth) {
     held_by_contacts_ = only_contacts();
-    look_around();
+    query_around();
     return 0;
   }
   X_ = trial.X;
-  tracked_ = looked_ = false;
+  tracked_ = queried_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
 }
@@ -341,13 +345,13 @@ bool ContactLoop::take_in(const Displacement& d) {
          at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0;
 }
 
-bool ContactLoop::look_around() {
-  // Pieces need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface that
-  // was in no piece's way than to the contacts that hold it.
-  if (looked_ || moved_ > kStanding || cutting()) return false;
-  looked_ = true;
+bool ContactLoop::query_around() {
+  // Sub-steps need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface
+  // that was in no sub-step's way than to the contacts that hold it.
+  if (queried_ || moved_ > kStanding || cutting()) return false;
+  queried_ = true;
   blocking_.clear();
-  at_.check->check(X_, {}, kRecoverBelow * keep_, blocking_);
+  at_.check->check(X_, {}, kRecoverBelow * margin_, blocking_);
   return at_.contacts->seed(blocking_, X_, deadline_ns_) > 0;
 }
 
@@ -358,8 +362,8 @@ void ContactLoop::shorter_than(double cap) {
 }
 
 bool ContactLoop::cutting() const {
-  const auto& limits = at_.contacts->limits();
-  return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kOneShotAge; });
+  const auto& constraints = at_.contacts->constraints();
+  return std::any_of(constraints.begin(), constraints.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
 void ContactLoop::mark_carriers(const Vec6& motion) {
@@ -370,8 +374,8 @@ void ContactLoop::mark_carriers(const Vec6& motion) {
 
 void ContactLoop::carries(std::size_t i) {
   at_.contacts->carries(i);
-  if (!far_planes_ && at_.contacts->limits()[i].age == kOneShotAge)
-    far_planes_ = !at_.contacts->touches(i, keep_ / kKeepShare);
+  if (!far_planes_ && at_.contacts->constraints()[i].age == kOneShotAge)
+    far_planes_ = !at_.contacts->touches(i, margin_ / kMarginShare);
 }
 
 LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
@@ -389,8 +393,8 @@ LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
   Vec6 motion = wanted;
   bool rubs = false;
-  if (!at_.contacts->limits().empty()) {
-    rubs = friction_.fill(at_.contacts->limits(), metric_);
+  if (!at_.contacts->constraints().empty()) {
+    rubs = friction_.fill(at_.contacts->constraints(), metric_);
     if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
     // Cutting planes between triangles that do not touch explain no lag.
     if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
@@ -399,13 +403,13 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
   if (length > cap) {
-    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
+    // The direction is that of the whole motion. Gaps are recovered again at the length that is made, or a long motion
     // would leave nearly nothing of their recovery.
     const Vec6 scaled = (cap / length) * motion;
     motion = scaled;
-    if (!rubs && !at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    if (!rubs && !at_.contacts->constraints().empty() && !solve(scaled, report, motion)) motion = scaled;
   }
-  // What is left of a longer way would see no load and so no friction; its gaps are set right without any.
+  // The rest of a longer motion would see no load and so no friction; its gaps are recovered without friction.
   if (rubs) recover_gaps(report, motion);
   trial.d = metric_.unwhiten(motion);
   trial.X = displaced(X_, center_, trial.d);
@@ -415,7 +419,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
   const double far = size(metric_.unwhiten(wanted));
   Vec6 best = motion;
-  for (double way = std::min(cap, far); way > keep_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
+  for (double way = std::min(cap, far); way > margin_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
        way *= kShorter) {
     if (!solve((way / far) * wanted, report, motion)) return false;
     if (motion.dot(wanted) > best.dot(wanted)) best = motion;
@@ -425,17 +429,17 @@ bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& r
 }
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
-  const auto& limits = at_.contacts->limits();
+  const auto& constraints = at_.contacts->constraints();
   rows_.clear();
-  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  for (const Contact& c : constraints) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the program allows it; without recovery it has an
   // answer, because standing still is one, but for rounding. Between walls without room that may be the only one, by
   // rounding too.
   bool only_stands = false;
-  for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
+  for (const auto& [recovery, slack] : {std::pair(kRecovery * margin_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
     const double give = slack * wanted.norm();
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      bounds_[i] = bound_of(limits[i], keep_, recover_below_, recovery) - give;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      bounds_[i] = bound_of(constraints[i], margin_, recover_below_, recovery) - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
@@ -444,9 +448,9 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     motion = r.motion;
     if (only_stands && (r.status != ResolveStatus::solved || motion.norm() < kAlongShare * wanted.norm())) break;
     if (r.status != ResolveStatus::solved) continue;
-    // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
+    // Gaps between nearly parallel constraints may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * keep_) continue;
+    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * margin_) continue;
     only_stands = recovery == 0 && slack == 0 && resolver_->projects() && motion.norm() < kRest &&
                   wanted.norm() > kRest && wedged();
     if (only_stands) continue;
@@ -486,14 +490,14 @@ bool ContactLoop::shorten(Trial& trial, TickReport& report) {
 }
 
 bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y) {
-  // The program sees flat limits. Where they curve, the error that it promises to take away does not all go, or even
-  // grows: near the end of the way such steps would swing to and fro for ever.
+  // The program sees flat constraints. Where they curve, the error that it promises to take away does not all go, or
+  // even grows: near the end of the way such steps would swing to and fro for ever.
   const Vec6 step = metric_.whiten(trial.d);
   const double promised = error.squaredNorm() - (error - step).squaredNorm();
   if (promised <= 0) return true;  // a step that only opens gaps
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
-  if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
+  if (made > kGood * promised) trust_ = std::min(2 * trust_, substep_cap_);
   return made > kStiction * still_ticks_ * error.squaredNorm();
 }
 
