@@ -15,7 +15,7 @@ constexpr double kLoad = 1;     // N
 constexpr double kFlankAngle = M_PI / 6;
 // Torques begin with none, so that the tips come down where their plates are tangent, and end at so many times what is
 // expected.
-constexpr double kMost = 1.1;
+constexpr double kMaxShare = 1.1;
 
 /// Adds a square pyramid of 4 mm that stands on its tip.
 void add_tip(const Vec3& tip, const Vec3& n, TriangleMesh& m) {
@@ -69,7 +69,7 @@ Threshold turned(const Screw& s, double sign, double mu) {
             return Wrench{Vec3(0, 0, -kLoad), Vec3(0, 0, sign * torque)};
           },
           0,
-          kMost * expected};
+          kMaxShare * expected};
 }
 
 /// A plug whose seat opens by `half` on each side, pressed in and turned.
@@ -86,7 +86,7 @@ Threshold taper(double half, double mu) {
             return Wrench{Vec3(0, 0, -kLoad), Vec3(0, 0, torque)};
           },
           0,
-          kMost * expected};
+          kMaxShare * expected};
 }
 
 /// One of the corners, each of which turns a rope by `turn`: a shoe between the rope's two ends. The slack end pulls

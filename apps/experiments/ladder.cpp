@@ -16,7 +16,7 @@ constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
 
 // Every so many of the starts are tried with a baseline too: a wedged impulse run takes forty times as long as one of
 // `qp`.
-constexpr int kRivalEvery = 4;
+constexpr int kBaselineEvery = 4;
 
 struct Rung {
   int tries = 0, completed = 0;
@@ -40,7 +40,7 @@ struct Plan {
   std::vector<Job> jobs{};
 };
 
-bool is_rival(const std::string& resolver) {
+bool is_baseline(const std::string& resolver) {
   return resolver == "impulse" || resolver == "penalty";
 }
 
@@ -55,7 +55,7 @@ Plan plan(const Work& work) {
     for (std::size_t r = p.names.size(); r-- > 0;)
       for (std::size_t person = 0; person < operator_profiles().size(); ++person)
         for (int s = p.starts; s-- > 0;)
-          if (!is_rival(p.names[r]) || (p.starts - 1 - s) % kRivalEvery == 0) p.jobs.push_back({k, r, person, s});
+          if (!is_baseline(p.names[r]) || (p.starts - 1 - s) % kBaselineEvery == 0) p.jobs.push_back({k, r, person, s});
   return p;
 }
 

@@ -12,7 +12,7 @@
 namespace tegotae::review {
 namespace {
 
-constexpr std::size_t kStretches = 200;  // of the way
+constexpr std::size_t kSegments = 200;  // of the way
 // A part that goes on by more than this in a tick (m) moves: 0.1 mm/s at 1 kHz.
 constexpr double kMoves = 1e-7;
 // Of the deepest: who stands there is seated.
@@ -44,7 +44,7 @@ struct Sum {
 
 /// What the ticks of a run say, stretch by stretch.
 struct Profile {
-  std::vector<Sum> in = std::vector<Sum>(kStretches), out = in, stands = in;
+  std::vector<Sum> in = std::vector<Sum>(kSegments), out = in, stands = in;
   ForcePeak insertion, seating, pull_out;
   double deepest = 0;
 };
@@ -76,7 +76,7 @@ Profile profile(const std::vector<Tick>& ticks, const Vec3& direction, double wa
     }
     const double against = -sum.dot(direction), friction = -rubs.dot(direction);
     const double share = std::clamp(tick.depth / way, 0.0, 1.0);
-    const auto stretch = std::min(static_cast<std::size_t>(share * kStretches), kStretches - 1);
+    const auto stretch = std::min(static_cast<std::size_t>(share * kSegments), kSegments - 1);
     if (moved > kMoves) {
       p.in[stretch].add(against, friction);
       take_peak(tick, against, scene, p.insertion);
@@ -175,10 +175,10 @@ AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progr
   out.insertion_mean = mean_of(nominal.in);
   out.pull_out_mean = mean_of(nominal.out);
   double work = 0, rubbed = 0;
-  for (std::size_t k = 0; k < kStretches; ++k) {
+  for (std::size_t k = 0; k < kSegments; ++k) {
     const Sum& in = nominal.in[k];
     DepthForce d;
-    d.depth = (static_cast<double>(k) + 0.5) / kStretches * out.way;
+    d.depth = (static_cast<double>(k) + 0.5) / kSegments * out.way;
     d.insertion = in.mean();
     d.insertion_peak = in.count > 0 ? in.most : kNan;
     d.friction = in.count > 0 ? in.friction / in.count : kNan;

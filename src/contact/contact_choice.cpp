@@ -52,18 +52,18 @@ void ContactChoice::keep(std::uint32_t pair) {
   ++count_;
 }
 
-void ContactChoice::keep_supports(const std::vector<Contact>& limits, const std::vector<std::uint32_t>& owners,
+void ContactChoice::keep_supports(const std::vector<Contact>& constraints, const std::vector<std::uint32_t>& owners,
                                   std::size_t most) {
   double least = INFINITY, arm2 = 0;
-  for (const Contact& c : limits) {
+  for (const Contact& c : constraints) {
     least = std::min(least, c.gap);
     arm2 = std::max(arm2, c.r.squaredNorm());
   }
   const double per_arm = arm2 > 0 ? 1 / std::sqrt(arm2) : 0;
   std::fill(best_.begin(), best_.end(), INFINITY);
   std::fill(supports_.begin(), supports_.end(), kNobody);
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const Contact& c = limits[i];
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const Contact& c = constraints[i];
     if (c.gap > least + kSupportBand) continue;
     Vec6 row;
     row << c.n, per_arm * c.r.cross(c.n);
@@ -78,16 +78,16 @@ void ContactChoice::keep_supports(const std::vector<Contact>& limits, const std:
     if (pair != kNobody && count_ < most) keep(pair);
 }
 
-void ContactChoice::choose(const std::vector<Contact>& limits, const std::vector<std::uint32_t>& owners,
+void ContactChoice::choose(const std::vector<Contact>& constraints, const std::vector<std::uint32_t>& owners,
                            std::size_t pairs, std::size_t most, const std::vector<std::uint8_t>& must) {
   count_ = 0;
   kept_.assign(pairs, 0);
   for (std::uint32_t i = 0; i < pairs; ++i)
     if (must[i] != 0 && count_ < most) keep(i);
-  keep_supports(limits, owners, most);
+  keep_supports(constraints, owners, most);
   near_.clear();
-  for (std::size_t i = 0; i < limits.size(); ++i)
-    if (near_.size() < near_.capacity()) near_.push_back({limits[i].gap, owners[i]});
+  for (std::size_t i = 0; i < constraints.size(); ++i)
+    if (near_.size() < near_.capacity()) near_.push_back({constraints[i].gap, owners[i]});
   std::sort(near_.begin(), near_.end());
   for (const Near& n : near_) {
     if (count_ >= most) break;

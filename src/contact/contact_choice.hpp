@@ -12,16 +12,18 @@ class ContactChoice {
   /// For up to `capacity` pairs.
   explicit ContactChoice(std::size_t capacity);
 
-  /// Chooses at most `most` pairs. `limits` with `owners` (of each limit its pair, below `pairs`) are what the pairs
-  /// ask for; `must(pair)` says which are kept whatever happens. What is left goes to pairs that hold the part against
-  /// a motion of their own (of many sampled ones the pair that it closes most), and then to the nearest. Sets kept().
-  void choose(const std::vector<Contact>& limits, const std::vector<std::uint32_t>& owners, std::size_t pairs,
+  /// Chooses at most `most` pairs. `constraints` with `owners` (of each constraint its pair, below `pairs`) are what
+  /// the pairs ask for; `must(pair)` says which are kept whatever happens. What is left goes to pairs that hold the
+  /// part against a motion of their own (of many sampled ones the pair that it closes most), and then to the nearest.
+  /// Sets kept().
+  void choose(const std::vector<Contact>& constraints, const std::vector<std::uint32_t>& owners, std::size_t pairs,
               std::size_t most, const std::vector<std::uint8_t>& must);
   const std::vector<std::uint8_t>& kept() const { return kept_; }
 
  private:
   void keep(std::uint32_t pair);
-  void keep_supports(const std::vector<Contact>& limits, const std::vector<std::uint32_t>& owners, std::size_t most);
+  void keep_supports(const std::vector<Contact>& constraints, const std::vector<std::uint32_t>& owners,
+                     std::size_t most);
 
   struct Near {
     double gap;

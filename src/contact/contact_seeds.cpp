@@ -255,21 +255,21 @@ int ContactSet::start(std::uint32_t part, Feature a, Feature b) {
 int ContactSet::take(std::uint32_t part, const FeaturePair& at, bool support) {
   if (at.distance > reach_ || known(part, at.a, at.b) || next_.size() == next_.capacity()) return 0;
   if (redundant(part, at.a, at.b) != support) return 0;
-  if (support && spoken_for(limit_of(part, at, 0), part, limits_, owners_)) return 0;
+  if (support && spoken_for(constraint_of(part, at, 0), part, constraints_, owners_)) return 0;
   remember({part, at.a, at.b, 0, support, false});
-  add_limits(static_cast<std::uint32_t>(next_.size() - 1), at, limits_, owners_);
+  add_constraints(static_cast<std::uint32_t>(next_.size() - 1), at, constraints_, owners_);
   return 1;
 }
 
-bool ContactSet::spoken_for(const Contact& limit, std::uint32_t part, const std::vector<Contact>& limits,
+bool ContactSet::spoken_for(const Contact& constraint, std::uint32_t part, const std::vector<Contact>& constraints,
                             const std::vector<std::uint32_t>& owners) const {
-  const Vec3 u = limit.n.unitOrthogonal(), v = limit.n.cross(u);
+  const Vec3 u = constraint.n.unitOrthogonal(), v = constraint.n.cross(u);
   Surrounded surrounded;
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const Contact& c = limits[i];
-    if (owners[i] == kNone || next_[owners[i]].part != part || c.n.dot(limit.n) < kSameNormal) continue;
-    const Vec3 away = c.r - limit.r;
-    if (c.gap > limit.gap + kSlope * away.norm() + kSameGap) continue;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const Contact& c = constraints[i];
+    if (owners[i] == kNone || next_[owners[i]].part != part || c.n.dot(constraint.n) < kSameNormal) continue;
+    const Vec3 away = c.r - constraint.r;
+    if (c.gap > constraint.gap + kSlope * away.norm() + kSameGap) continue;
     if (surrounded.add(away.dot(u), away.dot(v))) return true;
   }
   return false;

@@ -32,8 +32,8 @@ ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSur
   const auto size = static_cast<std::size_t>(capacity);
   pairs_.reserve(size);
   next_.reserve(size);
-  limits_.reserve(size);
-  next_limits_.reserve(size);
+  constraints_.reserve(size);
+  next_constraints_.reserve(size);
   cut_.reserve(size);
   owners_.reserve(size);
   next_owners_.reserve(size);
@@ -82,7 +82,7 @@ void ContactSet::begin_track(const Pose& X, double reach) {
   tried_count_ = 0;
   forget_places();
   next_.clear();
-  next_limits_.clear();
+  next_constraints_.clear();
   next_owners_.clear();
   cut_.clear();
 }
@@ -90,7 +90,7 @@ void ContactSet::begin_track(const Pose& X, double reach) {
 void ContactSet::clear() {
   begin_track(X_, 0);
   pairs_.clear();
-  limits_.clear();
+  constraints_.clear();
   owners_.clear();
 }
 
@@ -100,8 +100,8 @@ void ContactSet::transfer(std::uint32_t from, std::uint32_t to) noexcept {
   followed_ = 0;
 }
 
-void ContactSet::carries(std::size_t limit) noexcept {
-  const std::uint32_t pair = owners_[limit];
+void ContactSet::carries(std::size_t constraint) noexcept {
+  const std::uint32_t pair = owners_[constraint];
   if (pair != kNone) next_[pair].carries = pairs_[pair].carries = true;
 }
 
@@ -131,16 +131,17 @@ bool ContactSet::track(const Pose& X, double reach, std::int64_t deadline_ns) {
     const FeaturePair at = follow(old);
     if (at.distance > reach_ || known(old.part, at.a, at.b)) continue;
     const bool support = redundant(old.part, at.a, at.b);
-    if (support && (!old.support || spoken_for(limit_of(old.part, at, 0), old.part, next_limits_, next_owners_)))
+    if (support &&
+        (!old.support || spoken_for(constraint_of(old.part, at, 0), old.part, next_constraints_, next_owners_)))
       continue;
     remember({old.part, at.a, at.b, old.age + 1, support, old.carries});
-    add_limits(static_cast<std::uint32_t>(next_.size() - 1), at, next_limits_, next_owners_);
+    add_constraints(static_cast<std::uint32_t>(next_.size() - 1), at, next_constraints_, next_owners_);
   }
   followed_ = 0;
   if (next_.size() > max_followed_) choose();
   for (Pair& pair : next_) pair.carries = false;
   pairs_.assign(next_.begin(), next_.end());
-  limits_.swap(next_limits_);
+  constraints_.swap(next_constraints_);
   owners_.swap(next_owners_);
   return true;
 }
@@ -149,28 +150,29 @@ void ContactSet::choose() {
   must_.clear();
   for (const Pair& pair : next_) must_.push_back(pair.carries ? 1 : 0);
   overflow_ += static_cast<int>(next_.size() - max_followed_);
-  choice_.choose(next_limits_, next_owners_, next_.size(), max_followed_, must_);
+  choice_.choose(next_constraints_, next_owners_, next_.size(), max_followed_, must_);
   keep(choice_.kept());
 }
 
 void ContactSet::keep(const std::vector<std::uint8_t>& kept) {
-  std::size_t limits = 0;
-  for (std::size_t i = 0; i < next_limits_.size(); ++i) {
+  std::size_t constraints = 0;
+  for (std::size_t i = 0; i < next_constraints_.size(); ++i) {
     if (kept[next_owners_[i]] == 0) continue;
-    next_limits_[limits] = next_limits_[i];
-    next_owners_[limits++] = next_owners_[i];
+    next_constraints_[constraints] = next_constraints_[i];
+    next_owners_[constraints++] = next_owners_[i];
   }
-  next_limits_.erase(next_limits_.begin() + static_cast<std::ptrdiff_t>(limits), next_limits_.end());
-  next_owners_.resize(limits);
+  next_constraints_.erase(next_constraints_.begin() + static_cast<std::ptrdiff_t>(constraints),
+                          next_constraints_.end());
+  next_owners_.resize(constraints);
   forget_places();
   pairs_.clear();
   pairs_.swap(next_);
-  std::size_t limit = 0;
+  std::size_t constraint = 0;
   for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
     if (kept[i] == 0) continue;
-    // Limits are in the order of their pairs.
-    for (; limit < limits && next_owners_[limit] == i; ++limit)
-      next_owners_[limit] = static_cast<std::uint32_t>(next_.size());
+    // Constraints are in the order of their pairs.
+    for (; constraint < constraints && next_owners_[constraint] == i; ++constraint)
+      next_owners_[constraint] = static_cast<std::uint32_t>(next_.size());
     remember(pairs_[i]);
   }
 }

@@ -19,8 +19,8 @@ struct FixedSurface {
   PartId part = {};  ///< that contacts name
 };
 
-/// The nearest-feature pairs of the held part with the fixed parts, followed from tick to tick, and the limits they put
-/// on its motion. A pair keeps its identity (part and features) and counts its age.
+/// The nearest-feature pairs of the held part with the fixed parts, followed from tick to tick, and the constraints
+/// they put on its motion. A pair keeps its identity (part and features) and counts its age.
 class ContactSet {
  public:
   /// Pairs that are followed from one tick to the next: each costs about a microsecond, and nothing moves before all
@@ -31,12 +31,12 @@ class ContactSet {
              std::size_t max_followed = kMaxFollowed);
 
   /// Follows every pair to its local minimum of distance at `X`, drops those farther than `reach` (m) and duplicates,
-  /// and lists the limits anew. Where more pairs are left than are followed, keeps those that carried force, those that
-  /// support the part to all sides, and then the nearest; what was dropped comes back by seed() when it is in the way.
-  /// Ends early after `deadline_ns` of monotonic_ns() with false: the limits are then still those of the last track
-  /// that was finished, and the next call goes on where this one stopped if it has the same `X` and `reach`.
+  /// and lists the constraints anew. Where more pairs are left than are followed, keeps those that carried force, those
+  /// that support the part to all sides, and then the nearest; what was dropped comes back by seed() when it is in the
+  /// way. Ends early after `deadline_ns` of monotonic_ns() with false: the constraints are then still those of the last
+  /// track that was finished, and the next call goes on where this one stopped if it has the same `X` and `reach`.
   bool track(const Pose& X, double reach, std::int64_t deadline_ns);
-  /// Forgets all pairs and limits.
+  /// Forgets all pairs and constraints.
   void clear();
   /// Goes on with the pairs of fixed surface `from` on `to`, which has the same features a little elsewhere.
   void transfer(std::uint32_t from, std::uint32_t to) noexcept;
@@ -46,19 +46,19 @@ class ContactSet {
   /// holds the part, the nearest points of the two triangles do. Returns how many pairs within reach were not known
   /// yet. Ends early after `deadline_ns` of monotonic_ns(), or when it has found many.
   int seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns);
-  /// Adds limits for this tick only: for each triangle pair (free at the last track()) the separating axis that limits
-  /// the displacement `d` least, of those that leave `clearance` (m). Returns how many were added. Ends early after
-  /// `deadline_ns`.
+  /// Adds constraints for this tick only: for each triangle pair (free at the last track()) the separating axis that
+  /// limits the displacement `d` least, of those that leave `clearance` (m). Returns how many were added. Ends
+  /// early after `deadline_ns`.
   int cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance, std::int64_t deadline_ns);
-  /// Whether the two triangles that limit number `limit`, from cut(), keeps apart are at most `distance` (m) from each
-  /// other at the pose of the last track().
-  bool touches(std::size_t limit, double distance) const noexcept;
-  /// Limit number `limit` carries force: the next track() keeps its pair, whatever it drops.
-  void carries(std::size_t limit) noexcept;
+  /// Whether the two triangles that constraint number `constraint`, from cut(), keeps apart are at most `distance` (m)
+  /// from each other at the pose of the last track().
+  bool touches(std::size_t constraint, double distance) const noexcept;
+  /// Constraint number `constraint` carries force: the next track() keeps its pair, whatever it drops.
+  void carries(std::size_t constraint) noexcept;
 
-  const std::vector<Contact>& limits() const { return limits_; }
-  /// Pairs within reach that the last track() dropped because there were too many, and limits dropped since because
-  /// the capacity was used up.
+  const std::vector<Contact>& constraints() const { return constraints_; }
+  /// Pairs within reach that the last track() dropped because there were too many, and constraints dropped since
+  /// because the capacity was used up.
   int overflow() const { return overflow_; }
   std::size_t followed() const { return pairs_.size(); }  ///< pairs
 
@@ -86,8 +86,8 @@ class ContactSet {
   void keep(const std::vector<std::uint8_t>& kept);
   /// Drops pairs that other pairs speak for: a corner or edge inside a flat region is no minimum of its own.
   bool redundant(std::uint32_t part, Feature a, Feature b) const;
-  /// Whether contacts around that point the same way hold what this limit of `part` would.
-  bool spoken_for(const Contact& limit, std::uint32_t part, const std::vector<Contact>& limits,
+  /// Whether contacts around that point the same way hold what this constraint of `part` would.
+  bool spoken_for(const Contact& constraint, std::uint32_t part, const std::vector<Contact>& constraints,
                   const std::vector<std::uint32_t>& owners) const;
 
   // Seeds; each returns how many fresh pairs it found.
@@ -105,12 +105,12 @@ class ContactSet {
   bool try_first_time(const FacePair& t);
   Pose pose_in(std::uint32_t part) const { return fixed_[part].X_WB.inverse() * X_; }
 
-  void add_limits(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& limits,
-                  std::vector<std::uint32_t>& owners);
-  void add_reflex_limits(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& limits,
-                         std::vector<std::uint32_t>& owners);
-  bool add(const Contact& contact, std::vector<Contact>& limits);
-  Contact limit_of(std::uint32_t part, const FeaturePair& at, int age) const;
+  void add_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
+                       std::vector<std::uint32_t>& owners);
+  void add_reflex_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
+                              std::vector<std::uint32_t>& owners);
+  bool add(const Contact& contact, std::vector<Contact>& constraints);
+  Contact constraint_of(std::uint32_t part, const FeaturePair& at, int age) const;
   Vec3 normal_B(std::uint32_t part, const FeaturePair& at) const;
 
   std::shared_ptr<const Surface> held_;
@@ -129,10 +129,10 @@ class ContactSet {
   std::size_t followed_ = 0;
   std::vector<std::int32_t> table_;  ///< open addressing into next_, -1 is empty
   std::vector<std::size_t> taken_;   ///< places of table_ that are not
-  std::vector<Contact> limits_;
-  std::vector<FacePair> cut_;               ///< by limits for this tick only
-  std::vector<std::uint32_t> owners_;       ///< of each limit: its pair, kNone for a cutting plane
-  std::vector<Contact> next_limits_;        ///< of this track, until it is finished
+  std::vector<Contact> constraints_;
+  std::vector<FacePair> cut_;               ///< by constraints for this tick only
+  std::vector<std::uint32_t> owners_;       ///< of each constraint: its pair, kNone for a cutting plane
+  std::vector<Contact> next_constraints_;   ///< of this track, until it is finished
   std::vector<std::uint32_t> next_owners_;  ///< likewise
   std::array<TriedRegions, 64> tried_;
   std::size_t tried_count_ = 0;

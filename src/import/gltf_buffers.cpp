@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 // A file with more text than this has its data in it.
-constexpr std::uintmax_t kMostText = 64u << 20;
+constexpr std::uintmax_t kMaxText = 64u << 20;
 
 /// The JSON of a file of either kind; nothing where there is too much of it.
 std::string json_text(const std::string& path) {
@@ -32,7 +32,7 @@ std::string json_text(const std::string& path) {
     file.clear();
     file.seekg(0);
   }
-  if (size > kMostText) return {};
+  if (size > kMaxText) return {};
   std::string text(size, '\0');
   file.read(text.data(), static_cast<std::streamsize>(size));
   text.resize(static_cast<std::size_t>(file.gcount()));

@@ -22,7 +22,7 @@ constexpr double kReachShare = 0.02;
 // with three faces takes 1.8.
 constexpr double kMaxShift = 3;
 // Of the tick's budget, what a look at a pair that was not free at the start may take.
-constexpr double kLookShare = 0.25;
+constexpr double kPollShare = 0.25;
 
 /// What a scene's meshes are turned into, each of them once, on all processors.
 struct MeshStructures {
@@ -78,7 +78,7 @@ std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixe
 }  // namespace
 
 CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
-    : look_time_(kLookShare * settings.tick_budget) {
+    : poll_time_(kPollShare * settings.tick_budget) {
   const SceneParts parts(scene);
   box_ = bounding_box(*parts.held->mesh);
   // Held here so that whoever needs a hierarchy while the scene is built finds it made.
@@ -91,13 +91,13 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
     spheres.add(bounding_sphere(*p.mesh), p.pose);
     boxes.add(bounding_box(*p.mesh), p.pose);
   }
-  const auto copies = start.relieve(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
+  const auto copies = start.shrink(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
   for (const InitialContacts::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, parts.fixed_id[c.part]);
   radius = radius_about(*parts.held->mesh, mass.center);
   reach = *settings.l_min + 2 * kReachShare * radius;
   check = make_check(*parts.held, fixed, settings, mass.center, radius);
   contacts = std::make_unique<ContactSet>(made.surfaces.at(parts.held->mesh.get()), std::move(fixed.surfaces),
-                                          mass.center, kMaxLimits);
+                                          mass.center, kMaxConstraints);
   X = initial_separation(*this, mass, parts.held->pose, kMaxShift * (settings.touch_tolerance + 2 * kGapFloor));
   double shift = 0;
   for (const Vec3& v : parts.held->mesh->vertices) shift = std::max(shift, (X * v - parts.held->pose * v).norm());
@@ -128,27 +128,27 @@ bool CollisionWorld::is_path_free(const Pose& from, const Pose& to, const Vec3& 
   return check->check(from, d, kGapFloor, blocking) == MotionAnswer::free;
 }
 
-bool CollisionWorld::look_at_start(const Pose& pose) noexcept {
+bool CollisionWorld::poll_initial_contacts(const Pose& pose) noexcept {
   const std::int64_t deadline =
-      std::isfinite(look_time_) ? monotonic_ns() + static_cast<std::int64_t>(1e9 * look_time_) : kNoDeadline;
-  const InitialContacts::Waiting* freed = start.look(pose, *check, deadline);
+      std::isfinite(poll_time_) ? monotonic_ns() + static_cast<std::int64_t>(1e9 * poll_time_) : kNoDeadline;
+  const InitialContacts::Waiting* freed = start.poll(pose, *check, deadline);
   if (freed == nullptr) return false;
   if (freed->stand_in != InitialContacts::kNobody) contacts->transfer(freed->stand_in, freed->part);
   return true;
 }
 
-void CollisionWorld::tell(double contact_gap, TickReport& report) const noexcept {
+void CollisionWorld::fill_report(double contact_gap, TickReport& report) const noexcept {
   report.contacts = 0;
   report.contact_gap = contact_gap;
   report.gap = std::numeric_limits<double>::infinity();
-  for (const Contact& c : contacts->limits()) {
+  for (const Contact& c : contacts->constraints()) {
     if (c.age == kOneShotAge) continue;  // planes for one motion, not surfaces
     report.contacts += c.gap <= contact_gap ? 1 : 0;
     report.gap = std::min(report.gap, c.gap);
   }
-  report.constraints = static_cast<int>(contacts->limits().size());
-  report.filtered = start.suspended();
-  report.shrunk = start.relieved();
+  report.constraints = static_cast<int>(contacts->constraints().size());
+  report.filtered = start.filtered();
+  report.shrunk = start.shrunk();
   report.flags.overflow = contacts->overflow() > 0 || check->overflow();
 }
 

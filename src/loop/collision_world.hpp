@@ -13,8 +13,8 @@
 
 namespace tegotae {
 
-/// Feature pairs, and limits from them, that a tick can hold; more are counted as overflow.
-inline constexpr int kMaxLimits = 4096;
+/// Feature pairs, and constraints from them, that a tick can hold; more are counted as overflow.
+inline constexpr int kMaxConstraints = 4096;
 
 /// What every loop that never penetrates holds of its scene.
 struct CollisionWorld {
@@ -32,22 +32,22 @@ struct CollisionWorld {
 
   /// Parts whose sphere and box come within `distance` (m) of the held part's at `pose`, as the checks number them.
   void query(const Pose& pose, const Vec3& center, double distance, std::vector<std::uint32_t>& near) const;
-  /// Looks whether one more pair that was not free at the start is so at `pose` (see InitialContacts::look), in a share
-  /// of the tick's budget. When it is, contacts are to be tracked anew.
-  bool look_at_start(const Pose& pose) noexcept;
+  /// Polls whether one more pair that was not free at the start is free at `pose` (see InitialContacts::poll), in a
+  /// share of the tick's budget. When it is, the caller tracks contacts anew.
+  bool poll_initial_contacts(const Pose& pose) noexcept;
   /// Whether the straight way of the held part from `from` to `to` is known by `deadline_ns` to be free of the `fresh`
   /// parts (null: of all). `near` and `blocking` are scratch.
   bool is_path_free(const Pose& from, const Pose& to, const Vec3& center, const std::vector<bool>* fresh,
                     std::int64_t deadline_ns, std::vector<std::uint32_t>& near,
                     std::vector<FacePair>& blocking) const noexcept;
 
-  /// Sets what a report says of contacts, limits and pairs that were not free at the start. Gaps of at most
+  /// Sets what a report says of contacts, constraints and pairs that were not free at the start. Gaps of at most
   /// `contact_gap` (m) count as contact.
-  void tell(double contact_gap, TickReport& report) const noexcept;
+  void fill_report(double contact_gap, TickReport& report) const noexcept;
 
  private:
   Box box_;           ///< of the held part
-  double look_time_;  ///< s
+  double poll_time_;  ///< s
 };
 
 }  // namespace tegotae

@@ -40,9 +40,10 @@ void ContactList::clear() noexcept {
   events_.clear();
 }
 
-void ContactList::update(const std::vector<Contact>& limits, const TickReport& report, const Vec3& center_W) noexcept {
+void ContactList::update(const std::vector<Contact>& constraints, const TickReport& report,
+                         const Vec3& center_W) noexcept {
   std::swap(contacts_, before_);
-  gather(limits, report, center_W);
+  gather(constraints, report, center_W);
   compare();
 }
 
@@ -56,7 +57,8 @@ void ContactList::add(const ContactPoint& contact) noexcept {
   std::push_heap(contacts_.begin(), contacts_.end(), nearer);
 }
 
-void ContactList::gather(const std::vector<Contact>& limits, const TickReport& report, const Vec3& center_W) noexcept {
+void ContactList::gather(const std::vector<Contact>& constraints, const TickReport& report,
+                         const Vec3& center_W) noexcept {
   contacts_.clear();
   const ContactForces& forces = report.forces;
   const ContactForce* const end = forces.items.data() + forces.count;
@@ -65,7 +67,7 @@ void ContactList::gather(const std::vector<Contact>& limits, const TickReport& r
       return f.part == c.part && f.feature_a == c.feature_a && f.feature_b == c.feature_b;
     });
   };
-  for (const Contact& c : limits) {
+  for (const Contact& c : constraints) {
     if (c.age == kOneShotAge || (c.gap > report.contact_gap && !carries(c))) continue;
     ContactPoint p{c.part, c.feature_a, c.feature_b, center_W + c.r, Vec3::Zero(), c.n, c.gap, {}, Vec3::Zero(), false,
                    0};

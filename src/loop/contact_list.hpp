@@ -7,17 +7,17 @@
 
 namespace tegotae {
 
-/// The contacts of the last tick, limits with a gap of at most TickReport::contact_gap or a force, and which began and
-/// ended in it. Allocates only when it is made.
+/// The contacts of the last tick, constraints with a gap of at most TickReport::contact_gap or a force, and which began
+/// and ended in it. Allocates only when it is made.
 class ContactList {
  public:
   /// Contacts that are listed; of more the nearest are.
   static constexpr std::size_t kMaxContacts = 1024;
 
   ContactList();
-  /// After a tick that left `limits`, and the held part's center of mass at `center_W`. Of limits that name the same
-  /// features the nearest is the contact.
-  void update(const std::vector<Contact>& limits, const TickReport& report, const Vec3& center_W) noexcept;
+  /// After a tick that left `constraints`, and the held part's center of mass at `center_W`. Of constraints that name
+  /// the same features the nearest is the contact.
+  void update(const std::vector<Contact>& constraints, const TickReport& report, const Vec3& center_W) noexcept;
   /// Forgets all contacts, without events.
   void clear() noexcept;
 
@@ -26,7 +26,7 @@ class ContactList {
 
  private:
   void add(const ContactPoint& contact) noexcept;
-  void gather(const std::vector<Contact>& limits, const TickReport& report, const Vec3& center_W) noexcept;
+  void gather(const std::vector<Contact>& constraints, const TickReport& report, const Vec3& center_W) noexcept;
   void compare() noexcept;
 
   std::vector<ContactPoint> contacts_, before_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "loop/contact_margin.hpp"
 #include "loop/friction_pairs.hpp"
-#include "loop/kept_gap.hpp"
 #include "loop/lag.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -15,8 +15,8 @@ namespace tegotae {
 namespace {
 
 std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
-  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxLimits);
-  auto own = settings.custom_resolver(kMaxLimits);
+  if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxConstraints);
+  auto own = settings.custom_resolver(kMaxConstraints);
   if (!own) throw Error("contact.custom_resolver made no resolver");
   return own;
 }
@@ -30,38 +30,39 @@ Metric metric_of(const Scene& scene, const ContactSettings& settings, const Mass
   return is_in_mass_metric(settings) ? Metric(mass) : Metric(coupling_radius(scene.coupling, scene.scale));
 }
 
-// Triangle pairs in the way of a trial that are looked at: what they miss shows at the next trial.
+// Triangle pairs that block a trial and become contacts: what is left out shows up in the next trial.
 constexpr int kMaxBlocking = 256;
-// Pieces in one tick; a pen faster than that leaves X behind for a while.
+// Sub-steps in one tick; a pen faster than that leaves X behind for a while.
 constexpr int kMaxMotions = 16;
 // How much faster than the pen X may follow.
 constexpr double kCatchUp = 2.0;
-// A piece of at least this share of its longest was cut short by that, not by contacts.
+// A sub-step of at least this share of its longest was cut short by that, not by contacts.
 constexpr double kFullShare = 0.99;
-// What of a piece was proved in the time there was is tried so many times as long next.
+// After a timeout the next sub-step tries this many times the length that was proved.
 constexpr double kProvedGrowth = 2;
-// Programs solved for one piece before it is shortened instead.
+// Programs solved for one sub-step before it is shortened instead.
 constexpr int kMaxResolves = 6;
-// Pieces that planes for one motion hold (see kShorter) in one tick.
+// Sub-steps that planes for one motion hold (see kShorter) in one tick.
 constexpr int kMaxShorter = 3;
-// Halvings of a piece that still intersects.
+// Halvings of a sub-step that still intersects.
 constexpr int kMaxHalvings = 4;
-// Forces of a piece that are remembered until the end of the tick.
+// Forces of a sub-step that are remembered until the end of the tick.
 constexpr std::size_t kMaxForces = 64;
-// Kept in the closest fits (m): under half of 5 µm radial clearance, over the gap floor below.
-constexpr double kMinKeep = 2e-6;
-// Trust region: a piece that brought less than the first share of the promised decrease of the squared error halves it,
-// more than the second doubles it; it never falls below this many times the pen's motion of the tick.
-constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
-// It never falls below this length (m), or a part whose way was blocked would not try again.
+// The margin in the closest fits (m): under half of 5 µm radial clearance, over kGapFloor.
+constexpr double kMinMargin = 2e-6;
+// Trust region: a sub-step that brought less than the first share of the promised decrease of the squared error halves
+// it, more than the second doubles it; it never falls below this many times the pen's motion of the tick. It never
+// falls below this length (m), or a part whose way was blocked would not try again.
 constexpr double kMinTrust = 1e-8;
+constexpr double kPoor = 0.25, kGood = 0.7, kPenShare = 1.5;
 // In the mass metric a rotation error larger than this (rad) is taken in parts: the metric of a rotation vector has its
 // slope towards the target only while the angle is small. That of the coupling weighs all axes the same, and has it
 // always.
 constexpr double kMaxTurn = 0.5;
-// While the pen stands still and X has arrived, a piece must take this share off the squared error for every tick since
-// then, up to so many: like static friction, it ends the creep that is left where limits change with every piece. While
-// X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a long way.
+// While the pen stands still and X has arrived, a sub-step must take this share off the squared error for every tick
+// since then, up to so many: like static friction, it ends the creep that is left where constraints change with every
+// sub-step. While X still comes, as fast as it may, it does not creep: it would be stopped short of its place after a
+// long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMaxStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
@@ -78,15 +79,15 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       center_(mass.center),
       at_(scene, settings, mass),
       metric_(metric_of(scene, settings, mass)),
-      most_turn_(is_in_mass_metric(settings) ? kMaxTurn : std::numeric_limits<double>::infinity()),
+      max_turn_(is_in_mass_metric(settings) ? kMaxTurn : std::numeric_limits<double>::infinity()),
       resolver_(resolver_of(settings)),
-      rows_(kMaxLimits),
-      bounds_(kMaxLimits),
-      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxLimits),
-      planes_(kMaxLimits, scene.coupling, scene.scale) {
-  trust_ = piece_cap_ = at_.check->longest_motion();
-  most_keep_ = keep_ = kKeepShare * *settings_.l_min;
-  least_keep_ = scene.contact.l_min ? most_keep_ : std::min(kMinKeep, most_keep_);
+      rows_(kMaxConstraints),
+      bounds_(kMaxConstraints),
+      friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxConstraints),
+      planes_(kMaxConstraints, scene.coupling, scene.scale) {
+  trust_ = substep_cap_ = at_.check->longest_motion();
+  max_margin_ = margin_ = kMarginShare * *settings_.l_min;
+  min_margin_ = scene.contact.l_min ? max_margin_ : std::min(kMinMargin, max_margin_);
   recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
@@ -103,7 +104,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   last_Y_ = Y;
   tracked_ = false;
   owed_.reset();
-  keep_ = std::clamp(kKeepShare * last.contact_gap, least_keep_, most_keep_);
+  margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
   return true;
 }
 
@@ -112,10 +113,10 @@ void ContactLoop::stand_at(const Pose& X) {
   at_.contacts->clear();
   near_.clear();
   at_.check->begin(near_, kNoDeadline);  // nothing is near: what the check knew of parts that were goes
-  tracked_ = was_cut_ = comes_ = looked_ = false;
+  tracked_ = timed_out_ = comes_ = queried_ = false;
   owed_.reset();
-  keep_ = most_keep_;
-  trust_ = piece_cap_;
+  margin_ = max_margin_;
+  trust_ = substep_cap_;
   moved_ = 0;
   still_ticks_ = 0;
 }
@@ -129,8 +130,8 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   last_Y_ = Y;
   still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMaxStillTicks) : 0;
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
-  const double travel = std::max(piece_cap_, kCatchUp * pen);
-  if (at_.look_at_start(X_)) tracked_ = false;
+  const double travel = std::max(substep_cap_, kCatchUp * pen);
+  if (at_.poll_initial_contacts(X_)) tracked_ = false;
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
@@ -146,41 +147,43 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     owed_.reset();
   } else {
     at_.check->begin(near_, deadline_ns_);
-    if (track()) adapt_keep(Y);
+    if (track()) adapt_margin(Y);
     trust_ = std::max(trust_, kMinTrust);
-    if (!was_cut_) trust_ = std::max(trust_, std::min(piece_cap_, kPenShare * pen));
+    if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));
     int shorter = 0;
     for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
-      const double cap = std::min({trust_, piece_cap_, travel - made_});
-      const double length = move_piece(Y, cap, report);
+      const double cap = std::min({trust_, substep_cap_, travel - made_});
+      const double length = move_substep(Y, cap, report);
       if (length > 0) report.substeps.push_back(X_);
-      // A piece shorter than it could be is the resolver's own end, but where planes of a longer motion made it short.
+      // A sub-step shorter than it could be is the resolver's own end, but where planes of a longer motion made it
+      // short.
       if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
       made_ += length;
     }
     if (report.substeps.empty()) report.substeps.push_back(X_);
     if (!late()) track();
   }
-  at_.tell(keep_ / kKeepShare, report);
+  at_.fill_report(margin_ / kMarginShare, report);
   // Where the kept gap has shrunk, contacts may hold the part a little above it.
-  if (report.contacts == 0 && wanted > keep_ && report.gap <= *settings_.l_min) at_.tell(*settings_.l_min, report);
+  if (report.contacts == 0 && wanted > margin_ && report.gap <= *settings_.l_min)
+    at_.fill_report(*settings_.l_min, report);
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
   const double left = size(displacement(X_, Y, center_));
   report.lag_reason = reason_for(left, report);
-  // Whatever holds the part back, the hand feels it. Nothing does where it goes as fast as it may: after a change that
-  // took away what it touched it comes back to the pen through the air.
+  // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
+  // that removed what it touched, it comes back to the pen through the air.
   comes_ = near_.empty() || made_ >= kFullShare * travel;
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > keep_);
+  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > margin_);
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
   report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
   report.flags.timed_out |= late();
-  was_cut_ = report.flags.timed_out;
-  tell_forces(Y, report);
-  tell_slip(moved, report.forces);
+  timed_out_ = report.flags.timed_out;
+  report_forces(Y, report);
+  report_slip(moved, report.forces);
   report.flags.timed_out |= late();  // forces with friction may have run out of time
-  // What the tick leaves over gets ready for the first touch.
+  // The time that the tick leaves over prepares for the first touch.
   if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
     const Displacement to_pen = displacement(X_, Y, center_);
     at_.check->prepare(X_, {to_pen.dp + pen_moved.dp, to_pen.dr + pen_moved.dr},
@@ -188,17 +191,17 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   }
 }
 
-void ContactLoop::tell_forces(const Pose& Y, TickReport& report) {
+void ContactLoop::report_forces(const Pose& Y, TickReport& report) {
   report.planes.count = 0;
   report.forces = {};
   // Where X is not what the coupling's law gives, the wrench is not the contacts', and planes would make it another X.
   if (!resolver_->projects()) return;
   if (tracked_) {
     metric_.set_orientation(X_.q);
-    planes_.pick(at_.contacts->limits(), metric_, friction_, X_, Y, center_, keep_, known_forces(), deadline_ns_,
+    planes_.pick(at_.contacts->constraints(), metric_, friction_, X_, Y, center_, margin_, known_forces(), deadline_ns_,
                  report.planes, report.forces);
   } else {
-    // Out of time, the limits may be those of an earlier pose.
+    // Out of time, the constraints may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));
   }
   // What holds the part back is no contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
@@ -220,7 +223,7 @@ bool ContactLoop::track() {
   return tracked_;
 }
 
-double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
+double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) {
   held_by_planes_ = false;
   if (!track()) return 0;
   if (owed_) {
@@ -230,15 +233,15 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
   const double turn = error.dr.norm();
-  if (turn > most_turn_) error.dr *= most_turn_ / turn;
-  const Pose goal = turn > most_turn_ ? displaced(X_, center_, error) : Y;
+  if (turn > max_turn_) error.dr *= max_turn_ / turn;
+  const Pose goal = turn > max_turn_ ? displaced(X_, center_, error) : Y;
   const Vec6 wanted = metric_.whiten(error);
   Trial trial;
   bool free = false;
   for (int i = 0; i < kMaxResolves; ++i) {
     if (late() || !resolve(wanted, cap, report, trial)) return 0;
     if (size(trial.d) < kRest) {
-      if (i + 1 < kMaxResolves && look_around()) continue;
+      if (i + 1 < kMaxResolves && query_around()) continue;
       held_by_contacts_ = only_contacts();
       if (!resolver_->projects()) trust_ *= 0.5;
       if (cutting()) shorter_than(cap);
@@ -248,8 +251,8 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
     if (free) break;
     if (late() && !blocking_.empty()) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
-      // Out of time or work: what is proved of the motion is made, and the next piece is not much longer, or as long as
-      // all that was proved in this tick.
+      // Out of time or work: what is proved of the motion is made, and the next sub-step is not much longer, or as long
+      // as all that was proved in this tick.
       scale(trial, at_.check->free_share());
       trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kMinTrust});
       X_ = trial.X;
@@ -271,11 +274,11 @@ double ContactLoop::move_piece(const Pose& Y, double cap, TickReport& report) {
   if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
   if (!worth) {
     held_by_contacts_ = only_contacts();
-    look_around();
+    query_around();
     return 0;
   }
   X_ = trial.X;
-  tracked_ = looked_ = false;
+  tracked_ = queried_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));
   return size(trial.d);
 }
@@ -285,13 +288,13 @@ bool ContactLoop::take_in(const Displacement& d) {
          at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0;
 }
 
-bool ContactLoop::look_around() {
-  // Pieces need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface that
-  // was in no piece's way than to the contacts that hold it.
-  if (looked_ || moved_ > kStanding || cutting()) return false;
-  looked_ = true;
+bool ContactLoop::query_around() {
+  // Sub-steps need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface
+  // that was in no sub-step's way than to the contacts that hold it.
+  if (queried_ || moved_ > kStanding || cutting()) return false;
+  queried_ = true;
   blocking_.clear();
-  at_.check->check(X_, {}, kRecoverBelow * keep_, blocking_);
+  at_.check->check(X_, {}, kRecoverBelow * margin_, blocking_);
   return at_.contacts->seed(blocking_, X_, deadline_ns_) > 0;
 }
 
@@ -302,8 +305,8 @@ void ContactLoop::shorter_than(double cap) {
 }
 
 bool ContactLoop::cutting() const {
-  const auto& limits = at_.contacts->limits();
-  return std::any_of(limits.begin(), limits.end(), [](const Contact& c) { return c.age == kOneShotAge; });
+  const auto& constraints = at_.contacts->constraints();
+  return std::any_of(constraints.begin(), constraints.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
 LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
@@ -344,14 +347,14 @@ bool ContactLoop::shorten(Trial& trial, TickReport& report) {
 }
 
 bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y) {
-  // The program sees flat limits. Where they curve, the error that it promises to take away does not all go, or even
-  // grows: near the end of the way such steps would swing to and fro for ever.
+  // The program sees flat constraints. Where they curve, the error that it promises to take away does not all go, or
+  // even grows: near the end of the way such steps would swing to and fro for ever.
   const Vec6 step = metric_.whiten(trial.d);
   const double promised = error.squaredNorm() - (error - step).squaredNorm();
   if (promised <= 0) return true;  // a step that only opens gaps
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
-  if (made > kGood * promised) trust_ = std::min(2 * trust_, piece_cap_);
+  if (made > kGood * promised) trust_ = std::min(2 * trust_, substep_cap_);
   return made > kStiction * still_ticks_ * error.squaredNorm();
 }
 

@@ -26,19 +26,19 @@ class ContactLoop final : public ProxyLoop {
   /// before, nothing is kept.
   void stand_at(const Pose& X);
   const Pose& pose() const override { return X_; }
-  /// The limits at the end of the last tick.
-  const std::vector<Contact>& constraints() const override { return at_.contacts->limits(); }
+  /// The constraints at the end of the last tick.
+  const std::vector<Contact>& constraints() const override { return at_.contacts->constraints(); }
   const InitialContactReport& start() const override { return at_.start.report(); }
 
  private:
-  /// A motion that carries no point farther than this (m) is rest.
+  /// A motion that moves no point farther than this (m) counts as rest.
   static constexpr double kRest = 1e-10;
   /// A part that moved less than this in a tick (m) stands.
   static constexpr double kStanding = 2e-6;
-  /// Share of a blocked piece that is made as it is; for less, shorter pieces are tried.
+  /// A blocked sub-step is made as far as it is free, from this share on; below it, shorter ones are tried.
   static constexpr double kWorthwhile = 0.25;
-  /// Planes for one motion alone that leave little of it hold the part, and no surface does: a piece of this share of
-  /// its length is tried without them.
+  /// One-shot planes that leave little of a motion hold the part where no surface does: the tick tries a sub-step of
+  /// this share of its length without them.
   static constexpr double kShorter = 0.25;
 
   /// A displacement together with the pose it leads to.
@@ -47,23 +47,23 @@ class ContactLoop final : public ProxyLoop {
     Pose X;
   };
 
-  /// Moves X towards Y by one free piece no longer than `cap`; returns its length (m), 0 at rest or when blocked.
-  double move_piece(const Pose& Y, double cap, TickReport& report);
-  /// The trial of at most `cap` that the limits allow; false when there is none.
+  /// Moves X towards Y by one free sub-step no longer than `cap`; returns its length (m), 0 at rest or when blocked.
+  double move_substep(const Pose& Y, double cap, TickReport& report);
+  /// The trial of at most `cap` that the constraints allow; false when there is none.
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
-  /// One program over the limits: an allowed `motion` for `wanted`.
+  /// One program over the constraints: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
   /// Of a shorter way a program that does not project may bring a part nearer to its pen than of the whole, of which it
   /// makes `motion`: the best of some.
   bool try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
-  /// The last forces of a piece, as forces of the contacts that are tracked now.
+  /// The last forces of a sub-step, as forces of the contacts that are tracked now.
   const std::vector<FrictionForce>& known_forces();
   /// The same with friction, without gaps that should open.
   bool solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion);
   /// Opens gaps that were lost, by the least change of `motion`, where that is possible and short.
   void recover_gaps(TickReport& report, Vec6& motion);
   /// Sets which of the contacts that carry have slid in the tick, in which X moved by `moved`.
-  void tell_slip(const Displacement& moved, ContactForces& forces) const;
+  void report_slip(const Displacement& moved, ContactForces& forces) const;
   /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
   bool is_free(const Trial& trial, TickReport& report);
   /// Makes contacts, or planes for one motion, of what is in the way of `d`; whether there are fresh ones.
@@ -75,23 +75,23 @@ class ContactLoop final : public ProxyLoop {
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;
   /// Sets what the report says of contact planes and forces.
-  void tell_forces(const Pose& Y, TickReport& report);
+  void report_forces(const Pose& Y, TickReport& report);
   /// Fits the gap that contacts keep to the room that the part has.
-  void adapt_keep(const Pose& Y);
+  void adapt_margin(const Pose& Y);
   /// Whether contacts press from opposite sides.
   bool wedged() const;
   /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
   bool track();
   /// Once for each pose at which X stands: contacts from all that is nearer than contacts keep it. Whether there are
   /// fresh ones.
-  bool look_around();
-  /// The next piece is to be shorter than this one, which planes for one motion hold; they are forgotten.
+  bool query_around();
+  /// The next sub-step is to be shorter than this one, which planes for one motion hold; they are forgotten.
   void shorter_than(double cap);
   /// Whether a cutting plane limits the motion.
   bool cutting() const;
-  /// Marks the limits that `motion` uses up: they carry.
+  /// Marks the constraints that `motion` uses up: they carry.
   void mark_carriers(const Vec6& motion);
-  /// Limit number `i` carries in the last program.
+  /// Constraint number `i` carries in the last program.
   void carries(std::size_t i);
   /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,
   /// whatever features they come from.
@@ -103,14 +103,14 @@ class ContactLoop final : public ProxyLoop {
   ContactSettings settings_;
   Vec3 center_;
   CollisionWorld at_;
-  double piece_cap_;  ///< longest piece near other parts, m
+  double substep_cap_;  ///< longest sub-step near other parts, m
   Metric metric_;
-  double most_turn_;  ///< of a rotation error, rad
+  double max_turn_;  ///< of a rotation error, rad
   std::unique_ptr<Resolver> resolver_;
   LowRankMatrix rows_;
   std::vector<double> bounds_;
   FrictionRows friction_;
-  /// A force of the last piece with friction and the features that it was between.
+  /// A force of the last sub-step with friction and the features that it was between.
   struct KnownForce {
     PartId part;
     Feature feature_a, feature_b;
@@ -125,20 +125,20 @@ class ContactLoop final : public ProxyLoop {
   Pose last_Y_;
   double trust_;
   double moved_ = 0;     ///< of X in the last tick, m
-  double made_ = 0;      ///< pieces of this tick, m
+  double made_ = 0;      ///< sub-steps of this tick, m
   int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
-  double keep_;          ///< gap that contacts keep, m, between the next two
-  double least_keep_, most_keep_;
+  double margin_;        ///< gap that contacts keep, m, between the next two
+  double min_margin_, max_margin_;
   double recover_below_;  ///< share of the kept gap below which gaps recover
   int ticks_ = 0;
   std::optional<Displacement>
       owed_;                     ///< motion of the last tick that blocking_ stopped when no time was left for contacts
   bool tracked_ = false;         ///< the contacts are those of X_
-  bool was_cut_ = false;         ///< the last tick
+  bool timed_out_ = false;       ///< the last tick
   bool comes_ = false;           ///< X went as fast as it may in the last tick
-  bool looked_ = false;          ///< look_around() did at this pose
+  bool queried_ = false;         ///< query_around() did at this pose
   bool far_planes_ = false;      ///< see only_contacts()
-  bool held_by_planes_ = false;  ///< planes for one motion made the last piece short
+  bool held_by_planes_ = false;  ///< planes for one motion made the last sub-step short
   bool held_by_contacts_ = false;  ///< see TickEnd
   double allowed_ = 0;             ///< see TickEnd, m
   std::int64_t deadline_ns_ = 0;

@@ -1,6 +1,6 @@
-// What of a piece is different where contacts rub.
+// What of a sub-step is different where contacts rub.
 #include "loop/contact_loop.hpp"
-#include "loop/kept_gap.hpp"
+#include "loop/contact_margin.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -12,14 +12,15 @@ constexpr double kSlip = 1e-8;
 }  // namespace
 
 bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Vec6& motion) {
-  const auto& limits = at_.contacts->limits();
+  const auto& constraints = at_.contacts->constraints();
   rows_.clear();
-  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  for (const Contact& c : constraints) rows_.push_row(metric_.row(c));
   // The first program of a tick is solved to its end, or a part whose budget is short would never move.
   const std::int64_t deadline_ns = report.resolves == 0 ? kNoDeadline : deadline_ns_;
   for (const double slack : {0.0, kNormalNoise}) {
     const double give = slack * wanted.norm();
-    for (std::size_t i = 0; i < limits.size(); ++i) bounds_[i] = bound_of(limits[i], keep_, recover_below_, 0) - give;
+    for (std::size_t i = 0; i < constraints.size(); ++i)
+      bounds_[i] = bound_of(constraints[i], margin_, recover_below_, 0) - give;
     const Resolution r =
         resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted, deadline_ns));
     ++report.resolves;
@@ -32,7 +33,7 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
     known_.clear();
     if (r.forces != nullptr)
       for (const FrictionForce& f : *r.forces) {
-        const Contact& c = limits[static_cast<std::size_t>(f.row)];
+        const Contact& c = constraints[static_cast<std::size_t>(f.row)];
         if (known_.size() < known_.capacity()) known_.push_back({c.part, c.feature_a, c.feature_b, f});
       }
     mark_carriers(motion);
@@ -42,11 +43,11 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
 }
 
 const std::vector<FrictionForce>& ContactLoop::known_forces() {
-  const auto& limits = at_.contacts->limits();
+  const auto& constraints = at_.contacts->constraints();
   guess_.clear();
   for (const KnownForce& k : known_)
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      const Contact& c = limits[i];
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const Contact& c = constraints[i];
       if (c.part != k.part || c.feature_a != k.feature_a || c.feature_b != k.feature_b) continue;
       guess_.push_back(k.force);
       guess_.back().row = static_cast<int>(i);
@@ -56,21 +57,21 @@ const std::vector<FrictionForce>& ContactLoop::known_forces() {
 }
 
 void ContactLoop::recover_gaps(TickReport& report, Vec6& motion) {
-  const auto& limits = at_.contacts->limits();
+  const auto& constraints = at_.contacts->constraints();
   bool lost = false;
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    bounds_[i] = bound_of(limits[i], keep_, recover_below_, kRecovery * keep_);
-    lost |= is_lost(limits[i], keep_, recover_below_);
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    bounds_[i] = bound_of(constraints[i], margin_, recover_below_, kRecovery * margin_);
+    lost |= is_lost(constraints[i], margin_, recover_below_);
   }
   if (!lost) return;
   const Resolution r = resolver_->resolve(rows_, bounds_.data(), motion);
   ++report.resolves;
   report.iterations += r.iterations;
-  if (r.status == ResolveStatus::solved && size(metric_.unwhiten(r.motion - motion)) < kMaxRecovery * keep_)
+  if (r.status == ResolveStatus::solved && size(metric_.unwhiten(r.motion - motion)) < kMaxRecovery * margin_)
     motion = r.motion;
 }
 
-void ContactLoop::tell_slip(const Displacement& moved, ContactForces& forces) const {
+void ContactLoop::report_slip(const Displacement& moved, ContactForces& forces) const {
   const Vec3 c = X_ * center_;
   for (int i = 0; i < forces.count; ++i) {
     ContactForce& f = forces.items[static_cast<std::size_t>(i)];

@@ -1,15 +1,15 @@
-// The program over the contacts of a piece: from the wanted motion to one that they allow.
+// The program over the contacts of a sub-step: from the wanted motion to one that they allow.
 #include <algorithm>
 #include <utility>
 
 #include "loop/contact_loop.hpp"
-#include "loop/kept_gap.hpp"
+#include "loop/contact_margin.hpp"
 
 namespace tegotae {
 namespace {
 
-// A part that stands between opposite sides and may go along them by this share of its way, if the limits give way by
-// the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
+// A part that stands between opposite sides and may go along them by this share of its way, if the constraints give way
+// by the noise of their normals, is held by that noise alone: walls that meet at 1e-7 rad are parallel.
 constexpr double kAlongShare = 1e-2;
 
 }  // namespace
@@ -17,8 +17,8 @@ constexpr double kAlongShare = 1e-2;
 bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial) {
   Vec6 motion = wanted;
   bool rubs = false;
-  if (!at_.contacts->limits().empty()) {
-    rubs = friction_.fill(at_.contacts->limits(), metric_);
+  if (!at_.contacts->constraints().empty()) {
+    rubs = friction_.fill(at_.contacts->constraints(), metric_);
     if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
     // Cutting planes between triangles that do not touch explain no lag.
     if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
@@ -27,13 +27,13 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
   if (length > cap) {
-    // The direction is that of the whole way; its gaps are set right again at the length that is made, or a long way
+    // The direction is that of the whole motion. Gaps are recovered again at the length that is made, or a long motion
     // would leave nearly nothing of their recovery.
     const Vec6 scaled = (cap / length) * motion;
     motion = scaled;
-    if (!rubs && !at_.contacts->limits().empty() && !solve(scaled, report, motion)) motion = scaled;
+    if (!rubs && !at_.contacts->constraints().empty() && !solve(scaled, report, motion)) motion = scaled;
   }
-  // What is left of a longer way would see no load and so no friction; its gaps are set right without any.
+  // The rest of a longer motion would see no load and so no friction; its gaps are recovered without friction.
   if (rubs) recover_gaps(report, motion);
   trial.d = metric_.unwhiten(motion);
   trial.X = displaced(X_, center_, trial.d);
@@ -43,7 +43,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
   const double far = size(metric_.unwhiten(wanted));
   Vec6 best = motion;
-  for (double way = std::min(cap, far); way > keep_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
+  for (double way = std::min(cap, far); way > margin_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
        way *= kShorter) {
     if (!solve((way / far) * wanted, report, motion)) return false;
     if (motion.dot(wanted) > best.dot(wanted)) best = motion;
@@ -53,17 +53,17 @@ bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& r
 }
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
-  const auto& limits = at_.contacts->limits();
+  const auto& constraints = at_.contacts->constraints();
   rows_.clear();
-  for (const Contact& c : limits) rows_.push_row(metric_.row(c));
+  for (const Contact& c : constraints) rows_.push_row(metric_.row(c));
   // Gaps that were lost to rounding or curvature recover where the program allows it; without recovery it has an
   // answer, because standing still is one, but for rounding. Between walls without room that may be the only one, by
   // rounding too.
   bool only_stands = false;
-  for (const auto& [recovery, slack] : {std::pair(kRecovery * keep_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
+  for (const auto& [recovery, slack] : {std::pair(kRecovery * margin_, 0.0), {0.0, 0.0}, {0.0, kNormalNoise}}) {
     const double give = slack * wanted.norm();
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      bounds_[i] = bound_of(limits[i], keep_, recover_below_, recovery) - give;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      bounds_[i] = bound_of(constraints[i], margin_, recover_below_, recovery) - give;
     }
     const Resolution r = resolver_->resolve(rows_, bounds_.data(), wanted);
     ++report.resolves;
@@ -72,9 +72,9 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     motion = r.motion;
     if (only_stands && (r.status != ResolveStatus::solved || motion.norm() < kAlongShare * wanted.norm())) break;
     if (r.status != ResolveStatus::solved) continue;
-    // Gaps between nearly parallel limits may ask for a long way, even back out of a hole: they are not worth it.
+    // Gaps between nearly parallel constraints may ask for a long way, even back out of a hole: they are not worth it.
     const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * keep_) continue;
+    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * margin_) continue;
     only_stands = recovery == 0 && slack == 0 && resolver_->projects() && motion.norm() < kRest &&
                   wanted.norm() > kRest && wedged();
     if (only_stands) continue;
@@ -96,8 +96,8 @@ void ContactLoop::mark_carriers(const Vec6& motion) {
 
 void ContactLoop::carries(std::size_t i) {
   at_.contacts->carries(i);
-  if (!far_planes_ && at_.contacts->limits()[i].age == kOneShotAge)
-    far_planes_ = !at_.contacts->touches(i, keep_ / kKeepShare);
+  if (!far_planes_ && at_.contacts->constraints()[i].age == kOneShotAge)
+    far_planes_ = !at_.contacts->touches(i, margin_ / kMarginShare);
 }
 
 }  // namespace tegotae

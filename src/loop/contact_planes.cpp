@@ -14,11 +14,11 @@ constexpr double kTouching = 1e-7;
 
 }  // namespace
 
-bool PlanePicker::solve(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction,
+bool PlanePicker::solve(const std::vector<Contact>& constraints, const Metric& metric, FrictionRows& friction,
                         const Vec6& wanted, const std::vector<FrictionForce>& guess, std::int64_t deadline_ns,
                         Vec6& left) noexcept {
   forces_.clear();
-  rubs_ = friction.fill(limits, metric);
+  rubs_ = friction.fill(constraints, metric);
   if (rubs_) {
     // Forces that hold the part here press where it touches, to the last digits of a gap.
     for (const FrictionForce& f : guess)
@@ -42,36 +42,37 @@ bool PlanePicker::solve(const std::vector<Contact>& limits, const Metric& metric
   return true;
 }
 
-void PlanePicker::pick(const std::vector<Contact>& limits, const Metric& metric, FrictionRows& friction, const Pose& X,
-                       const Pose& Y, const Vec3& center, double keep, const std::vector<FrictionForce>& guess,
-                       std::int64_t deadline_ns, ContactPlanes& planes, ContactForces& forces) noexcept {
+void PlanePicker::pick(const std::vector<Contact>& constraints, const Metric& metric, FrictionRows& friction,
+                       const Pose& X, const Pose& Y, const Vec3& center, double margin,
+                       const std::vector<FrictionForce>& guess, std::int64_t deadline_ns, ContactPlanes& planes,
+                       ContactForces& forces) noexcept {
   planes.count = forces.count = 0;
   forces.available = false;
   planes.X = X;
   planes.pen = Y;
   const Displacement error = displacement(X, Y, center);
   forces.lag = pull(error);
-  const std::size_t n = std::min(limits.size(), bounds_.size());
+  const std::size_t n = std::min(constraints.size(), bounds_.size());
   if (n == 0) return;
   rows_.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    rows_.push_row(metric.row(limits[i]));
-    bounds_[i] = std::min(keep, limits[i].gap) - limits[i].gap;
+    rows_.push_row(metric.row(constraints[i]));
+    bounds_[i] = std::min(margin, constraints[i].gap) - constraints[i].gap;
   }
   Vec6 left;
-  if (!solve(limits, metric, friction, metric.whiten(error), guess, deadline_ns, left)) return;
+  if (!solve(constraints, metric, friction, metric.whiten(error), guess, deadline_ns, left)) return;
   // What the solution still goes is not held by contacts: the springs pull the part there.
   forces.lag = pull(metric.unwhiten(left));
   forces.available = true;
   const Vec3 center_W = X * center;
   const auto take = [&](std::size_t i) {
-    planes.planes[static_cast<std::size_t>(planes.count++)] = {limits[i].n, center_W + limits[i].r, -bounds_[i],
-                                                               rubs_ ? friction.mu(i) : 0};
+    planes.planes[static_cast<std::size_t>(planes.count++)] = {constraints[i].n, center_W + constraints[i].r,
+                                                               -bounds_[i], rubs_ ? friction.mu(i) : 0};
     bounds_[i] = -std::numeric_limits<double>::infinity();  // taken
   };
   for (const FrictionForce& f : forces_) {
     const auto i = static_cast<std::size_t>(f.row);
-    const Contact& c = limits[i];
+    const Contact& c = constraints[i];
     ContactForce& out = forces.items[static_cast<std::size_t>(forces.count++)];
     out = {c.part, center_W + c.r, c.n, c.gap, stiffness_ * f.normal, c.feature_a, c.feature_b};
     out.mu = rubs_ ? friction.mu(i) : 0;

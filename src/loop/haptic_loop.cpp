@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/latest_value.hpp"
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "loop/contact_list.hpp"
 #include "loop/lag.hpp"
 #include "loop/scene_changes.hpp"
@@ -127,7 +127,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (s.adopt(now_ns)) return s.suspend();
   reset(s.report);
   s.report.flags.scene_changed = s.changes->in_force() != before;
-  const bool placed = proper(Y), timed = proper_time(dt);
+  const bool placed = is_valid(Y), timed = proper_time(dt);
   s.report.flags.input_ignored = !(placed && timed);
   if (placed) s.Y = {Y.q.normalized(), Y.p};
   s.now->loop->step(s.target(), timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);

@@ -16,13 +16,13 @@ constexpr double kLongestTick = 0.02;
 // Impulses of a sub-step; a part wedged between contacts would go on for ever. Gaps are recovered in the first of them
 // only: those of opposite sides may not recover at once.
 constexpr int kMaxImpulses = 100, kRecovering = 30;
-// Pieces of a tick; each goes to the next collision.
-// New limits looked for on one piece of the way before it is shortened.
+// Sub-steps of a tick; each goes to the next collision.
+// New constraints looked for on one sub-step of the way before it is shortened.
 constexpr int kMaxSearches = 6;
 constexpr int kMaxHalvings = 4;
 constexpr std::size_t kMaxBlocking = 256;
-// Share of the envelope that a contact may lose in a piece before it counts as a collision: impulses at other contacts
-// leave speeds that die away but never vanish.
+// Share of the envelope that a contact may lose in a sub-step before it counts as a collision: impulses at other
+// contacts leave speeds that die away but never vanish.
 constexpr double kSlack = 0.05;
 // Share of a lost gap that one sub-step recovers.
 constexpr double kRecovery = 0.2;
@@ -33,7 +33,7 @@ constexpr double kRest = 1e-10;
 // No hand takes a part along faster (m/s, of any of its points); without a bound a pen that jumps by kilometers makes
 // spins that Euler's equation, taken explicitly, drives past every number.
 constexpr double kFastest = 100;
-// Bends a motion at most so far from the sum of its limits' straight lines (rad a piece).
+// Bends a motion at most so far from the sum of its constraints' straight lines (rad a sub-step).
 constexpr double kMaxTurn = 0.1;
 
 }  // namespace
@@ -44,7 +44,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
       mass_(mass),
       at_(scene, settings, mass),
       envelope_(std::min(kEnvelope, 0.5 * *settings.l_min)),
-      piece_cap_(at_.check->longest_motion()) {
+      substep_cap_(at_.check->longest_motion()) {
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMaxBlocking);
@@ -64,7 +64,7 @@ bool ImpulseLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 void ImpulseLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   collided_ = stuck_ = false;
   deadline_ns_ = deadline_ns;
-  if (at_.look_at_start(X_)) tracked_ = false;
+  if (at_.poll_initial_contacts(X_)) tracked_ = false;
   const double time = std::clamp(dt, 0.0, kLongestTick);
   const int n = std::max(1, static_cast<int>(std::ceil(time / settings_.impulse.substep - 1e-9)));
   const double h = time / n;
@@ -127,7 +127,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     next.time = left;
     recovery_ = impulses < kRecovering ? kRecovery / h : 0;
     if (impulses < kMaxImpulses) next = next_collision(left);
-    double time = next.limit < 0 ? left : next.time;
+    double time = next.constraint < 0 ? left : next.time;
     if (time > 0) {
       const bool search = searches < kMaxSearches && impulses < kMaxImpulses;
       const Advance outcome = advance(search, time, report);
@@ -144,7 +144,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
       }
       left -= time;
       searches = 0;
-      continue;  // the limits are followed to here first; the nearest of them collides
+      continue;  // the constraints are followed to here first; the nearest of them collides
     }
     collide(next);
     ++report.iterations;
@@ -165,9 +165,9 @@ double ImpulseLoop::opening_speed(const Contact& c) const {
 ImpulseLoop::Collision ImpulseLoop::next_collision(double time) const {
   Collision next;
   next.time = time;
-  const auto& limits = at_.contacts->limits();
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const Contact& c = limits[i];
+  const auto& constraints = at_.contacts->constraints();
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const Contact& c = constraints[i];
     const double v = speed(c), slack = kSlack * envelope_, room = c.gap - floor(c);
     const double approach = opening_speed(c) - v;
     if (approach <= 0 || room - approach * time > -slack) continue;
@@ -175,14 +175,14 @@ ImpulseLoop::Collision ImpulseLoop::next_collision(double time) const {
     // At the same time the one that closes fastest.
     const bool now = room < slack;
     const double when = now ? 0.0 : t;
-    if (next.limit >= 0 && (when > next.time || (when == next.time && approach <= next.approach))) continue;
+    if (next.constraint >= 0 && (when > next.time || (when == next.time && approach <= next.approach))) continue;
     next = {static_cast<int>(i), when, approach};
   }
   return next;
 }
 
 void ImpulseLoop::collide(const Collision& collision) {
-  const Contact& c = at_.contacts->limits()[static_cast<std::size_t>(collision.limit)];
+  const Contact& c = at_.contacts->constraints()[static_cast<std::size_t>(collision.constraint)];
   const Vec3 arm = c.r.cross(c.n);
   const double v = speed(c);
   // What the coupling itself has added in this sub-step is pressure, not an impact.
@@ -198,7 +198,7 @@ void ImpulseLoop::collide(const Collision& collision) {
 ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport& report) {
   const double length = time * (V_.v.norm() + at_.radius * V_.w.norm());
   if (length < kRest) return Advance::made;
-  time *= std::min({1.0, piece_cap_ / length, kMaxTurn / std::max(kMaxTurn, time * V_.w.norm())});
+  time *= std::min({1.0, substep_cap_ / length, kMaxTurn / std::max(kMaxTurn, time * V_.w.norm())});
   for (int i = 0; i <= kMaxHalvings && !late(); ++i, time *= 0.5) {
     const Displacement d{time * V_.v, time * V_.w};
     blocking_.clear();
@@ -219,7 +219,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport&
 }
 
 void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const {
-  at_.tell(2 * envelope_, report);
+  at_.fill_report(2 * envelope_, report);
   report.flags.timed_out |= late();
   const double left = size(displacement(X_, Y, mass_.center));
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;

@@ -23,12 +23,12 @@ class ImpulseLoop final : public ProxyLoop {
   bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
                  std::int64_t deadline_ns) override;
   const Pose& pose() const override { return X_; }
-  const std::vector<Contact>& constraints() const override { return at_.contacts->limits(); }
+  const std::vector<Contact>& constraints() const override { return at_.contacts->constraints(); }
   const InitialContactReport& start() const override { return at_.start.report(); }
 
  private:
   struct Collision {
-    int limit = -1;       ///< number of the limit, -1: none
+    int constraint = -1;  ///< number of the constraint, -1: none
     double time = 0;      ///< from now, s
     double approach = 0;  ///< how fast the contact closes, over what it should, m/s
   };
@@ -42,7 +42,7 @@ class ImpulseLoop final : public ProxyLoop {
   Collision next_collision(double time) const;
   void collide(const Collision& collision);
   /// Moves by V · time, or by as much of it as is free (then `time` is what was made). `found`, with `search` only: no
-  /// motion, but limits that were not known.
+  /// motion, but constraints that were not known.
   Advance advance(bool search, double& time, TickReport& report);
   /// Speed at which the contact should open at least: zero, or what recovers its gap.
   double opening_speed(const Contact& c) const;
@@ -57,7 +57,7 @@ class ImpulseLoop final : public ProxyLoop {
   MassProperties mass_;
   CollisionWorld at_;
   double envelope_;  ///< gap at which contacts collide, m
-  double piece_cap_;
+  double substep_cap_;
   Pose X_, last_Y_;
   Twist V_;              ///< of the center of mass
   Twist gained_;         ///< by the coupling in this sub-step

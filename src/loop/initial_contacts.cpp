@@ -15,9 +15,9 @@ namespace {
 
 // Beyond kGapFloor (m): the certificate's fast checks are rounded by 0.05 um in a part of 100 mm, and pairs without
 // that to spare are searched one by one, all of a seat in every tick.
-constexpr double kRoom = 2e-7;
+constexpr double kSpare = 2e-7;
 // Of a gap below kGapFloor, what motions must leave.
-constexpr double kKeepShare = 0.5;
+constexpr double kMarginShare = 0.5;
 // The deepest point that was found may not be the deepest: the copy is made smaller by this much more until it is free,
 // up to so many tolerances.
 constexpr double kMore = 1.25, kMaxTolerances = 2;
@@ -30,7 +30,7 @@ std::string length(double m) {
 
 /// What a pair has of kGapFloor that must not be lost: its gap in part, its depth in full.
 double kept(const Clash& c) {
-  return c.gap > 0 ? kKeepShare * c.gap : -c.depth.value_or(0);
+  return c.gap > 0 ? kMarginShare * c.gap : -c.depth.value_or(0);
 }
 
 bool free_at_start(const PatchTree& a, const Vec3& center, const PatchTree& b, const Pose& X_BA) {
@@ -55,14 +55,14 @@ InitialContacts::InitialContacts(const Scene& scene, const ContactSettings& sett
     InitialContact pair;
     pair.part = scene.parts[c.a].held ? c.b : c.a;
     pair.clash = c;
-    if (c.kind == ClashKind::overlap) suspend_or_refuse(scene, pair, "");
+    if (c.kind == ClashKind::overlap) filter_or_refuse(scene, pair, "");
     report_.pairs.push_back(pair);
     if (pair.state == InitialContactState::filtered) waiting_.back().pair = report_.pairs.size() - 1;
   }
   count_ = waiting_.size();
 }
 
-void InitialContacts::suspend_or_refuse(const Scene& scene, InitialContact& pair, const std::string& why) {
+void InitialContacts::filter_or_refuse(const Scene& scene, InitialContact& pair, const std::string& why) {
   const Part& other = scene.parts[pair.part];
   const Part& held = held_part(scene);
   const Clash& c = pair.clash;
@@ -85,24 +85,24 @@ void InitialContacts::suspend_or_refuse(const Scene& scene, InitialContact& pair
   w.inside = std::make_unique<ContainmentTest>(held.mesh, other.mesh);
   w.X_WB = other.pose;
   waiting_.push_back(std::move(w));
-  ++suspended_;
+  ++filtered_;
 }
 
-std::vector<InitialContacts::Copy> InitialContacts::relieve(const Scene& scene, const Vec3& center,
-                                                            std::uint32_t first) {
+std::vector<InitialContacts::Copy> InitialContacts::shrink(const Scene& scene, const Vec3& center,
+                                                           std::uint32_t first) {
   std::vector<Copy> copies;
   const Part& held = held_part(scene);
   for (std::size_t i = 0; i < report_.pairs.size(); ++i) {
     InitialContact& pair = report_.pairs[i];
     const Clash& c = pair.clash;
-    if (pair.state == InitialContactState::filtered || c.gap >= kGapFloor + kRoom) continue;
+    if (pair.state == InitialContactState::filtered || c.gap >= kGapFloor + kSpare) continue;
     const Part& other = scene.parts[pair.part];
     const Surface surface(other.mesh);
     const Pose X_BA = other.pose.inverse() * held.pose;
     const auto held_tree = cached_patch_tree(held.mesh);
     Copy copy{number_[pair.part], nullptr, nullptr};
     bool found = false;
-    for (double by = kGapFloor + kRoom - kept(c); !found && by < kGapFloor + kRoom + kMaxTolerances * tolerance_;
+    for (double by = kGapFloor + kSpare - kept(c); !found && by < kGapFloor + kSpare + kMaxTolerances * tolerance_;
          by *= kMore) {
       copy.mesh = std::make_shared<TriangleMesh>(inward_offset(surface, by));
       copy.tree = cached_patch_tree(copy.mesh);
@@ -111,7 +111,7 @@ std::vector<InitialContacts::Copy> InitialContacts::relieve(const Scene& scene, 
     }
     if (!found) {
       pair.inward_offset = 0;
-      suspend_or_refuse(scene, pair, ", and a smaller copy of the fixed part does not free them");
+      filter_or_refuse(scene, pair, ", and a smaller copy of the fixed part does not free them");
       waiting_.back().pair = i;
       continue;
     }
@@ -140,18 +140,18 @@ void InitialContacts::apply(std::vector<std::uint32_t>& near) const noexcept {
   }
 }
 
-const InitialContacts::Waiting* InitialContacts::look(const Pose& X, MotionCheck& check,
+const InitialContacts::Waiting* InitialContacts::poll(const Pose& X, MotionCheck& check,
                                                       std::int64_t deadline_ns) noexcept {
   if (X.p != last_.p || X.q.coeffs() != last_.q.coeffs()) {
     last_ = X;
-    looked_ = 0;
+    polled_ = 0;
   }
-  if (looked_ >= count_) return nullptr;
+  if (polled_ >= count_) return nullptr;
   next_ = next_ + 1 < count_ ? next_ + 1 : 0;
   const Waiting& w = waiting_[next_];
   const MotionAnswer answer = check.stands(X, w.part, kGapFloor, deadline_ns);
   // What time ran out for is asked again, also while the part stands still.
-  if (answer != MotionAnswer::unknown) ++looked_;
+  if (answer != MotionAnswer::unknown) ++polled_;
   if (answer != MotionAnswer::free || (w.inside && w.inside->inside(w.X_WB.inverse() * X))) return nullptr;
   report_.pairs[waiting_[next_].pair].freed = ++freed_;
   retire(next_);
@@ -160,7 +160,7 @@ const InitialContacts::Waiting* InitialContacts::look(const Pose& X, MotionCheck
 
 void InitialContacts::retire(std::size_t i) noexcept {
   report_.pairs[waiting_[i].pair].state = InitialContactState::active;
-  suspended_ -= waiting_[i].stand_in == kNobody ? 1 : 0;
+  filtered_ -= waiting_[i].stand_in == kNobody ? 1 : 0;
   --count_;
   std::swap(waiting_[i], waiting_[count_]);
 }

@@ -11,7 +11,7 @@
 
 namespace tegotae {
 
-/// No piece of a motion brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm
+/// No sub-step of a motion brings any triangles nearer than this gap (m). Collision libraries with a tolerance of 1 µm
 /// (Coal's GJK) count nearer ones as touching, and a recording should be free for them too.
 inline constexpr double kGapFloor = 1.1e-6;
 
@@ -45,32 +45,32 @@ class InitialContacts {
   /// much as is missing: then no motion that leaves kGapFloor to the copy brings the parts deeper into each other than
   /// they are. The copies are numbered from `first` on, in this order. `center` of mass of the held part (file frame).
   /// A pair that no copy frees counts as overlapping.
-  std::vector<Copy> relieve(const Scene& scene, const Vec3& center, std::uint32_t first);
+  std::vector<Copy> shrink(const Scene& scene, const Vec3& center, std::uint32_t first);
 
   const InitialContactReport& report() const { return report_; }
   std::size_t waiting() const { return count_; }
   const Waiting& waiting(std::size_t i) const { return waiting_[i]; }
-  int suspended() const { return suspended_; }
-  int relieved() const { return static_cast<int>(count_) - suspended_; }
+  int filtered() const { return filtered_; }
+  int shrunk() const { return static_cast<int>(count_) - filtered_; }
 
   /// Takes suspended parts out of a list of fixed parts, and puts copies in the place of theirs.
   void apply(std::vector<std::uint32_t>& near) const noexcept;
   /// Asks of one waiting pair whether it is free at `X` by kGapFloor; of the next one in the next call. When it is, it
   /// is active from now on and returned, otherwise null. Before MotionCheck::begin() of the tick. Never allocates.
-  const Waiting* look(const Pose& X, MotionCheck& check, std::int64_t deadline_ns) noexcept;
+  const Waiting* poll(const Pose& X, MotionCheck& check, std::int64_t deadline_ns) noexcept;
   /// Makes waiting pair `i` active; it was freed before the first tick.
   void free_at_start(std::size_t i);
   void set_shift(double shift) { report_.shift = shift; }
 
  private:
-  void suspend_or_refuse(const Scene& scene, InitialContact& pair, const std::string& why);
+  void filter_or_refuse(const Scene& scene, InitialContact& pair, const std::string& why);
   void retire(std::size_t i) noexcept;
 
   InitialContactReport report_;
   std::vector<std::uint32_t> number_;  ///< of each part of the scene among the fixed ones
   std::vector<Waiting> waiting_;       ///< the first `count_` of them still do
-  std::size_t count_ = 0, next_ = 0, looked_ = 0;
-  int suspended_ = 0;
+  std::size_t count_ = 0, next_ = 0, polled_ = 0;
+  int filtered_ = 0;
   std::uint32_t freed_ = 0;
   Pose last_;
   bool ignore_ = false;

@@ -25,9 +25,9 @@ class InitialSeparation {
         most_(most),
         X_(X),
         metric_(mass),
-        resolver_(make_resolver(ResolverKind::qp, kMaxLimits)),
-        rows_(kMaxLimits),
-        bounds_(kMaxLimits) {
+        resolver_(make_resolver(ResolverKind::qp, kMaxConstraints)),
+        rows_(kMaxConstraints),
+        bounds_(kMaxConstraints) {
     metric_.set_orientation(X.q);
     blocking_.reserve(kMaxBlocking);
   }
@@ -35,7 +35,7 @@ class InitialSeparation {
   Pose run() {
     std::vector<std::uint32_t> all;
     for (std::size_t i = 0; i < at_.start.waiting(); ++i)
-      if (relieved(i)) all.push_back(at_.start.waiting(i).part);
+      if (shrunk(i)) all.push_back(at_.start.waiting(i).part);
     if (all.size() > 1 && open(all)) return X_;
     // Where not all can be had at once (a pin that is too thick for its hole), what can.
     for (const std::uint32_t part : all) open({part});
@@ -50,13 +50,13 @@ class InitialSeparation {
     bool blocked;        ///< the part is still nearer than kGapFloor
   };
 
-  bool relieved(std::size_t i) const { return at_.start.waiting(i).stand_in != InitialContacts::kNobody; }
+  bool shrunk(std::size_t i) const { return at_.start.waiting(i).stand_in != InitialContacts::kNobody; }
 
   std::vector<Wanted> wanted(const std::vector<std::uint32_t>& parts) const {
     std::vector<Wanted> list;
     for (std::size_t i = 0; i < at_.start.waiting(); ++i) {
       const InitialContacts::Waiting& w = at_.start.waiting(i);
-      if (!relieved(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
+      if (!shrunk(i) || std::find(parts.begin(), parts.end(), w.part) == parts.end()) continue;
       const InitialContact& pair = at_.start.report().pairs[w.pair];
       const PartId id{static_cast<std::uint32_t>(pair.part)};
       list.push_back({id, w.part, w.stand_in, pair.inward_offset, pair.inward_offset + kMargin * kGapFloor, false});
@@ -90,7 +90,7 @@ class InitialSeparation {
 
   bool solve(const std::vector<Wanted>& list, Displacement& d) {
     rows_.clear();
-    for (const Contact& c : at_.contacts->limits()) {
+    for (const Contact& c : at_.contacts->constraints()) {
       const auto w = std::find_if(list.begin(), list.end(), [&](const Wanted& x) { return x.id == c.part; });
       const bool opens = w != list.end();
       const double gap = opens ? w->gap : std::min(c.gap, kMargin * kGapFloor);
@@ -144,7 +144,7 @@ class InitialSeparation {
   void retire(const std::vector<Wanted>& list) {
     for (std::size_t i = at_.start.waiting(); i-- > 0;) {
       const std::uint32_t part = at_.start.waiting(i).part;
-      if (relieved(i) && std::any_of(list.begin(), list.end(), [&](const Wanted& w) { return w.part == part; }))
+      if (shrunk(i) && std::any_of(list.begin(), list.end(), [&](const Wanted& w) { return w.part == part; }))
         at_.start.free_at_start(i);
     }
   }

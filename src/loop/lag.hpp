@@ -12,7 +12,7 @@ struct TickEnd {
   double lag = 0;                 ///< |X − Y| as TickReport::lag, m
   double bound = 0;               ///< lag_bound() of the part, m
   int contacts = 0;               ///< TickReport::contacts
-  bool held_by_contacts = false;  ///< the last program over contacts and other limits allowed no motion worth making
+  bool held_by_contacts = false;  ///< the last program over all constraints allowed no motion worth making
   double allowed = 0;             ///< length of the motion that it allowed and that was not made, m
   bool late = false;              ///< the tick's time is over
   bool moved = false;             ///< X moved in this tick

@@ -50,7 +50,7 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
   near_.reserve(parts.fixed.size());
   points_.reserve(kMaxSprings);
   springs_.reserve(kMaxSprings);
-  limits_.reserve(kMaxSprings);
+  constraints_.reserve(kMaxSprings);
 }
 
 void PenaltyLoop::move(const Displacement& d) {
@@ -66,7 +66,7 @@ void PenaltyLoop::query(double distance) {
 
 void PenaltyLoop::collect(double reach, TickReport& report) {
   springs_.clear();
-  limits_.clear();
+  constraints_.clear();
   collected_ = true;
   report.contacts = 0;
   report.contact_gap = 0;
@@ -88,7 +88,7 @@ void PenaltyLoop::collect(double reach, TickReport& report) {
       s.gap = p.gap;
       s.row << n, r.cross(n);
       springs_.push_back(s);
-      limits_.push_back({n, r, p.gap, ids_[part], 0, p.on_a, p.on_b});
+      constraints_.push_back({n, r, p.gap, ids_[part], 0, p.on_a, p.on_b});
       report.contacts += p.gap < 0 ? 1 : 0;
       report.depth = std::max(report.depth, -p.gap);
       report.gap = std::min(report.gap, p.gap);
@@ -126,8 +126,8 @@ bool PenaltyLoop::take_over(const TickReport& last, const Pose&, const std::vect
 void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickReport& report) {
   const Pose X_before = X_;
   const double wanted = size(displacement(X_, Y, center_)), most = kStepShare * radius_;
-  if (check_) start_.look(X_, *check_, deadline_ns);
-  report.filtered = start_.suspended();
+  if (check_) start_.poll(X_, *check_, deadline_ns);
+  report.filtered = start_.filtered();
   query(wanted);
   if (near_.empty()) {
     move(displacement(X_, Y, center_));

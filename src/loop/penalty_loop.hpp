@@ -25,7 +25,7 @@ class PenaltyLoop final : public ProxyLoop {
   bool take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
                  std::int64_t deadline_ns) override;
   const Pose& pose() const override { return X_; }
-  const std::vector<Contact>& constraints() const override { return limits_; }
+  const std::vector<Contact>& constraints() const override { return constraints_; }
   const InitialContactReport& start() const override { return start_.report(); }
 
  private:
@@ -57,8 +57,8 @@ class PenaltyLoop final : public ProxyLoop {
   std::vector<std::uint32_t> near_;
   std::vector<ShellPoint> points_;
   std::vector<Spring> springs_;
-  std::vector<Contact> limits_;  ///< the springs' vertices, for whoever looks on; gaps may be negative
-  bool collected_ = false;       ///< the springs are those of X_
+  std::vector<Contact> constraints_;  ///< the springs' vertices, for whoever looks on; gaps may be negative
+  bool collected_ = false;            ///< the springs are those of X_
   Pose X_;
 };
 

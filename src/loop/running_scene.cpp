@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "broadphase/bounding_spheres.hpp"
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/friction_pairs.hpp"
 #include "loop/held_weight.hpp"
@@ -70,7 +70,7 @@ const Scene& checked(const Scene& scene) {
   for (const Part& p : scene.parts) {
     if (!p.mesh || p.mesh->triangles.empty())
       throw Error(ErrorKind::other, "part \"" + p.name + "\" has no triangles", {{}, 0, {}, p.name});
-    if (!proper(p.pose))
+    if (!is_valid(p.pose))
       throw Error("part \"" + p.name + "\": its pose is not finite, not of unit length, or beyond 10 km");
   }
   return scene;

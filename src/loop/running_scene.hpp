@@ -35,7 +35,7 @@ struct RunningScene {
   HeldWeight weight;          ///< of the held part
   double scale;               ///< Scene::scale
   std::unique_ptr<ProxyLoop> loop;
-  RunningScene* done_before = nullptr;          ///< see DoubleBuffer
+  RunningScene* retired_before = nullptr;       ///< see DoubleBuffer
   std::shared_ptr<SceneChange::Record> change;  ///< that it came with; null: none
 
   /// Throws Error as HapticLoop's constructor.

@@ -80,12 +80,12 @@ bool SceneChanges::cancel(SceneChange::Record& change) {
 void SceneChanges::put_back(RunningScene* changed) noexcept {
   if (next_.put_back(changed)) return;
   changed->change->state.store(ChangeState::replaced, std::memory_order_release);
-  next_.done_with(changed);
+  next_.retire(changed);
 }
 
 void SceneChanges::come_into_force(RunningScene& changed, RunningScene* before) noexcept {
   if (before->change) before->change->state.store(ChangeState::superseded, std::memory_order_release);
-  next_.done_with(before);
+  next_.retire(before);
   in_force_.store(changed.number, std::memory_order_release);
   changed.change->state.store(ChangeState::in_force, std::memory_order_release);
 }

@@ -30,7 +30,7 @@ constexpr const char* kContactSchema =
     R"("gap":{"type":["number","null"],"description":"smallest known gap, m; null when nothing is near"}}})";
 constexpr const char* kTickSchema =
     R"({"title":"tegotae.Tick","type":"object","properties":{"tick":{"type":"integer"},)"
-    R"("substep":{"type":"integer","description":"number of the certified piece in its tick"},)"
+    R"("substep":{"type":"integer","description":"number of the certified sub-step in its tick"},)"
     R"("t":{"type":"number","description":"s since the start"},)"
     R"("tick_us":{"type":"number","description":"time the tick took; 0 in virtual time"},)"
     R"("lag_reason":{"type":"string","description":"why the part is not where the pen wants it",)"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "transport/shm_convert.hpp"
 
 namespace tegotae {
@@ -10,7 +10,7 @@ namespace tegotae {
 namespace {
 
 bool placed(const double (&position)[3], const double (&orientation)[4]) {
-  return proper({quaternion(orientation), vector(position)});
+  return is_valid({quaternion(orientation), vector(position)});
 }
 
 bool constant(double x) {
@@ -19,7 +19,7 @@ bool constant(double x) {
 
 }  // namespace
 
-bool sane(const tegotae_shm_application& in) noexcept {
+bool valid(const tegotae_shm_application& in) noexcept {
   return placed(in.position, in.orientation) && vector(in.velocity).allFinite() &&
          vector(in.angular_velocity).allFinite() && within_reach(vector(in.center)) &&
          vector(in.load_force).allFinite() && vector(in.load_torque).allFinite() && constant(in.stiffness) &&

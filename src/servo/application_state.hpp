@@ -9,7 +9,7 @@ namespace tegotae {
 
 /// Whether what stands in the application's slot can be: finite, poses with unit quaternions, constants in their
 /// ranges. Contact planes are judged by the local model, which does without bad ones.
-bool sane(const tegotae_shm_application& in) noexcept;
+bool valid(const tegotae_shm_application& in) noexcept;
 
 CouplingSettings coupling_of(const tegotae_shm_application& in) noexcept;
 MappingCommand mapping_of(const tegotae_shm_application& in) noexcept;

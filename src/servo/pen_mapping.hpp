@@ -22,7 +22,7 @@ class PenMapping {
  public:
   explicit PenMapping(const MappingSettings& settings) : settings_(settings) {}
 
-  /// A new state of the pen, which must be proper; `pen_center` is Device::reference_point(). Returns whether the
+  /// A new state of the pen, which must be valid; `pen_center` is Device::reference_point(). Returns whether the
   /// mapping is another one than before, so that the force must be engaged anew.
   bool update(const DeviceState& pen, const Vec3& pen_center, const MappingCommand& command) noexcept;
 

@@ -67,8 +67,8 @@ bool SafetyChain::alive(std::int64_t heartbeat_ns, std::int64_t now_ns) const no
 ForceOff SafetyChain::emergency(const SafetyInput& in) const noexcept {
   if (in.device_status != DeviceStatus::enabled)
     return in.device_reason == ForceOff::none ? ForceOff::software : in.device_reason;
-  if (!in.pen_proper) return ForceOff::not_finite;
-  if (in.attached && (!in.sane || !finite(in.wanted))) return ForceOff::not_finite;
+  if (!in.pen_valid) return ForceOff::not_finite;
+  if (in.attached && (!in.valid || !finite(in.wanted))) return ForceOff::not_finite;
   return ForceOff::none;
 }
 
@@ -115,7 +115,7 @@ SafetyOutput SafetyChain::apply(const SafetyInput& in) noexcept {
   const Wrench slewed = slew_.apply(target, dt);
   if (slewed.force != target.force || slewed.torque != target.torque) out.flags |= TEGOTAE_SHM_FLAG_SLEW;
   out.wrench = slewed;
-  out.whole = out.reason == ForceOff::none && out.flags == 0;
+  out.unmodified = out.reason == ForceOff::none && out.flags == 0;
   thermal_.add(slewed.force.norm(), dt);
   return out;
 }

@@ -12,15 +12,15 @@ struct SafetyInput {
   Wrench wanted;
   DeviceStatus device_status = DeviceStatus::uninitialized;
   ForceOff device_reason = ForceOff::none;
-  int force_freedom = 6;    ///< of the device; 0: it renders no force
-  bool pen_proper = false;  ///< its pose and velocity are finite and a pose
+  int force_freedom = 6;   ///< of the device; 0: it renders no force
+  bool pen_valid = false;  ///< its pose and velocity are finite and a pose
   bool pen_silent = false;
   bool pen_fast = false;
   Vec3 pen = Vec3::Zero();  ///< in the device's space, m
   std::uint32_t buttons = 0;
   bool attached = false;     ///< an application has ever written
   bool force_asked = false;  ///< by the application
-  bool sane = false;         ///< what the application says can be
+  bool valid = false;        ///< what the application says can be
   bool clutched = false;
   bool remapped = false;  ///< scale, clutch, home or the application changed: what was engaged is another thing now
   double energy = 0;      ///< J, of the passivity observer
@@ -33,7 +33,7 @@ struct SafetyOutput {
   Wrench wrench;                     ///< on its way to zero, or zero, unless `reason` is none
   ForceOff reason = ForceOff::none;  ///< the first link that turned the force off
   std::uint32_t flags = 0;           ///< TEGOTAE_SHM_FLAG_...
-  bool whole = false;                ///< the wrench is the wanted one, nothing cut or faded
+  bool unmodified = false;           ///< the wrench is the wanted one, nothing cut or faded
 };
 
 /// The one place that a wrench passes right before it is written to the device. First the links that turn it off, in

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "servo/application_state.hpp"
 #include "tegotae/coupling/stability.hpp"
 #include "transport/shm_convert.hpp"
@@ -67,9 +67,9 @@ ServoTick::ServoTick(Device& device, Channel& channel, const ServoSettings& sett
 void ServoTick::read_application() noexcept {
   if (!channel_.read(application_)) return;
   attached_ = true;
-  sane_ = sane(application_);
+  valid_ = valid(application_);
   // What cannot be leaves the last mapping in force; the safety chain turns the wrench off.
-  if (!sane_) return;
+  if (!valid_) return;
   coupling_ = coupling_of(application_);
   command_ = mapping_of(application_);
   if (held_center_ == command_.center) return;
@@ -77,17 +77,17 @@ void ServoTick::read_application() noexcept {
   device_.set_held_center(command_.center);
 }
 
-void ServoTick::tell_lead(std::int64_t now_ns) noexcept {
-  if (!attached_ || !sane_ || !started_ || !chain_.alive(application_.heartbeat_ns, now_ns)) return;
-  Displacement lead = displacement(proxy_of(application_).X, mapping_.Y(), command_.center);
-  lead.dp /= mapping_.scale();  // in the pen's meters
-  device_.set_tracking_error(lead);
+void ServoTick::report_tracking_error(std::int64_t now_ns) noexcept {
+  if (!attached_ || !valid_ || !started_ || !chain_.alive(application_.heartbeat_ns, now_ns)) return;
+  Displacement error = displacement(proxy_of(application_).X, mapping_.Y(), command_.center);
+  error.dp /= mapping_.scale();  // in the pen's meters
+  device_.set_tracking_error(error);
 }
 
 void ServoTick::follow_pen(const DeviceState& pen, SafetyInput& in) noexcept {
   moved_ = {};
-  in.pen_proper = proper(pen.pose) && pen.velocity.v.allFinite() && pen.velocity.w.allFinite();
-  if (!in.pen_proper) return;
+  in.pen_valid = is_valid(pen.pose) && pen.velocity.v.allFinite() && pen.velocity.w.allFinite();
+  if (!in.pen_valid) return;
   if (started_) moved_ = displacement(pen_, pen.pose, device_.reference_point());
   started_ = true;
   pen_ = pen.pose;
@@ -140,13 +140,13 @@ void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
   in.dt = ticks_ == 0 ? 1.0 / settings_.rate_hz : 1e-9 * static_cast<double>(now_ns - last_ns_);
   flags_ = 0;
   read_application();
-  tell_lead(now_ns);
+  report_tracking_error(now_ns);
   const DeviceState pen = device_.read();
   follow_pen(pen, in);
 
   double stored = 0;
-  if (attached_ && sane_ && in.pen_proper) in.wanted = coupling(stored);
-  passivity_.observe(moved_, rendered_, stored, whole_, in.dt,
+  if (attached_ && valid_ && in.pen_valid) in.wanted = coupling(stored);
+  passivity_.observe(moved_, rendered_, stored, unmodified_, in.dt,
                      steps_.energy(moved_, coupling_, info_.position_resolution, in.dt));
   if (safety_.passivity_control && (stored > 0 || carries_) && passivity_.acts() && coupling_.stiffness > 0) {
     const Wrench damping = passivity_.controller(coupling_.torsional_stiffness / coupling_.stiffness);
@@ -161,13 +161,13 @@ void ServoTick::run(std::int64_t now_ns) noexcept TEGOTAE_NONBLOCKING {
   in.buttons = pen.buttons;
   in.attached = attached_;
   in.force_asked = application_.enable != 0;
-  in.sane = sane_;
+  in.valid = valid_;
   in.energy = passivity_.energy();
   in.heartbeat_ns = application_.heartbeat_ns;
   const SafetyOutput out = chain_.apply(in);
   device_.write(out.wrench);
   rendered_ = out.wrench;
-  whole_ = out.whole;
+  unmodified_ = out.unmodified;
   // What was generated before is settled when the force is off.
   if (out.reason != ForceOff::none) passivity_.reset();
   if (out.reason != reason_ && out.reason != ForceOff::none) ++force_off_[static_cast<std::size_t>(out.reason)];

@@ -30,7 +30,7 @@ class ServoTick {
  private:
   void read_application() noexcept;
   /// Tells the device how far it is ahead of the part while an application is there.
-  void tell_lead(std::int64_t now_ns) noexcept;
+  void report_tracking_error(std::int64_t now_ns) noexcept;
   /// Wrench on the pen that the coupling asks for; sets what its springs store.
   Wrench coupling(double& stored) noexcept;
   /// Accounts for the way that the load of the part made.
@@ -53,7 +53,7 @@ class ServoTick {
 
   tegotae_shm_application application_{};
   bool attached_ = false;
-  bool sane_ = false;  // what the application says can be
+  bool valid_ = false;  // what the application says can be
   CouplingSettings coupling_;
   MappingCommand command_;
   std::optional<Vec3> held_center_;  // what the device was told last
@@ -61,11 +61,11 @@ class ServoTick {
   bool carries_ = false;
   Pose carried_at_;  // its pose then
 
-  bool started_ = false;  // a proper pen has been seen
+  bool started_ = false;  // a valid pen has been seen
   Pose pen_;              // raw, last
   Displacement moved_;    // since the last tick, of the pen's center
   Wrench rendered_;
-  bool whole_ = false;
+  bool unmodified_ = false;
   std::uint32_t flags_ = 0;  // of this tick, beside the chain's
   ForceOff reason_ = ForceOff::none;
   std::int64_t last_ns_ = 0;

@@ -6,7 +6,7 @@
 #include <new>
 #include <string>
 
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
@@ -68,7 +68,7 @@ Pose pose_of(const double* values) {
   required(values, "pose");
   const Quat q(values[3], values[4], values[5], values[6]);
   const Pose pose{q.normalized(), Vec3(values[0], values[1], values[2])};
-  if (!(q.norm() > 0) || !proper(pose)) throw Error("pose: not finite, without rotation, or beyond 10 km");
+  if (!(q.norm() > 0) || !is_valid(pose)) throw Error("pose: not finite, without rotation, or beyond 10 km");
   return pose;
 }
 

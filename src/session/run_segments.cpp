@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kPatience(1);
 constexpr std::chrono::milliseconds kPoll(1);
 
-std::string names_of_suspended(const InitialContactReport& start, const Scene& scene) {
+std::string names_of_filtered(const InitialContactReport& start, const Scene& scene) {
   std::string names;
   for (const InitialContact& pair : start.pairs)
     if (pair.state == InitialContactState::filtered) names += (names.empty() ? "" : ", ") + scene.parts[pair.part].name;
@@ -97,7 +97,7 @@ void RunSegments::begin(RunSegment& segment, const Scene& scene, const InitialCo
 
 void RunSegments::record(RunSegment& segment, const InitialContactReport& start) {
   RecordingInfo info{file_.path, segment.held, to_string(file_.scene.contact.resolver), settings_.program,
-                     names_of_suspended(start, segment.scene)};
+                     names_of_filtered(start, segment.scene)};
   info.guide = settings_.guide_path;
   if (settings_.hand != nullptr) info.goal = goal_text(file_.script.pose(file_.script.end()));
   segment.recording = settings_.record;

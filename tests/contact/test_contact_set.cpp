@@ -30,13 +30,13 @@ TEST_CASE("a box over a floor has its four corners as contacts, also when it hov
   ContactSet set(A, {{B, {Quat::Identity(), {0, 0, -0.01}}}}, Vec3::Zero(), 256);
   const Pose X{rotation({0.7 * tilt, tilt, 0}), {0.01, 0.02, 0.0202}};
   REQUIRE(set.track(X, 0.001, kNoDeadline));
-  REQUIRE(set.limits().empty());
+  REQUIRE(set.constraints().empty());
   REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) >= 4);
   int corners_found = 0;
   for (double sx : {-0.02, 0.02})
     for (double sy : {-0.02, 0.02}) {
       const Vec3 r = X.q * Vec3(sx, sy, -0.02);
-      for (const Contact& c : set.limits())
+      for (const Contact& c : set.constraints())
         if ((c.r - r).norm() < 1e-12) {
           ++corners_found;
           REQUIRE(c.n.z() == Approx(1.0));
@@ -53,18 +53,18 @@ TEST_CASE("pairs keep their identity and age while followed, and are dropped pas
   Pose X{Quat::Identity(), {0, 0, 0.0201}};
   REQUIRE(set.track(X, 0.001, kNoDeadline));
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
-  const std::size_t n = set.limits().size();
+  const std::size_t n = set.constraints().size();
   REQUIRE(n >= 4);
   for (int tick = 1; tick <= 10; ++tick) {
     X.p.x() += 0.001;
     REQUIRE(set.track(X, 0.001, kNoDeadline));
-    REQUIRE(set.limits().size() == n);
-    for (const Contact& c : set.limits()) REQUIRE(c.age == tick);
+    REQUIRE(set.constraints().size() == n);
+    for (const Contact& c : set.constraints()) REQUIRE(c.age == tick);
     REQUIRE(set.seed(all_pairs(*A, *B), X, kNoDeadline) == 0);  // nothing new: the followed pairs are these
   }
   X.p.z() += 0.002;
   REQUIRE(set.track(X, 0.001, kNoDeadline));
-  REQUIRE(set.limits().empty());
+  REQUIRE(set.constraints().empty());
 }
 
 TEST_CASE("a corner in a concave corner is limited by both faces", "[contact]") {
@@ -79,7 +79,7 @@ TEST_CASE("a corner in a concave corner is limited by both faces", "[contact]") 
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
   bool floor = false, wall = false;
   const Vec3 wall_normal = Vec3(1, 0, 0.2).normalized();
-  for (const Contact& c : set.limits()) {
+  for (const Contact& c : set.constraints()) {
     floor |= c.n.z() > 0.999;
     wall |= c.n.dot(wall_normal) > 0.999;
   }
@@ -93,7 +93,7 @@ TEST_CASE("capacity is kept and its overflow counted", "[contact]") {
   const Pose X{Quat::Identity(), {0, 0, 0.0201}};
   REQUIRE(set.track(X, 0.001, kNoDeadline));
   set.seed(all_pairs(*A, *B), X, kNoDeadline);
-  REQUIRE(set.limits().size() == 2);
+  REQUIRE(set.constraints().size() == 2);
   REQUIRE(set.overflow() > 0);
 }
 
@@ -118,14 +118,14 @@ TEST_CASE("of too many pairs those that hold the part to all sides are followed,
   for (int k = 0; k < 64; ++k) {
     const Vec3 out(std::cos(2 * M_PI * k / 64), std::sin(2 * M_PI * k / 64), 0);
     double farthest = 0;
-    for (const Contact& c : set.limits()) farthest = std::max(farthest, c.r.dot(out));
+    for (const Contact& c : set.constraints()) farthest = std::max(farthest, c.r.dot(out));
     CHECK(farthest > 0.95 * 0.02);
   }
   // Chosen once more from the same pairs, nothing changes; what was dropped can be started again.
-  const std::vector<Contact> limits = set.limits();
+  const std::vector<Contact> constraints = set.constraints();
   REQUIRE(set.track(X, 0.001, kNoDeadline));
-  REQUIRE(set.limits().size() == limits.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) CHECK(set.limits()[i].r == limits[i].r);
+  REQUIRE(set.constraints().size() == constraints.size());
+  for (std::size_t i = 0; i < constraints.size(); ++i) CHECK(set.constraints()[i].r == constraints[i].r);
   CHECK(set.overflow() == 0);
   CHECK(set.seed(triangles, X, kNoDeadline) > 0);
 }
@@ -142,18 +142,18 @@ TEST_CASE("pairs that carry force are followed however many are nearer", "[conta
   std::vector<Vec3> farthest;
   for (int i = 0; i < 5; ++i) {
     std::size_t at = 0;
-    for (std::size_t k = 0; k < set.limits().size(); ++k) {
-      const Vec3& r = set.limits()[k].r;
+    for (std::size_t k = 0; k < set.constraints().size(); ++k) {
+      const Vec3& r = set.constraints()[k].r;
       const bool taken = std::any_of(farthest.begin(), farthest.end(), [&r](const Vec3& q) { return q == r; });
-      if (!taken && (at == 0 || set.limits()[k].gap > set.limits()[at].gap)) at = k;
+      if (!taken && (at == 0 || set.constraints()[k].gap > set.constraints()[at].gap)) at = k;
     }
     set.carries(at);
-    farthest.push_back(set.limits()[at].r);
+    farthest.push_back(set.constraints()[at].r);
   }
   REQUIRE(set.track(X, 0.001, kNoDeadline));
   CHECK(set.followed() == most);
   for (const Vec3& r : farthest)
-    CHECK(std::any_of(set.limits().begin(), set.limits().end(), [&r](const Contact& c) { return c.r == r; }));
+    CHECK(std::any_of(set.constraints().begin(), set.constraints().end(), [&r](const Contact& c) { return c.r == r; }));
 }
 
 TEST_CASE("a face in the middle of a large flat region leads to the corners of the region", "[contact]") {
@@ -175,8 +175,8 @@ TEST_CASE("a face in the middle of a large flat region leads to the corners of t
   REQUIRE(t.b != kNone);
   REQUIRE(set.track(X, 0.001, kNoDeadline));
   REQUIRE(set.seed({t}, X, kNoDeadline) == 4);
-  REQUIRE(set.limits().size() == 4);
-  for (const Contact& c : set.limits()) {
+  REQUIRE(set.constraints().size() == 4);
+  for (const Contact& c : set.constraints()) {
     CHECK(std::abs(c.r.x()) == Approx(0.02));
     CHECK(std::abs(c.r.y()) == Approx(0.02));
     CHECK(c.gap == Approx(1e-5));
@@ -199,7 +199,7 @@ TEST_CASE("a cutting plane knows how far apart its triangles are", "[contact]") 
     REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
     const Displacement d{Vec3(-0.02, 0, -2e-5), Vec3::Zero()};
     REQUIRE(set.cut({{0, 0, 0}}, d, 1e-6, kNoDeadline) == 1);
-    REQUIRE(set.limits().size() == 1);
+    REQUIRE(set.constraints().size() == 1);
     CHECK(set.touches(0, 1.001 * apart));
     CHECK_FALSE(set.touches(0, 0.999 * apart));
   }
@@ -217,7 +217,7 @@ TEST_CASE("a cutting plane's triangle may have collapsed in welding", "[contact]
   REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
   const Displacement d{Vec3(0, 0, -2e-5), Vec3::Zero()};
   REQUIRE(set.cut({{0, 1, 0}, {0, 0, 1}, {0, 1, 1}}, d, 1e-6, kNoDeadline) > 0);
-  for (std::size_t i = 0; i < set.limits().size(); ++i) {
+  for (std::size_t i = 0; i < set.constraints().size(); ++i) {
     CHECK(set.touches(i, 1.001 * height));
     CHECK_FALSE(set.touches(i, 0.999 * height));
   }

@@ -1,5 +1,5 @@
 // What holds a part must be contacts, whatever its surface is made of: fans of needles, slivers, T-junctions, open flat
-// sheets, poles, noise. FCL is the judge: no motion that the limits of a tick allow may make triangles intersect.
+// sheets, poles, noise. FCL is the judge: no motion that the constraints of a tick allow may make triangles intersect.
 #include <cstdio>
 
 #include "bodies.hpp"
@@ -121,7 +121,7 @@ std::vector<Case> cases() {
   return list;
 }
 
-/// How many of many motions that the limits allow, of those that a hand at `Y` may wish, FCL finds intersecting.
+/// How many of many motions that the constraints allow, of those that a hand at `Y` may wish, FCL finds intersecting.
 int entering(const HapticLoop& loop, const Scene& scene, const TickReport& tick, const Pose& Y, bool all_sides) {
   const Vec3& center = loop.center();
   const Pose& X = tick.proxy.X;
@@ -192,7 +192,8 @@ TEST_CASE("what holds a pressed part are contacts, on any kind of triangles", "[
           CHECK(entering(loop, scene, tick, Y, all_sides) == 0);
       }
       std::printf(
-          "support, %s, %s: %d contacts, at most %d limits, %d ticks without a contact, worst unexplained %.3f mm\n",
+          "support, %s, %s: %d contacts, at most %d constraints, %d ticks without a contact, worst unexplained %.3f "
+          "mm\n",
           c.name, resolver, loop.report().contacts, most, silent, 1e3 * worst_lag);
       INFO(c.name << ", " << resolver);
       CHECK(silent == 0);

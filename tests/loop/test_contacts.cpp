@@ -84,7 +84,7 @@ TEST_CASE("contacts name part, features and points of both surfaces", "[contacts
       CHECK(c.normal.dot(on_floor ? Vec3(0, 0, 1) : Vec3(-1, 0, 0)) == Approx(1).margin(1e-6));
     }
   }
-  // Impulses know the limits of the pose before the last piece, of up to a fraction of the contact gap.
+  // Impulses know the constraints of the pose before the last piece, of up to a fraction of the contact gap.
   CHECK(off < (resolver == "impulse" ? 2e-5 : 1e-9));
   CHECK(gap_off < 1e-12);
   CHECK(plane < (resolver == "impulse" ? 2e-5 : 1e-9));

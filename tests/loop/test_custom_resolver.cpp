@@ -14,7 +14,7 @@ using namespace tegotae::test;
 
 namespace {
 
-/// Answers what it is told to, without a look at the limits.
+/// Answers what it is told to, without a look at the constraints.
 class Liar final : public Resolver {
  public:
   explicit Liar(int kind) : kind_(kind) {}

@@ -234,7 +234,7 @@ TEST_CASE("a block pressed into a slot slides, comes no deeper, and is kept out 
 }
 
 TEST_CASE("a block pressed in between two boards is pulled out from where it rubs on their ends", "[start]") {
-  // Walls of two parts, exactly opposite, with no room between: their limits have no answer but along them.
+  // Walls of two parts, exactly opposite, with no room between: their constraints have no answer but along them.
   const std::string resolver = GENERATE("lp", "qp");
   const double aside = GENERATE(0.0, 1e-6, 1e-4);
   CAPTURE(resolver, aside);

@@ -58,7 +58,7 @@ TEST_CASE("in the metric of the coupling the squared length is the springs' ener
   }
 }
 
-TEST_CASE("a resolved motion keeps every limit and never goes away from the target", "[resolve]") {
+TEST_CASE("a resolved motion satisfies every constraint and never goes away from the target", "[resolve]") {
   const std::string name = GENERATE("lp", "qp");
   CAPTURE(name);
   std::mt19937 rng(52);
@@ -83,7 +83,7 @@ TEST_CASE("a resolved motion keeps every limit and never goes away from the targ
   }
 }
 
-TEST_CASE("limits that contradict each other are reported, and nothing moves", "[resolve]") {
+TEST_CASE("constraints that contradict each other are reported, and nothing moves", "[resolve]") {
   const std::string name = GENERATE("lp", "qp");
   const auto resolver = make_resolver(resolver_kind(name), 8);
   LowRankMatrix rows(8);

@@ -20,7 +20,7 @@ SafetyInput good(std::int64_t now = kNow) {
   SafetyInput in;
   in.wanted = {Vec3(1, 2, 2), Vec3(0.01, 0.02, 0)};
   in.device_status = DeviceStatus::enabled;
-  in.pen_proper = in.attached = in.force_asked = in.sane = true;
+  in.pen_valid = in.attached = in.force_asked = in.valid = true;
   in.heartbeat_ns = now - kMs;
   in.now_ns = now;
   in.dt = kTick;
@@ -67,7 +67,7 @@ TEST_CASE("a good wrench passes unchanged", "[servo]") {
   const SafetyOutput out = chain.apply(good());
   CHECK(out.reason == ForceOff::none);
   CHECK(out.flags == 0);
-  CHECK(out.whole);
+  CHECK(out.unmodified);
   CHECK(out.wrench.force == Vec3(1, 2, 2));
   CHECK(out.wrench.torque == Vec3(0.01, 0.02, 0));
 }
@@ -80,10 +80,10 @@ TEST_CASE("emergencies turn the force off at once and say why", "[servo]") {
   in.device_reason = ForceOff::none;  // a driver that gives no reason
   check_off(in, ForceOff::software);
   in = good();
-  in.pen_proper = false;
+  in.pen_valid = false;
   check_off(in, ForceOff::not_finite);
   in = good();
-  in.sane = false;
+  in.valid = false;
   check_off(in, ForceOff::not_finite);
   for (double bad : {kNan, kInfinity, -kInfinity}) {
     in = good();
@@ -231,8 +231,8 @@ TEST_CASE("whatever comes in, nothing leaves that is too much or too sudden", "[
     if (sometimes(2000)) now.pen[static_cast<int>(rng() % 3)] = garbage[rng() % 5];
     if (sometimes(2000)) now.energy = garbage[rng() % 5];
     if (sometimes(2000)) now.device_status = DeviceStatus::ready;
-    if (sometimes(2000)) now.pen_proper = false;
-    if (sometimes(2000)) now.sane = false;
+    if (sometimes(2000)) now.pen_valid = false;
+    if (sometimes(2000)) now.valid = false;
     if (sometimes(2000)) now.buttons = 0;
     if (sometimes(2000)) now.pen_fast = true;
     if (sometimes(2000)) now.pen_silent = true;
@@ -240,7 +240,7 @@ TEST_CASE("whatever comes in, nothing leaves that is too much or too sudden", "[
     if (sometimes(2000)) now.remapped = true;
     if (sometimes(2000)) now.force_asked = false;
     if (sometimes(2000)) now.heartbeat_ns = static_cast<std::int64_t>(rng());
-    const bool emergency = now.device_status != DeviceStatus::enabled || !now.pen_proper || !now.sane ||
+    const bool emergency = now.device_status != DeviceStatus::enabled || !now.pen_valid || !now.valid ||
                            !now.wanted.force.allFinite() || !now.wanted.torque.allFinite();
     const SafetyOutput out = chain.apply(now);
     REQUIRE(out.wrench.force.allFinite());

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "catch.hpp"
-#include "core/proper_pose.hpp"
+#include "core/valid_pose.hpp"
 #include "servo/safety_links.hpp"
 
 using namespace tegotae;
@@ -28,19 +28,19 @@ TEST_CASE("times of garbage are apart", "[servo]") {
   CHECK_FALSE(within(Limits::min(), 1, 100));
 }
 
-TEST_CASE("a pose is proper when it is finite and its quaternion has length one", "[servo]") {
-  CHECK(proper(Pose()));
+TEST_CASE("a pose is valid when it is finite and its quaternion has length one", "[servo]") {
+  CHECK(is_valid(Pose()));
   Pose bad;
   bad.q.coeffs() *= 1.01;
-  CHECK_FALSE(proper(bad));
+  CHECK_FALSE(is_valid(bad));
   bad = Pose();
   bad.q.coeffs()[2] = std::nan("");
-  CHECK_FALSE(proper(bad));
+  CHECK_FALSE(is_valid(bad));
   bad = Pose();
   bad.p.y() = std::numeric_limits<double>::infinity();
-  CHECK_FALSE(proper(bad));
+  CHECK_FALSE(is_valid(bad));
   bad.p.y() = -2 * kFarthest;
-  CHECK_FALSE(proper(bad));
+  CHECK_FALSE(is_valid(bad));
 }
 
 TEST_CASE("the force fades over the margin of the workspace", "[servo]") {

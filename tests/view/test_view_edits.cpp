@@ -131,14 +131,14 @@ std::string numbered(const TempFolder& folder, std::size_t number, const std::st
   return folder / ("run" + (number == 1 ? "" : "." + std::to_string(number)) + extension);
 }
 
-struct Stretch {
+struct RecordedSegment {
   Recording recording;
   SceneFile scene;
 };
 
 /// The recordings of a run, each with the scene that it names.
-std::vector<Stretch> recordings(const TempFolder& folder, std::size_t count, const std::string& extension) {
-  std::vector<Stretch> all;
+std::vector<RecordedSegment> recordings(const TempFolder& folder, std::size_t count, const std::string& extension) {
+  std::vector<RecordedSegment> all;
   for (std::size_t k = 1; k <= count; ++k) {
     CAPTURE(k);
     Recording recording = read_recording(numbered(folder, k, extension));
@@ -161,8 +161,8 @@ std::vector<Stretch> recordings(const TempFolder& folder, std::size_t count, con
 }
 
 /// FCL on every pose, in the scene of its recording.
-void check_free(const std::vector<Stretch>& all) {
-  for (const Stretch& s : all) {
+void check_free(const std::vector<RecordedSegment>& all) {
+  for (const RecordedSegment& s : all) {
     const FclOracle oracle(s.scene.scene);
     std::size_t intersecting = 0;
     for (const RecordFrame& f : s.recording.frames) intersecting += oracle.intersecting(f.x).empty() ? 0 : 1;
@@ -173,10 +173,10 @@ void check_free(const std::vector<Stretch>& all) {
 
 /// Ticks count on, one by one, over all recordings; the held part goes on from where it was, or starts where the scene
 /// puts it, and nowhere jumps.
-void check_going_on(const std::vector<Stretch>& all) {
+void check_going_on(const std::vector<RecordedSegment>& all) {
   const RecordFrame* last = nullptr;
   std::string held;
-  for (const Stretch& s : all) {
+  for (const RecordedSegment& s : all) {
     CAPTURE(s.scene.path);
     bool first = true;
     for (const RecordFrame& f : s.recording.frames) {
@@ -202,7 +202,7 @@ void check_going_on(const std::vector<Stretch>& all) {
 }
 
 /// After another part was taken the force goes to zero, and comes on again from a small one.
-void check_force_after(const Stretch& s) {
+void check_force_after(const RecordedSegment& s) {
   CAPTURE(s.scene.path);
   const double begin = s.recording.frames.front().t;
   bool off = false;
@@ -250,7 +250,7 @@ TEST_CASE("parts are held, moved, removed and added back while a pen runs and th
   CHECK(summary.at("record_dropped") == 0);
   CHECK(summary.at("recordings").size() == static_cast<std::size_t>(page.edits()) + 1);
   CHECK(summary.at("ticks").get<long>() >= page.tick());
-  const std::vector<Stretch> all = recordings(folder, static_cast<std::size_t>(page.edits()) + 1, ".csv");
+  const std::vector<RecordedSegment> all = recordings(folder, static_cast<std::size_t>(page.edits()) + 1, ".csv");
   check_free(all);
   check_going_on(all);
   check_force_after(all[3]);
@@ -285,7 +285,7 @@ TEST_CASE("a run in virtual time that stands takes changes, and goes on in them"
   s.interrupt();
   CHECK(s.wait() == 0);
   CHECK(json::parse(s.out()).at("penetrating") == 0);
-  const std::vector<Stretch> all = recordings(folder, 3, ".mcap");
+  const std::vector<RecordedSegment> all = recordings(folder, 3, ".mcap");
   check_free(all);
   check_going_on(all);
 }
@@ -307,7 +307,7 @@ TEST_CASE("another part is taken by the pen of another process, which is not los
   CHECK(s.wait() == 0);
   CHECK(json::parse(s.out()).at("device_losses") == 0);
   CHECK(device.end(SIGINT) == 0);
-  const std::vector<Stretch> all = recordings(folder, 5, ".csv");
+  const std::vector<RecordedSegment> all = recordings(folder, 5, ".csv");
   check_free(all);
   check_going_on(all);
   // The stick swings as the pen does.

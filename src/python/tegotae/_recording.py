@@ -13,7 +13,7 @@ from ._tegotae import _read_recording
 
 @dataclass(frozen=True)
 class Recording:
-    """A recording: n rows, one for each certified piece of a tick of the contact loop.
+    """A recording: n rows, one for each certified sub-step of a tick of the contact loop.
 
     Attributes
     ----------

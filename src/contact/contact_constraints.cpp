@@ -24,7 +24,7 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
     const AxisLimit axis = least_limiting_axis(a, b, motion, clearance);
     if (!axis.found) continue;
     const Feature face_a{FeatureKind::face, t.a}, face_b{FeatureKind::face, t.b};
-    if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kOneShotAge, face_a, face_b}, limits_)) continue;
+    if (!add({axis.n, a[axis.corner] - c, axis.gap, B.part, kOneShotAge, face_a, face_b}, constraints_)) continue;
     owners_.push_back(kNone);
     cut_.push_back(t);
     ++added;
@@ -32,8 +32,8 @@ int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& 
   return added;
 }
 
-bool ContactSet::touches(std::size_t limit, double distance) const noexcept {
-  const Contact& c = limits_[limit];
+bool ContactSet::touches(std::size_t constraint, double distance) const noexcept {
+  const Contact& c = constraints_[constraint];
   return std::any_of(cut_.begin(), cut_.end(), [&](const FacePair& t) {
     if (t.a != c.feature_a.index || t.b != c.feature_b.index || !(fixed_[t.part].part == c.part)) return false;
     // The triangles as they are: one that has collapsed in welding has no edges to walk over.
@@ -70,22 +70,22 @@ Vec3 ContactSet::normal_B(std::uint32_t part, const FeaturePair& at) const {
   return out.squaredNorm() > 0 ? Vec3(out.normalized()) : Vec3::UnitZ();
 }
 
-Contact ContactSet::limit_of(std::uint32_t part, const FeaturePair& at, int age) const {
+Contact ContactSet::constraint_of(std::uint32_t part, const FeaturePair& at, int age) const {
   const FixedSurface& B = fixed_[part];
   const Vec3 n = B.X_WB.q * normal_B(part, at);
   return {n, B.X_WB * at.p_a - X_ * center_, at.distance, B.part, age, at.a, at.b};
 }
 
-void ContactSet::add_limits(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& limits,
-                            std::vector<std::uint32_t>& owners) {
-  if (add(limit_of(next_[pair].part, at, next_[pair].age), limits)) owners.push_back(pair);
-  add_reflex_limits(pair, at, limits, owners);
+void ContactSet::add_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
+                                 std::vector<std::uint32_t>& owners) {
+  if (add(constraint_of(next_[pair].part, at, next_[pair].age), constraints)) owners.push_back(pair);
+  add_reflex_constraints(pair, at, constraints, owners);
 }
 
-void ContactSet::add_reflex_limits(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& limits,
-                                   std::vector<std::uint32_t>& owners) {
+void ContactSet::add_reflex_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
+                                        std::vector<std::uint32_t>& owners) {
   // A corner that hovers over one side of a concave edge is limited by the face on the other side too, although its
-  // projection on that face lies just outside: without that limit it slides along its face into the other one.
+  // projection on that face lies just outside: without that constraint it slides along its face into the other one.
   const bool corner_of_a = at.a.kind == FeatureKind::vertex && at.b.kind == FeatureKind::face;
   const bool corner_of_b = at.b.kind == FeatureKind::vertex && at.a.kind == FeatureKind::face;
   if (!corner_of_a && !corner_of_b) return;
@@ -117,23 +117,23 @@ void ContactSet::add_reflex_limits(std::uint32_t pair, const FeaturePair& at, st
     const Vec3 n_W = corner_of_a ? Vec3(B.X_WB.q * n) : Vec3(-(X_.q * n));
     const Vec3 on_a_W = corner_of_a ? Vec3(B.X_WB * corner) : Vec3(X_ * foot);
     const Feature across{FeatureKind::face, other};
-    const Contact limit{n_W,
-                        on_a_W - X_ * center_,
-                        height,
-                        B.part,
-                        next_[pair].age,
-                        corner_of_a ? at.a : across,
-                        corner_of_a ? across : at.b};
-    if (add(limit, limits)) owners.push_back(pair);
+    const Contact constraint{n_W,
+                             on_a_W - X_ * center_,
+                             height,
+                             B.part,
+                             next_[pair].age,
+                             corner_of_a ? at.a : across,
+                             corner_of_a ? across : at.b};
+    if (add(constraint, constraints)) owners.push_back(pair);
   }
 }
 
-bool ContactSet::add(const Contact& contact, std::vector<Contact>& limits) {
-  if (static_cast<int>(limits.size()) >= capacity_) {
+bool ContactSet::add(const Contact& contact, std::vector<Contact>& constraints) {
+  if (static_cast<int>(constraints.size()) >= capacity_) {
     ++overflow_;
     return false;
   }
-  limits.push_back(contact);
+  constraints.push_back(contact);
   return true;
 }
 

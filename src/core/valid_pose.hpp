@@ -16,7 +16,7 @@ inline bool within_reach(const Vec3& p) noexcept {
 }
 
 /// Within reach, and the quaternion of unit length up to rounding.
-inline bool proper(const Pose& pose) noexcept {
+inline bool is_valid(const Pose& pose) noexcept {
   constexpr double kUnitTolerance = 1e-3;  // of the squared length
   return within_reach(pose.p) && std::abs(pose.q.squaredNorm() - 1) < kUnitTolerance;
 }
