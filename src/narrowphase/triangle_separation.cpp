@@ -55,18 +55,21 @@ class Search {
   double end() const { return end_; }
   const MovingPlane& best() const { return best_; }
 
-  /// Tries the direction that is best for both ends at once, then the best of each.
+  /// Tries the direction that is best for both ends at once.
+  bool accept_together(const Bulge& bulge, const Sweep& sweep, MovingPlane& plane) const {
+    return accept(together_, bulge, sweep, plane);
+  }
+  /// Tries that, then the best of each end.
   bool accept(const Bulge& bulge, const Sweep& sweep, MovingPlane& plane) const {
-    if (start_ < 0 || end_ < 0) return false;
-    for (const MovingPlane& p : {together_, best_}) {
-      if (!stays_apart(pair_, p.n0, p.n1, bulge, sweep, 0)) continue;
-      plane = p;
-      return true;
-    }
-    return false;
+    return accept_together(bulge, sweep, plane) || accept(best_, bulge, sweep, plane);
   }
 
  private:
+  bool accept(const MovingPlane& p, const Bulge& bulge, const Sweep& sweep, MovingPlane& plane) const {
+    if (start_ < 0 || end_ < 0 || !stays_apart(pair_, p.n0, p.n1, bulge, sweep, 0)) return false;
+    plane = p;
+    return true;
+  }
   void keep(double s0, double s1, const MovingPlane& p) {
     if (s0 > start_) start_ = s0, best_.n0 = p.n0;
     if (s1 > end_) end_ = s1, best_.n1 = p.n1, best_.with_a = p.with_a;
@@ -192,10 +195,11 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   search.offer(plane);
   offer_normals(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
-  for (const Axes which : {Axes::promising, Axes::all}) {
-    offer_triangle_axes(pair, which, search);
-    if (search.accept(bulge, sweep, plane)) return true;
-  }
+  // What is best for both ends is among the promising ones, but what is best for one end need not be.
+  offer_triangle_axes(pair, Axes::promising, search);
+  if (search.accept_together(bulge, sweep, plane)) return true;
+  offer_triangle_axes(pair, Axes::all, search);
+  if (search.accept(bulge, sweep, plane)) return true;
   // The axes are complete, but for triangles without a plane.
   if (search.end() < 0 && !degenerate(a) && !degenerate(b)) return false;
   offer_closest(pair, search);
