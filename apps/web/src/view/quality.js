@@ -11,6 +11,7 @@ const movingPixelRatio = 0.6;
 export class Quality {
   constructor(renderer) {
     this.renderer = renderer;
+    this.width = 0; // until the page is laid out
     // Eight bits as the screen has them, written and read as what they mean, so that blending is as light is. The copy has
     // the canvas's own pixels: there is nothing to filter.
     this.fine = new THREE.WebGLRenderTarget(1, 1, { colorSpace: THREE.SRGBColorSpace, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, samples });
@@ -37,6 +38,7 @@ export class Quality {
 
   // Returns how many triangles that took.
   draw(scene, camera, coarse) {
+    if (this.width === 0) return 0;
     this.useRatio(coarse ? Math.min(1, this.pixelRatio) * movingPixelRatio : this.pixelRatio);
     this.renderer.setRenderTarget(coarse ? null : this.fine);
     this.renderer.render(scene, camera);
