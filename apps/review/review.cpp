@@ -1,5 +1,8 @@
 #include "review/review.hpp"
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "broadphase/bounding_spheres.hpp"
 #include "shared/pose_option.hpp"
 #include "tegotae/core/error.hpp"
@@ -15,6 +18,23 @@ double clearance_at(const Scene& scene, const Pose& X) {
   std::vector<Clearance> out;
   probe.at(X, 0, out);
   return out.empty() ? 0 : out.front().distance;
+}
+
+/// How far the middle of the held part's box is from the middle of that around all others, m.
+double from_the_middle(const Scene& scene, const Pose& X) {
+  Eigen::AlignedBox3d held, others;
+  for (const Part& part : scene.parts)
+    for (const Vec3& v : part.mesh->vertices) part.held ? held.extend(X * v) : others.extend(part.pose * v);
+  return held.isEmpty() || others.isEmpty() ? 0 : (held.center() - others.center()).norm();
+}
+
+/// Whether the goal is farther in than the start.
+bool leads_inwards(const Scene& scene, const Pose& from, const Pose& to) {
+  // In a fit the part has nothing but play around it at both ends, which says nothing.
+  constexpr double kPlay = 0.1;  // of the distance
+  const double change = clearance_at(scene, to) - clearance_at(scene, from);
+  if (std::abs(change) > kPlay * (to.p - from.p).norm()) return change < 0;
+  return from_the_middle(scene, to) <= from_the_middle(scene, from);
 }
 
 /// Where the recording says that the part was to go; none: it says nothing.
@@ -63,7 +83,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   if (progress) progress("asking for intersections", 0, 0);
   r.findings = find(r.file, rows, r.scan, r.center);
   const Pose& end = r.file.script.pose(r.file.script.end());
-  const bool inwards = clearance_at(r.file.scene, end) <= clearance_at(r.file.scene, rows.front().x);
+  const bool inwards = leads_inwards(r.file.scene, rows.front().x, end);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
   tell_scene_changes(r.recording.info, r);
   r.assembly = assembly_force(r, questions.friction, progress);

@@ -22,7 +22,7 @@ struct Verdict {
   std::vector<Evidence> evidence;
 };
 
-/// `inwards`: whether the goal is nearer to the other parts than the start.
+/// `inwards`: whether the goal is farther in than the start.
 Verdict judge(const Findings& findings, const Scene& scene, bool inwards, const Scan& scan, const std::string& damage);
 
 using apps::place_text;

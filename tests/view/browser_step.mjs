@@ -109,6 +109,7 @@ async function review(browser, page, screen, name) {
   await report.goto(`file://${file}`);
   await report.waitForSelector("#tables table", { timeout: patience });
   assert.ok(await report.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing sticks out of the report");
+  assert.equal(await report.textContent("#verdict h2"), "It comes out");
   await picture(report, `${name}-review`);
   await context.close();
 }
