@@ -123,7 +123,9 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
 }
 
 bool PatchFront::collect_failures() {
-  const std::array<LaneSweep, 2> seen = {seen_from_b(sweep_, sizes_), seen_from_a(sweep_, sizes_)};
+  const bool any_on_a = groups_[kBoxesOnA].count + groups_[kFacesOnA].count > 0;
+  const std::array<LaneSweep, 2> seen = {seen_from_b(sweep_, sizes_),
+                                         any_on_a ? seen_from_a(sweep_, sizes_) : LaneSweep{}};
   failure_count_ = 0;
   // The nearest first.
   for (const std::size_t kind : {kFacesOnB, kFacesOnA, kBoxesOnB, kBoxesOnA}) {

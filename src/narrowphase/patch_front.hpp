@@ -111,6 +111,7 @@ class PatchFront {
   static constexpr std::uint32_t kNoPair = 0xffffffffu;
   /// Most children of a pair: all triangle pairs of two leaves.
   static constexpr std::uint32_t kFan = kPatchLeaf * kPatchLeaf;
+  static_assert(kFan < 16 && kMaxAxisPairs < 15, "PairNode has four bits for each");
 
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
 
