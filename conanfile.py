@@ -26,6 +26,7 @@ class Tegotae(ConanFile):
         self.requires("eigen/3.4.0", transitive_headers=True)
         self.requires("fcl/0.7.0")
         self.requires("libccd/2.1")
+        self.requires("xxhash/0.8.2")
         self.requires("assimp/5.2.2")
         self.requires("draco/1.5.6")
         self.requires("meshoptimizer/0.20")

@@ -5,8 +5,11 @@
 
 namespace tegotae::bench {
 
+/// What stands for the start among the scenes.
+inline constexpr const char* kStart = "start";
+
 struct BenchOptions {
-  std::vector<std::string> scenes;  ///< empty: all
+  std::vector<std::string> scenes;  ///< of scene_names(), or kStart; empty: all
   bool quick = false;               ///< one round, few poses: for tests
   bool budgets = false;             ///< also with other tick budgets
   double mu = 0;                    ///< above 0: also with friction between the parts

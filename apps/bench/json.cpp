@@ -93,6 +93,9 @@ std::string json_line(const Results& results) {
   Json j;
   j["rows"] = Json::array();
   for (const SceneFigures& s : results.rows) j["rows"].push_back(to_json(s));
+  for (const StartFigures& f : results.starts)
+    j["starts"].push_back(
+        {{"format", f.format}, {"triangles", f.triangles}, {"first_s", f.first_s}, {"second_s", f.second_s}});
   j["lp"] = Json::array();
   for (const LpFigures& f : results.lp) {
     Json row = {{"n", f.n}};

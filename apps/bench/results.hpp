@@ -11,6 +11,7 @@
 #include "bench/measure_loop.hpp"
 #include "bench/measure_lp.hpp"
 #include "bench/measure_seat.hpp"
+#include "bench/measure_start.hpp"
 
 namespace tegotae::bench {
 
@@ -58,6 +59,7 @@ struct SceneFigures {
 
 struct Results {
   std::vector<SceneFigures> rows;
+  std::vector<StartFigures> starts;  ///< empty: not asked for
   std::vector<LpFigures> lp;
   std::vector<FrictionSolveFigures> friction_solves;  ///< empty: not asked for
   double seconds = 0;                                 ///< the whole took

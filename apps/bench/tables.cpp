@@ -16,6 +16,8 @@ constexpr double kMaxBuildUs = 2, kMaxBytes = 160;
 constexpr double kMaxGrowth = 3;
 // A tick with friction by one without, and the most that it takes (p99.9, µs).
 constexpr double kMaxFriction = 1.5, kMaxTick = 900;
+// From files to the first tick, s.
+constexpr double kMaxFirstStart = 1.2, kMaxSecondStart = 0.15;
 // How near (m) a peg comes to the bottom of its hole when it is pressed on it.
 constexpr double kArrived = 1e-4;
 
@@ -120,6 +122,16 @@ std::string seat_table(const Results& r) {
          "p99.9, µs | arrives after the pen (target), ms | rests over its seat, mm | slides (target), mm/s | off after "
          "the pen (target), ms | ticks cut | verdict |\n|---|---|---|---|---|---|---|---|---|\n" +
          text;
+}
+
+std::string start_table(const Results& r) {
+  if (r.starts.empty()) return "";
+  std::string text = "\n### Start\n\n| file | triangles | first start (" + number(kMaxFirstStart) +
+                     "), s | second start (" + number(kMaxSecondStart) + "), s | verdict |\n|---|---|---|---|---|\n";
+  for (const StartFigures& f : r.starts)
+    text += format("| %s | %s | %.2f | %.3f | ", f.format.c_str(), count(f.triangles).c_str(), f.first_s, f.second_s) +
+            verdict(f.first_s <= kMaxFirstStart && f.second_s <= kMaxSecondStart) + " |\n";
+  return text;
 }
 
 std::string growth_line(const Results& r) {
@@ -232,7 +244,7 @@ std::string tables(const Results& r) {
     text += "### Whole tick, in contact, at hand speed (0.1 m/s, 0.5 rad/s)\n\n" + targets_table(r) + growth_line(r) +
             "\n### Both speeds (fast: 0.4 m/s, 4 rad/s)\n\n" + runs_table(r) + lag_table(r) + friction_table(r) +
             seat_table(r) + "\n### Hierarchies and checks\n\n" + checks_table(r);
-  return text + budget_table(r) + lp_table(r) + friction_solve_table(r);
+  return text + start_table(r) + budget_table(r) + lp_table(r) + friction_solve_table(r);
 }
 
 }  // namespace tegotae::bench

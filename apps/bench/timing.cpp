@@ -19,6 +19,12 @@ namespace {
 constexpr std::int64_t kBusyNs = 20'000'000;
 constexpr std::chrono::milliseconds kRest(3);
 
+std::int64_t cpu_ns(clockid_t clock) noexcept {
+  timespec t;
+  clock_gettime(clock, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
 }  // namespace
 
 LatencySummary percentiles(std::vector<std::int64_t>& times_ns) {
@@ -33,9 +39,11 @@ LatencySummary percentiles(std::vector<std::int64_t>& times_ns) {
 }
 
 std::int64_t thread_cpu_ns() noexcept {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+  return cpu_ns(CLOCK_THREAD_CPUTIME_ID);
+}
+
+std::int64_t process_cpu_ns() noexcept {
+  return cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 bool on_measuring_thread(const std::function<void()>& work) {

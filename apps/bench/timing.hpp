@@ -14,6 +14,8 @@ LatencySummary percentiles(std::vector<std::int64_t>& times_ns);
 
 /// CPU time of the calling thread, ns: without what other programs and the host took meanwhile.
 std::int64_t thread_cpu_ns() noexcept;
+/// The same of all threads of this process.
+std::int64_t process_cpu_ns() noexcept;
 
 /// Runs `work` in a thread of its own under SCHED_FIFO where the system grants it, as a real contact loop would run;
 /// what it throws is thrown here. Returns whether it was granted.

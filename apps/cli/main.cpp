@@ -77,8 +77,10 @@ int main(int argc, char** argv) {
 
   bench::BenchOptions bench_options;
   CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear program");
-  measure->add_option("--scene", bench_options.scenes, "Only this scene (may be repeated)")
-      ->check(CLI::IsMember(bench::scene_names()))
+  std::vector<std::string> bench_names = bench::scene_names();
+  bench_names.emplace_back(bench::kStart);
+  measure->add_option("--scene", bench_options.scenes, "Only this scene, or the start (may be repeated)")
+      ->check(CLI::IsMember(bench_names))
       ->type_name("NAME");
   measure->add_flag("--quick", bench_options.quick, "A short look: one round of the pen, small programs");
   measure->add_option("--friction", bench_options.mu, "Also with this coefficient of friction between the parts")

@@ -57,14 +57,26 @@ class GltfCheck {
   }
 
   void run() const {
-    for (std::size_t i = 0; i < list("buffers").size(); ++i) check_buffer(i);
-    for (std::size_t i = 0; i < list("bufferViews").size(); ++i) check_view(i);
-    for (std::size_t i = 0; i < list("accessors").size(); ++i) check_accessor(i);
-    for (std::size_t i = 0; i < list("meshes").size(); ++i) check_mesh(i);
+    each("buffers", [this](std::size_t i) { check_buffer(i); });
+    each("bufferViews", [this](std::size_t i) { check_view(i); });
+    each("accessors", [this](std::size_t i) { check_accessor(i); });
+    each("meshes", [this](std::size_t i) { check_mesh(i); });
     check_nodes();
   }
 
  private:
+  /// An error of the JSON tells of which element it is.
+  template <class Check>
+  void each(const char* elements, Check check) const {
+    for (std::size_t i = 0; i < list(elements).size(); ++i) {
+      try {
+        check(i);
+      } catch (const json::exception& e) {
+        refuse("damaged: " + std::string(elements) + " " + std::to_string(i) + ": " + e.what());
+      }
+    }
+  }
+
   [[noreturn]] void refuse(const std::string& why) const { throw Error(path_ + ": " + why); }
 
   const json& list(const char* key) const {
@@ -230,17 +242,17 @@ class GltfCheck {
     const std::size_t n = list("nodes").size();
     std::vector<std::vector<std::uint64_t>> children(n);
     std::vector<bool> child(n, false);
-    for (std::size_t i = 0; i < n; ++i) {
+    each("nodes", [&](std::size_t i) {
       const json& node = list("nodes")[i];
       if (node.contains("mesh")) reference(node["mesh"], "meshes", called("node", i));
-      if (!node.contains("children")) continue;
+      if (!node.contains("children")) return;
       for (const json& c : node["children"]) {
         const std::uint64_t to = reference(c, "nodes", called("node", i));
         if (child[to]) refuse("damaged: node " + std::to_string(to) + " has two parents; nodes must be a tree");
         child[to] = true;
         children[i].push_back(to);
       }
-    }
+    });
     std::vector<std::uint64_t> level;
     std::size_t reached = 0, depth = 0;
     for (std::size_t i = 0; i < n; ++i)
@@ -253,11 +265,13 @@ class GltfCheck {
       level = std::move(next);
     }
     if (reached < n) refuse("damaged: its nodes go in a circle");
-    for (const json& scene : list("scenes")) {
-      if (!scene.contains("nodes")) continue;
+    each("scenes", [&](std::size_t i) {
+      const json& scene = list("scenes")[i];
+      if (!scene.contains("nodes")) return;
       for (const json& root : scene["nodes"])
-        if (child[reference(root, "nodes", "a scene")]) refuse("damaged: a root node of a scene is another's child");
-    }
+        if (child[reference(root, "nodes", called("scene", i))])
+          refuse("damaged: a root node of a scene is another's child");
+    });
   }
 
   const std::string& path_;
@@ -283,7 +297,8 @@ std::string_view glb_json(const std::string& path, std::string_view bytes, std::
   const std::uint64_t length = word(bytes, kHeader);
   const std::uint64_t end = kHeader + kChunkHeader + length;
   if (end > bytes.size()) throw Error(path + ": truncated: its JSON chunk reaches past the end");
-  if (end + kChunkHeader <= bytes.size()) {
+  // The chunk behind it is the buffer's; the format wants others passed over.
+  if (end + kChunkHeader <= bytes.size() && bytes.substr(end + 4, 4) == std::string_view("BIN\0", 4)) {
     const std::uint64_t size = word(bytes, end);
     if (size > bytes.size() - end - kChunkHeader)
       throw Error(path + ": truncated: its binary chunk reaches past the end");

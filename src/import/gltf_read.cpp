@@ -14,6 +14,9 @@
 namespace tegotae {
 namespace {
 
+// More are made to do harm: a few bytes can ask for any number of instances.
+constexpr std::size_t kMaxParts = 1'000'000;
+
 double srgb(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
   return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
@@ -107,6 +110,7 @@ class GltfReader {
         file_.notes.push_back('"' + part.name + "\" is scaled to nothing: left out");  // a way to hide a node
       else
         file_.parts.push_back(part);
+      if (file_.parts.size() > kMaxParts) throw Error(path_ + ": more than a million parts");
     }
   }
 
@@ -114,16 +118,17 @@ class GltfReader {
   std::vector<Matrix34> instances_of(const cgltf_node& node) const {
     if (!node.has_mesh_gpu_instancing) return {Matrix34::Identity()};
     const cgltf_mesh_gpu_instancing& all = node.mesh_gpu_instancing;
+    const std::string where = path_ + ": the instances of node " + std::to_string(&node - data_.nodes);
     std::vector<cgltf_node> nodes;
     for (std::size_t a = 0; a < all.attributes_count; ++a) {
       const cgltf_accessor& accessor = *all.attributes[a].data;
       const std::string name = text_of(all.attributes[a].name);
       const std::size_t components = name == "ROTATION" ? 4 : 3;
       if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE") continue;  // instances' colors and the like
-      const std::vector<double> x = numbers_of(path_, accessor, components);
+      if (accessor.count > kMaxParts) throw Error(where + ": more than a million");
+      const std::vector<double> x = numbers_of(where, accessor, components);
       if (nodes.empty()) nodes.resize(accessor.count);
-      if (nodes.size() != accessor.count)
-        throw Error(path_ + ": damaged: the attributes of a node's instances differ in number");
+      if (nodes.size() != accessor.count) throw Error(where + ": damaged: their attributes differ in number");
       for (std::size_t i = 0; i < x.size(); ++i) {
         cgltf_node& of = nodes[i / components];
         (name == "ROTATION" ? of.has_rotation : name == "SCALE" ? of.has_scale : of.has_translation) = 1;
@@ -132,7 +137,7 @@ class GltfReader {
                             : of.translation)[i % components] = static_cast<float>(x[i]);
       }
     }
-    if (nodes.empty()) throw Error(path_ + ": damaged: the instances of a node have no places");
+    if (nodes.empty()) throw Error(where + ": damaged: they have no places");
     std::vector<Matrix34> maps;
     for (const cgltf_node& of : nodes) maps.push_back(local_map(of));
     return maps;
@@ -151,7 +156,9 @@ class GltfReader {
     faces.clear();
     for (std::size_t p = 0; p < mesh.primitives_count; ++p) {
       TriangleMesh part;
-      std::tie(part.vertices, part.triangles) = posed(node, mesh.primitives[p], weights);
+      const std::string where = path_ + ": mesh " + std::to_string(&mesh - data_.meshes) + ", primitive " +
+                                std::to_string(p) + " (node " + std::to_string(&node - data_.nodes) + ")";
+      std::tie(part.vertices, part.triangles) = posed(where, node, mesh.primitives[p], weights);
       faces.push_back(part.triangles.size());
       append(part, Matrix34::Identity(), 1, out);
     }
@@ -159,29 +166,32 @@ class GltfReader {
     return known->second;
   }
 
-  std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 3>>> posed(const cgltf_node& node,
+  /// `where`: the file and the primitive, as errors begin.
+  std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 3>>> posed(const std::string& where,
+                                                                                const cgltf_node& node,
                                                                                 const cgltf_primitive& primitive,
                                                                                 const std::vector<float>& weights) {
     if (primitive.has_draco_mesh_compression) {
       if (primitive.targets_count > 0 || node.skin != nullptr)
-        throw Error(path_ + ": a mesh compressed by Draco with a skin or morph targets is not read");
-      GltfTriangles plain = draco_triangles_of(path_, data_, primitive);
+        throw Error(where + ": a mesh compressed by Draco with a skin or morph targets is not read");
+      GltfTriangles plain = draco_triangles_of(where, data_, primitive);
       return {std::move(plain.points), std::move(plain.triangles)};
     }
-    GltfTriangles plain = triangles_of(path_, primitive);
+    GltfTriangles plain = triangles_of(where, primitive);
     for (std::size_t t = 0; t < primitive.targets_count && t < weights.size(); ++t)
-      if (weights[t] != 0) morph(primitive.targets[t], weights[t], plain.points);
+      if (weights[t] != 0) morph(where, primitive.targets[t], weights[t], plain.points);
     if (node.skin != nullptr && !plain.triangles.empty())
-      plain.points = skinned(path_, node, primitive, plain.points, off_weights_);
+      plain.points = skinned(where, node, primitive, plain.points, off_weights_);
     return {std::move(plain.points), std::move(plain.triangles)};
   }
 
-  void morph(const cgltf_morph_target& target, double weight, std::vector<Vec3>& points) const {
+  static void morph(const std::string& where, const cgltf_morph_target& target, double weight,
+                    std::vector<Vec3>& points) {
     for (std::size_t a = 0; a < target.attributes_count; ++a) {
       if (target.attributes[a].type != cgltf_attribute_type_position) continue;
-      const std::vector<Vec3> shift = points_of(path_, *target.attributes[a].data);
+      const std::vector<Vec3> shift = points_of(where, *target.attributes[a].data);
       if (shift.size() != points.size())
-        throw Error(path_ + ": damaged: a morph target and its mesh differ in their number of vertices");
+        throw Error(where + ": damaged: a morph target and its mesh differ in their number of vertices");
       for (std::size_t i = 0; i < points.size(); ++i) points[i] += weight * shift[i];
     }
   }

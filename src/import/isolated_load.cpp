@@ -18,6 +18,7 @@
 #include <sstream>
 #include <utility>
 
+#include "import/load_cached.hpp"
 #include "import/mesh_pipe.hpp"
 #include "import/utf8.hpp"
 #include "tegotae/core/clock.hpp"
@@ -195,12 +196,7 @@ TriangleMesh received(Reader& reader, const std::string& path, const IsolatedLoa
   return mesh;
 }
 
-}  // namespace
-
-TriangleMesh load_mesh_isolated(const std::string& path, double unit_in_m, const IsolatedLoad& bounds) {
-  if (!(bounds.seconds > 0 && bounds.seconds <= 1e6)) fail(path, "the bound on its loading time must be positive");
-  if (!(bounds.megabytes > 0 && bounds.megabytes <= 1e9))
-    fail(path, "the bound on its loading memory must be positive");
+TriangleMesh read_isolated(const std::string& path, double unit_in_m, const IsolatedLoad& bounds) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(path, std::string("no pipe to the loading process: ") + std::strerror(errno));
   const Descriptor in(ends[0]);
@@ -209,6 +205,15 @@ TriangleMesh load_mesh_isolated(const std::string& path, double unit_in_m, const
   out.reset();
   Reader reader(in.get(), helper, path, bounds);
   return received(reader, path, bounds);
+}
+
+}  // namespace
+
+TriangleMesh load_mesh_isolated(const std::string& path, double unit_in_m, const IsolatedLoad& bounds) {
+  if (!(bounds.seconds > 0 && bounds.seconds <= 1e6)) fail(path, "the bound on its loading time must be positive");
+  if (!(bounds.megabytes > 0 && bounds.megabytes <= 1e9))
+    fail(path, "the bound on its loading memory must be positive");
+  return load_cached(path, unit_in_m, [&] { return read_isolated(path, unit_in_m, bounds); });
 }
 
 }  // namespace tegotae

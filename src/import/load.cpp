@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "import/load_assimp.hpp"
+#include "import/load_cached.hpp"
+#include "import/load_triangles.hpp"
 #include "import/reading.hpp"
 #include "import/usable.hpp"
 #include "import/utf8.hpp"
@@ -25,8 +27,14 @@ TriangleMesh import(const std::string& path, double unit) {
     for (const PartFile::Placed& part : file.parts) append(file.meshes[part.mesh], part.X, unit, mesh);
     return mesh;
   }
+  const PlainMesh plain = plain_mesh(path);
+  mesh.notes = plain.notes;
+  if (const auto triangles = triangles_of(plain)) {
+    append(*triangles, Matrix34::Identity(), unit, mesh);
+    return mesh;
+  }
   Assimp::Importer importer;
-  const aiScene& scene = read_scene(importer, path, mesh.notes);
+  const aiScene& scene = read_scene(importer, path, plain, false);
   append(scene, *scene.mRootNode, Matrix34::Identity(), unit, mesh);
   return mesh;
 }
@@ -44,12 +52,14 @@ double unit_length(const std::string& unit) {
 
 TriangleMesh load_mesh(const std::string& path, double unit_in_m) {
   if (!(unit_in_m > 0) || !std::isfinite(unit_in_m)) throw Error(path + ": the unit's length must be positive");
-  return reading(path, [&] {
-    const TriangleMesh mesh = import(path, unit_in_m);
-    require_usable(mesh);
-    TriangleMesh welded = weld(mesh);
-    require_area(welded);
-    return welded;
+  return load_cached(path, unit_in_m, [&] {
+    return reading(path, [&] {
+      const TriangleMesh mesh = import(path, unit_in_m);
+      require_usable(mesh);
+      TriangleMesh welded = weld(mesh);
+      require_area(welded);
+      return welded;
+    });
   });
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "import/file_check.hpp"
 #include "import/load_files.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -66,12 +65,10 @@ Matrix34 transform_of(const aiMatrix4x4& m) {
   return t;
 }
 
-const aiScene& read_scene(Assimp::Importer& importer, const std::string& path, std::vector<std::string>& notes) {
-  const PlainMesh plain = plain_mesh(path);
-  notes.insert(notes.end(), plain.notes.begin(), plain.notes.end());
+const aiScene& read_scene(Assimp::Importer& importer, const std::string& path, const PlainMesh& plain, bool materials) {
   const aiScene* scene = nullptr;
-  if (plain.format == "obj") {                                 // the only format that names other files
-    importer.SetIOHandler(new MeshFolder(path, plain.bytes));  // which the importer deletes
+  if (plain.format == "obj") {                                            // the only format that names other files
+    importer.SetIOHandler(new MeshFolder(path, plain.bytes, materials));  // which the importer deletes
     scene = importer.ReadFile(path, 0);
   } else {
     scene = importer.ReadFileFromMemory(plain.bytes.data(), plain.bytes.size(), 0, plain.format.c_str());

@@ -87,9 +87,9 @@ Assembly read_pieces(const std::string& path, const aiScene& scene, const Assemb
 Assembly read_flat(const std::string& path, const AssemblyOptions& options) {
   if (options.progress) options.progress("reading the file", 0, 0);
   Assimp::Importer importer;
-  std::vector<std::string> notes;
-  Assembly assembly = read_pieces(path, read_scene(importer, path, notes), options);
-  assembly.notes = std::move(notes);
+  PlainMesh plain = plain_mesh(path);
+  Assembly assembly = read_pieces(path, read_scene(importer, path, plain, true), options);
+  assembly.notes = std::move(plain.notes);
   return assembly;
 }
 

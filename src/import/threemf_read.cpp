@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "import/file_check.hpp"
+#include "import/utf8.hpp"
 #include "import/zip_archive.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -59,7 +60,7 @@ class ThreeMfReader {
   }
 
  private:
-  [[noreturn]] void damaged(const std::string& why) const { throw Error(path_ + ": damaged: " + why); }
+  [[noreturn]] void damaged(const std::string& why) const { throw Error(path_ + ": damaged: " + printable(why)); }
 
   /// Where the archive says that its model is.
   std::string first_model() const {
@@ -87,7 +88,17 @@ class ThreeMfReader {
     const pugi::xml_node model = known->second->document_element();
     if (!parsed || !is(model.name(), "model")) damaged(name + " in it is no 3MF model");
     check_extensions(model);
+    index(name, model);
     return model;
+  }
+
+  void index(const std::string& name, const pugi::xml_node& model) {
+    for (const pugi::xml_node& object : child(model, "resources").children()) {
+      if (!is(object.name(), "object")) continue;
+      const std::string id = attribute(object, "id");
+      if (!objects_.emplace(std::pair(name, id), object).second)
+        damaged(name + " in it has two objects of the id \"" + id + '"');
+    }
   }
 
   void check_extensions(const pugi::xml_node& model) const {
@@ -110,12 +121,15 @@ class ThreeMfReader {
     units_ = unit == "foot" ? 12 : 1;
   }
 
-  double number(std::string_view text) const {
+  /// `place` says of what it is.
+  template <class Place>
+  double number(std::string_view text, Place place) const {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n+"), text.size()));
     text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) damaged("a number is none");
+    if (error != std::errc() || end != text.data() + text.size())
+      damaged(place() + " has \"" + printable(std::string(text.substr(0, 40))) + "\" for a number");
     return value;
   }
 
@@ -124,13 +138,14 @@ class ThreeMfReader {
     Matrix34 X = Matrix34::Identity();
     const std::string text = attribute(placed, "transform");
     if (text.empty()) return X;
+    const auto place = [&] { return "the transform of the object " + attribute(placed, "objectid"); };
     std::istringstream words(text);
     std::string word;
     for (int k = 0; k < 12; ++k) {
-      if (!(words >> word)) damaged("a transform has fewer than 12 numbers");
-      X(k % 3, k / 3) = number(word);
+      if (!(words >> word)) damaged(place() + " has fewer than 12 numbers");
+      X(k % 3, k / 3) = number(word, place);
     }
-    if (words >> word) damaged("a transform has more than 12 numbers");
+    if (words >> word) damaged(place() + " has more than 12 numbers");
     return X;
   }
 
@@ -143,14 +158,15 @@ class ThreeMfReader {
   pugi::xml_node object_of(const pugi::xml_node& placed, std::string& in) {
     const std::string path = attribute(placed, "path"), id = attribute(placed, "objectid");
     if (!path.empty()) in = inside(path);
-    const pugi::xml_node resources = child(open(in), "resources");
-    for (const pugi::xml_node& object : resources.children())
-      if (is(object.name(), "object") && attribute(object, "id") == id) return object;
-    damaged("it names the object " + id + ", which is missing");
+    open(in);
+    const auto found = objects_.find({in, id});
+    if (found == objects_.end()) damaged("it names the object " + id + ", which is missing in " + in);
+    return found->second;
   }
 
   void add(const pugi::xml_node& placed, std::string in, const Matrix34& X, std::vector<std::string>& groups,
            int depth) {
+    if (++placed_ > kMaxParts) damaged("it has more than a million parts and groups");
     const pugi::xml_node object = object_of(placed, in);
     const std::string id = attribute(object, "id"), type = attribute(object, "type");
     std::string name = attribute(object, "name");
@@ -163,7 +179,6 @@ class ThreeMfReader {
       file_.notes.push_back('"' + name + "\" is of the type other, which is nothing to be made: left out");
       return;
     }
-    if (++placed_ > kMaxParts) damaged("it has more than a million parts and groups");
     if (depth > kDeepest) damaged("its components are nested more than " + std::to_string(kDeepest) + " deep");
     if (const pugi::xml_node components = child(object, "components")) {
       groups.push_back(name);
@@ -184,17 +199,19 @@ class ThreeMfReader {
     const pugi::xml_node mesh = child(object, "mesh");
     for (const pugi::xml_node& v : child(mesh, "vertices").children()) {
       if (!is(v.name(), "vertex")) continue;
-      out.vertices.push_back(units_ * Vec3(number(v.attribute("x").value()), number(v.attribute("y").value()),
-                                           number(v.attribute("z").value())));
+      const auto place = [&] { return "vertex " + std::to_string(out.vertices.size()) + " of \"" + name + '"'; };
+      const auto x = [&](const char* axis) { return number(v.attribute(axis).value(), place); };
+      out.vertices.push_back(units_ * Vec3(x("x"), x("y"), x("z")));
     }
     for (const pugi::xml_node& t : child(mesh, "triangles").children()) {
       if (!is(t.name(), "triangle")) continue;
+      const auto place = [&] { return "triangle " + std::to_string(out.triangles.size()) + " of \"" + name + '"'; };
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t k = 0; k < 3; ++k) {
-        const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value());
-        if (index != std::floor(index)) damaged("a triangle of \"" + name + "\" has an index that is no whole number");
+        const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value(), place);
+        if (index != std::floor(index)) damaged(place() + " has an index that is no whole number");
         if (!(index >= 0 && index < static_cast<double>(out.vertices.size())))
-          throw Error(path_ + ": index out of range: \"" + name + "\" names a vertex that it does not have");
+          throw Error(path_ + ": index out of range: " + printable(place()) + " names a vertex that it does not have");
         corners[k] = static_cast<std::uint32_t>(index);
       }
       out.triangles.push_back(corners);
@@ -211,7 +228,7 @@ class ThreeMfReader {
     const std::string group = attribute(object, "pid");
     if (group.empty()) return std::nullopt;
     const std::string index = attribute(object, "pindex");
-    double at = index.empty() ? 0 : number(index);
+    double at = index.empty() ? 0 : number(index, [&] { return "the pindex of object " + attribute(object, "id"); });
     const pugi::xml_node resources = child(open(in), "resources");
     for (const pugi::xml_node& materials : resources.children()) {
       if (!is(materials.name(), "basematerials") || attribute(materials, "id") != group) continue;
@@ -236,10 +253,11 @@ class ThreeMfReader {
 
   const std::string& path_;
   const ZipArchive archive_;
-  std::map<std::string, std::unique_ptr<pugi::xml_document>> models_;   // by their names in the archive
-  std::map<std::pair<std::string, std::string>, std::size_t> mesh_of_;  // by model and object
-  double units_ = 1;                                                    // of PartFile::unit in one unit of the file
-  std::size_t placed_ = 0;                                              // parts and groups
+  std::map<std::string, std::unique_ptr<pugi::xml_document>> models_;      // by their names in the archive
+  std::map<std::pair<std::string, std::string>, std::size_t> mesh_of_;     // by model and object
+  std::map<std::pair<std::string, std::string>, pugi::xml_node> objects_;  // by model and id
+  double units_ = 1;                                                       // of PartFile::unit in one unit of the file
+  std::size_t placed_ = 0;                                                 // parts and groups
   PartFile file_;
 };
 

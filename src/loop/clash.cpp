@@ -106,8 +106,8 @@ class PairLook {
   static SignedDistance& prepared(const Side& s) {
     if (!s.data->distance) {
       const auto& mesh = s.part->mesh;
-      s.data->distance = std::make_unique<SignedDistance>(std::make_shared<Surface>(mesh), tree(s));
-      s.data->closed = report(*mesh).closed;
+      s.data->distance = std::make_unique<SignedDistance>(cached_surface(mesh), tree(s));
+      s.data->closed = is_closed(s.data->distance->surface().topology);
     }
     return *s.data->distance;
   }

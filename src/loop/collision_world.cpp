@@ -44,7 +44,7 @@ struct MeshStructures {
       if (with_trees && i < n)
         trees.at(mesh.get()) = cached_patch_tree(mesh);
       else
-        surfaces.at(mesh.get()) = std::make_shared<Surface>(mesh);
+        surfaces.at(mesh.get()) = cached_surface(mesh);
     };
     parallel_for(with_trees ? 2 * n : n, 0, make, {});
   }
@@ -59,7 +59,7 @@ struct FixedParts {
 
   void add(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& pose, PartId id) {
     auto& surface = known[mesh.get()];
-    if (!surface) surface = std::make_shared<Surface>(mesh);
+    if (!surface) surface = cached_surface(mesh);
     surfaces.push_back({surface, pose, id});
     poses.push_back(pose);
     meshes.push_back(mesh);

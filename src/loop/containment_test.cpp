@@ -4,12 +4,11 @@
 
 #include "mesh/components.hpp"
 #include "narrowphase/patch_cache.hpp"
-#include "tegotae/mesh/report.hpp"
 
 namespace tegotae {
 
 ContainmentTest::Side::Side(const std::shared_ptr<const TriangleMesh>& mesh) {
-  auto surface = std::make_shared<Surface>(mesh);
+  auto surface = cached_surface(mesh);
   const Components parts = components(*mesh, surface->topology);
   std::vector<bool> seen(parts.count, false);
   for (std::size_t f = 0; f < mesh->triangles.size(); ++f) {
@@ -18,7 +17,8 @@ ContainmentTest::Side::Side(const std::shared_ptr<const TriangleMesh>& mesh) {
     seen[part] = true;
     points.push_back(mesh->vertices[mesh->triangles[f][0]]);
   }
-  if (report(*mesh).closed) distance = std::make_unique<SignedDistance>(std::move(surface), cached_patch_tree(mesh));
+  if (is_closed(surface->topology))
+    distance = std::make_unique<SignedDistance>(std::move(surface), cached_patch_tree(mesh));
 }
 
 ContainmentTest::ContainmentTest(const std::shared_ptr<const TriangleMesh>& a,

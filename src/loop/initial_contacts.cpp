@@ -97,14 +97,14 @@ std::vector<InitialContacts::Copy> InitialContacts::shrink(const Scene& scene, c
     const Clash& c = pair.clash;
     if (pair.state == InitialContactState::filtered || c.gap >= kGapFloor + kSpare) continue;
     const Part& other = scene.parts[pair.part];
-    const Surface surface(other.mesh);
+    const auto surface = cached_surface(other.mesh);
     const Pose X_BA = other.pose.inverse() * held.pose;
     const auto held_tree = cached_patch_tree(held.mesh);
     Copy copy{number_[pair.part], nullptr, nullptr};
     bool found = false;
     for (double by = kGapFloor + kSpare - kept(c); !found && by < kGapFloor + kSpare + kMaxTolerances * tolerance_;
          by *= kMore) {
-      copy.mesh = std::make_shared<TriangleMesh>(inward_offset(surface, by));
+      copy.mesh = std::make_shared<TriangleMesh>(inward_offset(*surface, by));
       copy.tree = cached_patch_tree(copy.mesh);
       found = tegotae::free_at_start(*held_tree, center, *copy.tree, X_BA);
       pair.inward_offset = by;

@@ -32,7 +32,7 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
   std::map<const TriangleMesh*, std::shared_ptr<const SignedDistance>> fields;
   const auto field = [&fields](const std::shared_ptr<const TriangleMesh>& mesh) {
     auto& f = fields[mesh.get()];
-    if (!f) f = std::make_shared<SignedDistance>(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
+    if (!f) f = std::make_shared<SignedDistance>(cached_surface(mesh), cached_patch_tree(mesh));
     return f;
   };
   start_ = InitialContacts(scene, settings);

@@ -11,9 +11,9 @@
 #include "loop/friction_pairs.hpp"
 #include "loop/held_weight.hpp"
 #include "loop/scene_parts.hpp"
+#include "mesh/surface.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/mesh/report.hpp"
 
 namespace tegotae {
 namespace {
@@ -82,7 +82,8 @@ RunningScene::RunningScene(const Scene& scene)
     : held(held_part(checked(scene)).name),
       held_mesh(held_part(scene).mesh),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
-      mass(mass_properties(*held_part(scene).mesh, report(*held_part(scene).mesh).closed, settings.density)),
+      mass(mass_properties(*held_part(scene).mesh, is_closed(cached_surface(held_part(scene).mesh)->topology),
+                           settings.density)),
       radius(radius_about(*held_mesh, mass.center)),
       coupling(fitted(scene, mass)),
       weight(held_weight(scene, mass)),

@@ -46,7 +46,7 @@ MeshReport report(const TriangleMesh& mesh) {
     const auto k = static_cast<std::uint32_t>(std::find(around.begin(), around.end(), e) - around.begin());
     if (topology.twin[3 * edge.f[0] + k] == kNone) ++out.non_manifold_edges;
   }
-  out.closed = !topology.edges.empty() && out.boundary_edges == 0 && out.non_manifold_edges == 0;
+  out.closed = is_closed(topology);
   if (out.closed) out.inverted_shells = count_inverted_shells(mesh, shells);
 
   if (!mesh.vertices.empty()) out.box_min = out.box_max = mesh.vertices[0];

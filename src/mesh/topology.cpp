@@ -185,4 +185,10 @@ Topology build_topology(const TriangleMesh& mesh) {
   return topology;
 }
 
+bool is_closed(const Topology& topology) {
+  for (std::size_t h = 0; h < topology.twin.size(); ++h)
+    if (topology.twin[h] == kNone && topology.face_edges[h / 3][h % 3] != kNone) return false;
+  return !topology.edges.empty();
+}
+
 }  // namespace tegotae

@@ -45,4 +45,7 @@ struct Topology {
 /// Adjacency of `mesh`, which must be welded. Works for any surface; what is not manifold is marked.
 Topology build_topology(const TriangleMesh& mesh);
 
+/// Whether every edge joins exactly two faces with the same orientation.
+bool is_closed(const Topology& topology);
+
 }  // namespace tegotae

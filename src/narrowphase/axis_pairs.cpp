@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <tuple>
 
 #include "core/parallel_for.hpp"
 #include "curve/axis_search.hpp"
+#include "mesh/in_use.hpp"
+#include "narrowphase/axis_cache.hpp"
 
 namespace tegotae {
 namespace {
@@ -24,43 +25,25 @@ struct Kept {
   T value;
 };
 
-/// What is in use, by a key that begins with the hierarchy's address: as long as a value lives, so does its hierarchy,
-/// and no other has that address.
-template <typename Key, typename T>
-class InUse {
- public:
-  template <typename Make>
-  std::shared_ptr<const T> get(const Key& key, const std::shared_ptr<const PatchTree>& tree, Make make) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      for (auto i = known_.begin(); i != known_.end();) i = i->second.expired() ? known_.erase(i) : std::next(i);
-      const auto known = known_.find(key);
-      if (known != known_.end())
-        if (auto kept = known->second.lock()) return std::shared_ptr<const T>(kept, &kept->value);
-    }
-    const auto kept = std::make_shared<const Kept<T>>(Kept<T>{tree, make()});
-    const std::lock_guard<std::mutex> lock(mutex_);
-    known_[key] = kept;
-    return std::shared_ptr<const T>(kept, &kept->value);
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<Key, std::weak_ptr<const Kept<T>>> known_;
-};
+template <typename T, typename Key, typename Make>
+std::shared_ptr<const T> kept(InUse<Key, Kept<T>>& in_use, const Key& key, const std::shared_ptr<const PatchTree>& tree,
+                              const Make& make) {
+  const auto found = in_use.get(key, [&] { return std::make_shared<const Kept<T>>(Kept<T>{tree, make()}); });
+  return std::shared_ptr<const T>(found, &found->value);
+}
 
 std::shared_ptr<const Axes> axes_of(const std::shared_ptr<const PatchTree>& tree) {
-  static InUse<const PatchTree*, Axes> in_use;
-  return in_use.get(tree.get(), tree, [&] { return find_axes(tree->mesh()); });
+  static InUse<const PatchTree*, Kept<Axes>> in_use;
+  return kept<Axes, const PatchTree*>(in_use, tree.get(), tree, [&] { return cached_axes(tree->mesh()); });
 }
 
 std::shared_ptr<const ProfileTree> profile_about(const std::shared_ptr<const PatchTree>& tree, const ScrewAxis& axis,
                                                  double rise) {
   using Key = std::tuple<const PatchTree*, double, double, double, double, double, double, double>;
-  static InUse<Key, ProfileTree> in_use;
+  static InUse<Key, Kept<ProfileTree>> in_use;
   const Vec3 &o = axis.origin, &d = axis.direction;
-  return in_use.get(Key{tree.get(), rise, o.x(), o.y(), o.z(), d.x(), d.y(), d.z()}, tree,
-                    [&] { return ProfileTree(*tree, ScrewFrame::of(axis, rise)); });
+  const Key key{tree.get(), rise, o.x(), o.y(), o.z(), d.x(), d.y(), d.z()};
+  return kept<ProfileTree, Key>(in_use, key, tree, [&] { return cached_profile(*tree, ScrewFrame::of(axis, rise)); });
 }
 
 /// Two profiles of so many triangles take longer to build than a thread takes to begin.

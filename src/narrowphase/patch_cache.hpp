@@ -6,8 +6,8 @@
 
 namespace tegotae {
 
-/// Smaller meshes are built faster than this is worth.
-inline constexpr std::size_t kMinCached = 20000;  // triangles; 50 ms
+/// To be raised whenever PatchTree builds another tree over the same mesh.
+inline constexpr std::uint32_t kPatchBuild = 1;
 
 /// The hierarchy over `mesh`: the one in use by others, read from the folder of set_hierarchy_cache, or built and kept
 /// there.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel_for.hpp"
 #include "narrowphase/patch_clusters.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -114,7 +115,11 @@ Point2 narrowest(std::vector<Point2>& points, std::vector<Point2>& hull) {
   return best;
 }
 
-/// Lays the clusters out as nodes with fitted boxes.
+/// Nodes that a thread fits before it asks for more.
+constexpr std::size_t kFitAtOnce = 4096;
+
+/// Lays the clusters out as nodes with fitted boxes. Each box depends on its patch alone, so they are the same whatever
+/// the number of threads.
 class Layout {
  public:
   Layout(const TriangleMesh& mesh, const PatchClusters& clusters, const std::vector<PatchItem>& items, double radius,
@@ -127,15 +132,13 @@ class Layout {
     sum_normals(items);
     nodes_.reserve(2 * inner + 1);
     nodes_.emplace_back();
-    struct Place {
-      std::uint32_t node, cluster, begin;
-    };
     std::vector<Place> stack{{0, root, 0}};
+    places_.reserve(2 * inner + 1);
     while (!stack.empty()) {
       const Place p = stack.back();
       stack.pop_back();
       const PatchJoin& j = clusters_.joins[p.cluster];
-      fit(p.node, p.cluster, p.begin, p.begin + j.faces);
+      places_.push_back(p);
       if (j.faces <= kPatchLeaf) {
         nodes_[p.node].first = p.begin;
         nodes_[p.node].count = j.faces;
@@ -149,9 +152,28 @@ class Layout {
       stack.push_back({child + 1, j.right, p.begin + clusters_.joins[j.left].faces});
       stack.push_back({child, j.left, p.begin});
     }
+    const std::size_t tasks = (places_.size() + kFitAtOnce - 1) / kFitAtOnce;
+    parallel_for(static_cast<int>(tasks), 0, [&](int task) { fit_some(static_cast<std::size_t>(task)); }, {});
   }
 
  private:
+  struct Place {
+    std::uint32_t node, cluster, begin;
+  };
+  /// Memory of one thread.
+  struct Scratch {
+    std::vector<Vec3> points;
+    std::vector<Point2> outline, hull;
+  };
+
+  void fit_some(std::size_t task) const {
+    Scratch scratch;
+    for (std::size_t i = task * kFitAtOnce; i < std::min(places_.size(), (task + 1) * kFitAtOnce); ++i) {
+      const Place& p = places_[i];
+      fit(p.node, p.cluster, p.begin, p.begin + clusters_.joins[p.cluster].faces, scratch);
+    }
+  }
+
   /// Faces in the order of the leaves; returns how many nodes are none.
   std::size_t collect(std::uint32_t root) {
     std::vector<std::uint32_t> stack{root};
@@ -203,19 +225,20 @@ class Layout {
   }
 
   /// The vertices of the faces at these places, few of them twice.
-  void gather(std::uint32_t begin, std::uint32_t end) {
-    points_.clear();
+  void gather(std::uint32_t begin, std::uint32_t end, std::vector<Vec3>& points) const {
+    points.clear();
     const std::uint32_t first = first_[begin];
-    for (std::uint32_t v = first; v < first_[end]; ++v) points_.push_back(vertices_[v].cast<double>());
+    for (std::uint32_t v = first; v < first_[end]; ++v) points.push_back(vertices_[v].cast<double>());
     for (std::uint32_t i = begin; i < end; ++i) {
       for (const std::uint32_t v : corners_[i]) {
-        if (v < first) points_.push_back(vertices_[v].cast<double>());
+        if (v < first) points.push_back(vertices_[v].cast<double>());
       }
     }
   }
 
-  void fit(std::uint32_t node, std::uint32_t cluster, std::uint32_t begin, std::uint32_t end) {
-    gather(begin, end);
+  void fit(std::uint32_t node, std::uint32_t cluster, std::uint32_t begin, std::uint32_t end, Scratch& scratch) const {
+    const std::vector<Vec3>& points = scratch.points;
+    gather(begin, end, scratch.points);
     const PatchMoments& m = clusters_.moments[cluster];
     const Vec3f& mean = normals_[cluster];
     const float length = mean.norm(), area = static_cast<float>(m.w);
@@ -227,7 +250,7 @@ class Layout {
       eigen.computeDirect(m.covariance());
       const Vec3 least = eigen.eigenvectors().col(0);
       const bool usable = least.allFinite() && std::abs(least.norm() - 1) < 1e-3;
-      if (usable && (length < 0.5f * area || thickness(least) < thickness(normal))) {
+      if (usable && (length < 0.5f * area || thickness(points, least) < thickness(points, normal))) {
         normal = least.normalized();
       }
     }
@@ -235,9 +258,9 @@ class Layout {
     if (end - begin <= kOutlineFaces) {
       const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
       const Vec3 v = normal.cross(u);
-      outline_.clear();
-      for (const Vec3& p : points_) outline_.push_back({p.dot(u), p.dot(v)});
-      const auto [x, y] = narrowest(outline_, hull_);
+      scratch.outline.clear();
+      for (const Vec3& p : points) scratch.outline.push_back({p.dot(u), p.dot(v)});
+      const auto [x, y] = narrowest(scratch.outline, scratch.hull);
       frame << (x * u + y * v).normalized(), (x * v - y * u).normalized(), normal;
     } else {
       Eigen::SelfAdjointEigenSolver<Mat3> eigen;
@@ -248,12 +271,12 @@ class Layout {
       across.normalize();
       frame << across.cross(normal), across, normal;
     }
-    set_box(frame, nodes_[node]);
+    set_box(points, frame, nodes_[node]);
   }
 
-  double thickness(const Vec3& direction) const {
+  static double thickness(const std::vector<Vec3>& points, const Vec3& direction) {
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const Vec3& p : points_) {
+    for (const Vec3& p : points) {
       const double x = direction.dot(p);
       lo = std::min(lo, x);
       hi = std::max(hi, x);
@@ -261,12 +284,12 @@ class Layout {
     return hi - lo;
   }
 
-  void set_box(const Mat3& frame, PatchNode& out) const {
+  void set_box(const std::vector<Vec3>& points, const Mat3& frame, PatchNode& out) const {
     // Fitted in the frame as it is after rounding to single precision, so that the stored axes span the box exactly.
     const Mat3 axes = frame.cast<float>().cast<double>();
     const Mat3 inverse = axes.inverse();
     Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-    for (const Vec3& p : points_) {
+    for (const Vec3& p : points) {
       const Vec3 t = inverse * p;
       lo = lo.cwiseMin(t);
       hi = hi.cwiseMax(t);
@@ -295,8 +318,7 @@ class Layout {
   std::vector<std::array<std::uint32_t, 3>> corners_;  ///< of each place in order_
   std::vector<std::uint32_t> first_;                   ///< of each place: vertices used before it
   std::vector<Vec3f> normals_;                         ///< of each cluster: sum over its faces, by area
-  std::vector<Vec3> points_;
-  std::vector<Point2> outline_, hull_;
+  std::vector<Place> places_;                          ///< of all nodes
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace tegotae {
 namespace {
@@ -58,11 +59,25 @@ ProfileTree::ProfileTree(const PatchTree& tree, const ScrewFrame& frame) : frame
     if (!box.usable()) continue;
     place_[step.node] = static_cast<std::uint32_t>(boxes_.size());
     boxes_.push_back(box);
-    r_max_ = std::max<double>(r_max_, box.r_hi);
-    z_min_ = std::min<double>(boxes_.size() == 1 ? box.z_lo : z_min_, box.z_lo);
-    z_max_ = std::max<double>(boxes_.size() == 1 ? box.z_hi : z_max_, box.z_hi);
   }
   boxes_.shrink_to_fit();
+  measure();
+}
+
+ProfileTree::ProfileTree(const ScrewFrame& frame, std::vector<std::uint32_t> place, std::vector<ProfileBox> boxes)
+    : frame_(frame), place_(std::move(place)), boxes_(std::move(boxes)) {
+  measure();
+}
+
+void ProfileTree::measure() {
+  if (boxes_.empty()) return;
+  z_min_ = boxes_[0].z_lo;
+  z_max_ = boxes_[0].z_hi;
+  for (const ProfileBox& box : boxes_) {
+    r_max_ = std::max<double>(r_max_, box.r_hi);
+    z_min_ = std::min<double>(z_min_, box.z_lo);
+    z_max_ = std::max<double>(z_max_, box.z_hi);
+  }
 }
 
 }  // namespace tegotae

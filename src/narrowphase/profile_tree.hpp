@@ -13,6 +13,10 @@ class ProfileTree {
  public:
   /// About 1 µs a triangle. The tree must outlive this.
   ProfileTree(const PatchTree& tree, const ScrewFrame& frame);
+  /// What an earlier build over the same tree about the same frame made (see axis_cache.hpp).
+  ProfileTree(const ScrewFrame& frame, std::vector<std::uint32_t> place, std::vector<ProfileBox> boxes);
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
 
   const ScrewFrame& frame() const { return frame_; }
   /// The box of a node, or null.
@@ -23,8 +27,11 @@ class ProfileTree {
   double z_min() const { return z_min_; }
   double z_max() const { return z_max_; }
 
+  const std::vector<std::uint32_t>& places() const { return place_; }  ///< of each node in all_boxes(), or kNone
+  const std::vector<ProfileBox>& all_boxes() const { return boxes_; }
+
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
+  void measure();
 
   ScrewFrame frame_;
   std::vector<std::uint32_t> place_;  ///< of each node

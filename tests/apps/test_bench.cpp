@@ -91,6 +91,19 @@ TEST_CASE("a scene with a seat says how the part comes to it, slides on it, and 
   }
 }
 
+TEST_CASE("the start is measured for three formats", "[bench]") {
+  const Output o = run_program("tegotae", "bench --quick --json --scene start");
+  CHECK(o.code == 0);
+  const json j = json::parse(o.out);
+  CHECK(j["rows"].empty());
+  REQUIRE(j["starts"].size() == 3);
+  for (const json& start : j["starts"]) {
+    CHECK(start["triangles"].get<int>() >= 20000);
+    CHECK(start["first_s"].get<double>() > 0);
+    CHECK(start["second_s"].get<double>() > 0);
+  }
+}
+
 TEST_CASE("an unknown scene is bad usage", "[bench]") {
   const Output o = run_program("tegotae", "bench --scene 3k/3k");
   CHECK(o.code == 2);

@@ -12,10 +12,14 @@ namespace tegotae {
 /// what the library promises about them is checked by require(). An Error is an answer, any other exception a finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
+/// What the bytes of a seed are, for mutations that leave it one: else most end in the first check.
+enum class Grammar { none, json, glb, xml };
+
 /// A small input to begin with.
 struct Seed {
   std::string name;
   std::string bytes;
+  Grammar grammar = Grammar::none;
 };
 /// Defined by each target: valid inputs and broken ones of every kind that its reader knows.
 std::vector<Seed> seeds();

@@ -1,9 +1,13 @@
 // Mesh files of one format: load_mesh and everything that a part goes through before the first tick.
+#include <cmath>
+#include <optional>
+
 #include "fuzz/fuzz.hpp"
 #include "fuzz/mesh_format.hpp"
 #include "fuzz/mesh_seeds.hpp"
 #include "mesh/surface.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/import/assembly.hpp"
 #include "tegotae/import/load.hpp"
 #include "tegotae/mesh/mass.hpp"
 #include "tegotae/mesh/report.hpp"
@@ -13,6 +17,24 @@ namespace tegotae {
 std::vector<Seed> seeds() {
   return mesh_seeds(kFormat);
 }
+
+namespace {
+
+/// The parts of the file, which `whole` puts together: the same surface, placed.
+void check_parts(const std::string& path, const TriangleMesh& whole) {
+  AssemblyOptions options;
+  options.unit = std::string(kFormat) == "3mf" ? std::nullopt : std::optional<std::string>("mm");
+  const Assembly assembly = read_assembly(path, options);
+  std::size_t triangles = 0;
+  for (const AssemblyPart& part : assembly.parts) {
+    require(part.shape < assembly.shapes.size(), "a part has a shape");
+    require(part.pose.p.allFinite() && std::abs(part.pose.q.norm() - 1) < 1e-9, "a part has a pose");
+    triangles += assembly.shapes[part.shape]->triangles.size();
+  }
+  require(triangles == whole.triangles.size(), "the parts have the triangles of the whole");
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes = mesh_file(kFormat, std::string(reinterpret_cast<const char*>(data), size));
@@ -32,10 +54,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(mass.mass > 0 && mass.center.allFinite() && mass.inertia.allFinite(), "mass properties are usable");
     const Surface surface(mesh);
     for (const Vec3& n : surface.topology.face_normals) require(n.allFinite(), "normals are finite");
+    check_parts(path, *mesh);
   } catch (const Error& e) {
     const std::string what = e.what();
     require(what.rfind(path + ": ", 0) == 0, "the error begins with the file");
     require(what.find('\n') == std::string::npos, "the error is one line");
+    require(what.find("not enough memory") == std::string::npos, "a small file takes little memory");
   }
   return 0;
 }

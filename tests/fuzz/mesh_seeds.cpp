@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
+
+#include "fuzz/gltf_seeds.hpp"
 
 namespace tegotae {
 namespace {
@@ -143,17 +146,6 @@ std::string gltf_json(const std::string& buffer, const std::string& accessor_mor
          buffer + R"("byteLength":72}]})";
 }
 
-std::string base64(const std::string& bytes) {
-  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string s;
-  for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {  // the corner bytes are a multiple of three
-    const auto at = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(bytes[i + k])); };
-    const unsigned word = at(0) << 16 | at(1) << 8 | at(2);
-    for (const int shift : {18, 12, 6, 0}) s += digits[word >> shift & 63];
-  }
-  return s;
-}
-
 /// A tetrahedron with a skin, a morph target and instances; the bytes are those of corner_bytes() and zeros.
 std::string posed_gltf() {
   return R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing"],
@@ -183,21 +175,26 @@ std::string packed_gltf() {
 
 std::vector<Seed> gltf() {
   const std::string uri = R"("uri":"data:application/octet-stream;base64,)" + base64(corner_bytes()) + "\",";
-  return {{"data_uri", gltf_json(uri, "")},
-          {"no_file", gltf_json(R"("uri":"missing.bin",)", "")},
-          {"sparse", gltf_json(uri, R"(,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},)"
-                                    R"("values":{"bufferView":0}})")},
-          {"posed", posed_gltf()},
-          {"packed", packed_gltf()},
-          {"version_1", R"({"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":["n"]}},)"
-                        R"("nodes":{"n":{"meshes":[]}}})"}};
+  std::vector<Seed> all = {
+      {"data_uri", gltf_json(uri, "")},
+      {"no_file", gltf_json(R"("uri":"missing.bin",)", "")},
+      {"sparse", gltf_json(uri, R"(,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},)"
+                                R"("values":{"bufferView":0}})")},
+      {"posed", posed_gltf()},
+      {"packed", packed_gltf()},
+      {"version_1", R"({"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":["n"]}},)"
+                    R"("nodes":{"n":{"meshes":[]}}})"}};
+  for (Seed& seed : all) seed.grammar = Grammar::json;
+  for (Seed& seed : compressed_gltf()) all.push_back(std::move(seed));
+  return all;
 }
 
 /// An archive of these files, read back from `archive`.
 std::string zipped(const std::vector<Seed>& files) {
   const std::string archive = (scratch_folder() / "packed").string();
   zipFile zip = zipOpen(archive.c_str(), APPEND_STATUS_CREATE);
-  for (const auto& [name, bytes] : files) {
+  for (const auto& [name, bytes, grammar] : files) {
+    static_cast<void>(grammar);
     zipOpenNewFileInZip(zip, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, 0, 0);  // stored, not packed
     zipWriteInFileInZip(zip, bytes.data(), static_cast<unsigned>(bytes.size()));
     zipCloseFileInZip(zip);
@@ -230,7 +227,9 @@ std::vector<Seed> threemf() {
       "</object><object id='2'><components><component objectid='1' transform='0 1 0 -1 0 0 0 0 2 3 4 5'/>"
       "</components></object><basematerials id='5'><base displaycolor='#12345678'/></basematerials>"
       "</resources><build><item objectid='2'/><item objectid='1'/></build></model>";
-  return {{"model", model}, {"whole", threemf_of(model)}, {"empty", zipped({{"_rels/.rels", "<Relationships/>"}})}};
+  return {{"model", model, Grammar::xml},
+          {"whole", threemf_of(model)},
+          {"empty", zipped({{"_rels/.rels", "<Relationships/>"}})}};
 }
 
 std::vector<Seed> glb() {
@@ -244,7 +243,7 @@ std::vector<Seed> glb() {
   s += "JSON" + json;
   put(s, static_cast<std::uint32_t>(body.size()));
   s += std::string("BIN\0", 4) + body;
-  return {{"plain", s}};
+  return {{"plain", s, Grammar::glb}};
 }
 
 }  // namespace

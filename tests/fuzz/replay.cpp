@@ -1,6 +1,9 @@
-// main() of a fuzz target in an ordinary build: runs the target's seeds, simple mutations of them, and the files given
+// main() of a fuzz target in an ordinary build: runs the target's seeds, mutations of them (of their bytes and, where a
+// seed says what it is, of what they mean), and the files given
 // (what fuzzing has found). A crash, a hang (the test's time limit), an exception other than Error, or a broken promise
 // fails.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -8,15 +11,19 @@
 #include <random>
 
 #include "fuzz/fuzz.hpp"
+#include "fuzz/structured.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMutationsPerSeed = 40;
+constexpr int kMutationsPerSeed = 40, kStructuredPerSeed = 400;
+// An input takes less than this, s.
+constexpr unsigned kLongest = 10;
 constexpr std::size_t kLongestMutated = 20'000;
 
 void run(const std::string& bytes) {
+  ::alarm(kLongest);  // ends the process
   tegotae::LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
@@ -53,6 +60,11 @@ int main(int argc, char** argv) {
     ++inputs;
     for (int i = 0; i < kMutationsPerSeed && seed.bytes.size() < kLongestMutated; ++i, ++inputs)
       run(mutated(seed.bytes, random));
+    for (int i = 0; i < kStructuredPerSeed && seed.grammar != tegotae::Grammar::none; ++i, ++inputs) {
+      std::string bytes = tegotae::structured_mutation(seed.bytes, seed.grammar, random);
+      if (i % 3 == 0) bytes = tegotae::structured_mutation(bytes, seed.grammar, random);
+      run(bytes);
+    }
   }
   for (int i = 1; i < argc; ++i) {
     if (!fs::is_directory(argv[i])) {

@@ -209,6 +209,26 @@ TEST_CASE("3MF: damaged files are refused in one line", "[3mf]") {
   for (const auto& [item, why] : bad)
     CHECK_THAT(refusal(write(folder, model(object("1", ""), item))),
                Catch::Contains(std::string("a.3mf: ")) && Catch::Contains(why));
+  CHECK_THAT(refusal(write(folder, model(object("1", "") + object("1", ""), R"(<item objectid="1"/>)"))),
+             Catch::Contains("two objects of the id \"1\""));
+  // What is wrong is named: the number, and of which vertex, triangle or transform it is.
+  const auto with = [&](const std::string& old, const std::string& text) {
+    const std::string mesh = std::string(kMesh).replace(std::string(kMesh).find(old), old.size(), text);
+    return refusal(write(folder, model(object("1", "name=\"tip\"", mesh), R"(<item objectid="1"/>)")));
+  };
+  CHECK_THAT(with("x=\"10\"", "x=\"1,5\""), Catch::Contains("vertex 1 of \"tip\" has \"1,5\" for a number"));
+  CHECK_THAT(with("x=\"10\"", ""), Catch::Contains("vertex 1 of \"tip\""));
+  CHECK_THAT(with("v2=\"1\"", "v2=\"0.5\""), Catch::Contains("triangle 1 of \"tip\""));
+  CHECK_THAT(with("v2=\"1\"", "v2=\"9\""), Catch::Contains("index out of range: triangle 1 of \"tip\""));
+  // Levels of many supports: as much work as parts.
+  std::string supports = object("0", "type=\"support\"");
+  for (int i = 1; i <= 4; ++i) {
+    std::string many;
+    for (int k = 0; k < 100; ++k) many += "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
+    supports += object(std::to_string(i).c_str(), "", "<components>" + many + "</components>");
+  }
+  CHECK_THAT(refusal(write(folder, model(supports, R"(<item objectid="4"/>)"))),
+             Catch::Contains("more than a million"));
   const std::string range = std::string(kMesh).replace(std::string(kMesh).find("v3=\"1\""), 6, "v3=\"4\"");
   CHECK_THAT(refusal(write(folder, model(object("1", "", range), R"(<item objectid="1"/>)"))),
              Catch::Contains("index out of range"));

@@ -48,6 +48,48 @@ Assembly read_with_position(GltfDoc& doc, std::size_t position, const Json& node
 
 }  // namespace
 
+TEST_CASE("GLB: a chunk that is neither JSON nor binary is no buffer", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.save(folder);
+  Json j = Json::parse(read_text(folder / "a.gltf"));
+  j["buffers"][0].erase("uri");
+  std::string text = j.dump(), body = read_text(folder / "a.bin");
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto glb = [&](const std::string& kind) {
+    const auto size = static_cast<std::uint32_t>(text.size()), bytes = static_cast<std::uint32_t>(body.size());
+    return "glTF" + GltfDoc::bytes_of<std::uint32_t>({2, 28 + size + bytes, size}) + "JSON" + text +
+           GltfDoc::bytes_of<std::uint32_t>({bytes}) + kind + body;
+  };
+  folder.write("good.glb", glb(std::string("BIN\0", 4)));
+  CHECK(read(folder / "good.glb").parts.size() == 1);
+  folder.write("other.glb", glb("NOTE"));
+  CHECK_THAT(refused(folder / "other.glb"), Catch::Contains("truncated: buffer 0 has 0 of"));
+}
+
+TEST_CASE("glTF: errors name what they are about", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node(Json::object());
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  const auto why = [&](const char* list, const char* key, const Json& value) {
+    GltfDoc bad = doc;
+    bad.j[list][0][key] = value;
+    return refused(bad.save(folder));
+  };
+  CHECK_THAT(why("accessors", "count", "4"), Catch::Contains("accessors 0: "));
+  CHECK_THAT(why("bufferViews", "byteLength", -1), Catch::Contains("bufferViews 0: "));
+  CHECK_THAT(why("meshes", "primitives", 1), Catch::Contains("meshes 0"));
+  CHECK_THAT(why("nodes", "mesh", 0.5), Catch::Contains("nodes 0: "));
+  CHECK_THAT(why("accessors", "type", "VEC2"), Catch::Contains("mesh 0, primitive 0 (node 1): "));
+  GltfDoc many = doc;
+  many.uses("EXT_mesh_gpu_instancing");
+  many.j["accessors"].push_back({{"componentType", 5126}, {"count", 1000001}, {"type", "VEC3"}});
+  many.j["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = many.j["accessors"].size() - 1;
+  CHECK_THAT(refused(many.save(folder)), Catch::Contains("instances of node 1: more than a million"));
+}
+
 TEST_CASE("glTF: places of nodes: matrix, or scale, rotation, translation; parents; mirrors", "[gltf]") {
   const TempFolder folder;
   GltfDoc doc;

@@ -19,7 +19,8 @@ struct IsolatedLoad {
 /// Does what load_mesh (see load.hpp) does, for files of unknown origin. Another process parses the file; its time and
 /// memory are bounded, and it can write nothing but the mesh. A damaged file that crashes the parser ends that process
 /// alone. The library checks the returned mesh like a file. The call starts a program (posix_spawn), which is safe
-/// beside other threads, and waits for it.
+/// beside other threads, and waits for it. A file whose content was read before comes out of the cache
+/// (set_hierarchy_cache()), without a process.
 ///
 /// Throws Error as load_mesh does, and when the helper is missing, is killed by a signal, or exceeds a bound.
 TriangleMesh load_mesh_isolated(const std::string& path, double unit_in_m = 1.0, const IsolatedLoad& bounds = {});
