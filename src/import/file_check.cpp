@@ -23,7 +23,12 @@ std::string read_bytes(const std::string& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  // By its length, and then what a file without one has.
+  const std::uintmax_t length = std::filesystem::file_size(path, status);
+  std::string bytes(status ? 0 : static_cast<std::size_t>(length), '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  bytes.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   if (file.bad()) refuse(path, "cannot be read to its end");
   return bytes;
 }

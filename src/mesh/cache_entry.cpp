@@ -1,5 +1,6 @@
 #include "mesh/cache_entry.hpp"
 
+#include <sys/mman.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -8,9 +9,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <system_error>
+#include <tuple>
 #include <utility>
+
+#include "core/parallel_for.hpp"
 
 namespace tegotae {
 
@@ -20,9 +23,13 @@ namespace {
 
 constexpr std::uint32_t kLayout = 1;                           // of the files below
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;  // in the folder
-// Pieces of files: summed while they are still in the processor's cache.
+// Blocks are summed in pieces, which several threads can read, and while they are still in the processor's cache; the
+// sum of an entry is over its heads and the keys of its pieces.
 constexpr std::size_t kPiece = std::size_t{1} << 18;
+// Larger blocks take longer to read than a thread to begin.
+constexpr std::size_t kWorthThreads = std::size_t{1} << 22;
 constexpr std::size_t kKeyDigits = 32;
+constexpr std::size_t kPage = 4096, kLargePage = std::size_t{1} << 21;
 
 std::string& folder() {
   static std::string path;
@@ -91,15 +98,23 @@ void make_room() {
 }
 
 /// Reads all of it; false at the end of the file or when it cannot be read.
-bool read_fully(int fd, char* to, std::size_t bytes) {
+bool read_fully(int fd, std::uint64_t from, void* to, std::size_t bytes) {
+  char* at = static_cast<char*>(to);
   while (bytes > 0) {
-    const ssize_t n = ::read(fd, to, bytes);
+    const ssize_t n = ::pread(fd, at, bytes, static_cast<off_t>(from));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
-    to += n;
+    at += n;
+    from += static_cast<std::uint64_t>(n);
     bytes -= static_cast<std::size_t>(n);
   }
   return true;
+}
+
+ContentKey key_of(const void* data, std::size_t bytes) {
+  ContentSum sum;
+  sum.add(data, bytes);
+  return sum.key();
 }
 
 }  // namespace
@@ -122,7 +137,7 @@ CacheReader::CacheReader(const CacheName& name)
   left_ = size - kEnds;
   Header header;
   const Header wanted = header_of(name);
-  sound_ = read(&header, sizeof header) && std::memcmp(&header, &wanted, sizeof header) == 0;
+  sound_ = read_head(&header, sizeof header) && std::memcmp(&header, &wanted, sizeof header) == 0;
 }
 
 bool CacheReader::next_block(std::size_t element, std::uint64_t& count) {
@@ -130,28 +145,44 @@ bool CacheReader::next_block(std::size_t element, std::uint64_t& count) {
   if (!sound_ || left_ < sizeof head) return sound_ = false;
   left_ -= sizeof head;
   // A count that was damaged must not ask for memory that the file cannot fill.
-  if (!read(&head, sizeof head) || head.element != element || head.count > left_ / element) return sound_ = false;
+  if (!read_head(&head, sizeof head) || head.element != element || head.count > left_ / element) return sound_ = false;
   count = head.count;
   left_ -= count * element;
   return true;
 }
 
-bool CacheReader::read(void* to, std::size_t bytes) {
-  char* at = static_cast<char*>(to);
-  while (bytes > 0) {
-    const std::size_t n = std::min(bytes, kPiece);
-    if (!read_fully(file_.get(), at, n)) return sound_ = false;
-    sum_.add(at, n);
-    at += n;
-    bytes -= n;
-  }
+void CacheReader::expect_large(void* memory, std::size_t bytes) noexcept {
+  const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + kPage - 1) / kPage * kPage;
+  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kPage * kPage;
+  // Where the system does not do it, nothing is lost but time.
+  if (end > begin && end - begin >= kLargePage) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+bool CacheReader::read_head(void* to, std::size_t bytes) {
+  if (!read_fully(file_.get(), at_, to, bytes)) return sound_ = false;
+  sum_.add(to, bytes);
+  at_ += bytes;
   return true;
+}
+
+bool CacheReader::read_block(void* to, std::size_t bytes) {
+  std::vector<ContentKey> keys((bytes + kPiece - 1) / kPiece);
+  std::atomic<bool> read{true};
+  const auto read_piece = [&](int i) {
+    const std::size_t from = static_cast<std::size_t>(i) * kPiece, n = std::min(bytes - from, kPiece);
+    char* piece = static_cast<char*>(to) + from;
+    if (!read_fully(file_.get(), at_ + from, piece, n)) read = false;
+    keys[static_cast<std::size_t>(i)] = key_of(piece, n);
+  };
+  parallel_for(static_cast<int>(keys.size()), bytes < kWorthThreads ? 1 : 0, read_piece, {});
+  sum_.add(keys.data(), keys.size() * sizeof(ContentKey));
+  at_ += bytes;
+  return read || (sound_ = false);
 }
 
 bool CacheReader::done() {
   ContentKey stored;
-  if (!sound_ || left_ != 0 || !read_fully(file_.get(), reinterpret_cast<char*>(&stored), sizeof stored) ||
-      stored != sum_.key())
+  if (!sound_ || left_ != 0 || !read_fully(file_.get(), at_, &stored, sizeof stored) || stored != sum_.key())
     return false;
   std::error_code none;
   fs::last_write_time(path_, fs::file_time_type::clock::now(), none);
@@ -166,6 +197,7 @@ CacheWriter::CacheWriter(const CacheName& name) : path_(file_of(name)) {
   file_ = FileDescriptor(above_standard(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)));
   failed_ = file_.get() < 0;
   const Header header = header_of(name);
+  sum_.add(&header, sizeof header);
   write(&header, sizeof header);
 }
 
@@ -176,19 +208,26 @@ CacheWriter::~CacheWriter() {
 
 void CacheWriter::put_block(const void* data, std::uint64_t count, std::size_t element) {
   const BlockHead head{element, count};
+  sum_.add(&head, sizeof head);
   write(&head, sizeof head);
-  write(data, count * element);
+  const char* at = static_cast<const char*>(data);
+  for (std::size_t left = count * element; left > 0 && !failed_;) {
+    const std::size_t n = std::min(left, kPiece);
+    const ContentKey key = key_of(at, n);
+    sum_.add(&key, sizeof key);
+    write(at, n);
+    at += n;
+    left -= n;
+  }
 }
 
 void CacheWriter::write(const void* data, std::size_t bytes) {
   const char* at = static_cast<const char*>(data);
   while (bytes > 0 && !failed_) {
-    const std::size_t n = std::min(bytes, kPiece);
-    const ssize_t written = ::write(file_.get(), at, n);
+    const ssize_t written = ::write(file_.get(), at, bytes);
     if (written < 0 && errno == EINTR) continue;
     failed_ = written <= 0;
     if (failed_) return;
-    sum_.add(at, static_cast<std::size_t>(written));
     at += written;
     bytes -= static_cast<std::size_t>(written);
   }

@@ -36,25 +36,32 @@ class CacheReader {
   bool take(std::vector<T>& block) {
     std::uint64_t count = 0;
     if (!next_block(sizeof(T), count)) return false;
+    block.reserve(count);
+    expect_large(block.data(), count * sizeof(T));
     block.resize(count);
-    return read(block.data(), count * sizeof(T));
+    return read_block(block.data(), count * sizeof(T));
   }
   template <typename T>
   bool take_value(T& value) {
     std::uint64_t count = 0;
-    return next_block(sizeof(T), count) && count == 1 && read(&value, sizeof(T));
+    return next_block(sizeof(T), count) && count == 1 && read_block(&value, sizeof(T));
   }
   /// Whether all blocks were taken and their sum is the one in the file. Marks the entry as used now.
   bool done();
 
  private:
   bool next_block(std::size_t element, std::uint64_t& count);
-  bool read(void* to, std::size_t bytes);
+  bool read_head(void* to, std::size_t bytes);
+  /// By several threads when it is large.
+  bool read_block(void* to, std::size_t bytes);
+  /// Asks for large pages: a start makes some hundred megabytes, in pages of 4 kB that is most of its time.
+  static void expect_large(void* memory, std::size_t bytes) noexcept;
 
   std::string path_;
   FileDescriptor file_;
   bool sound_ = false;
   std::uint64_t left_ = 0;  // bytes of blocks
+  std::uint64_t at_ = 0;    // in the file
   ContentSum sum_;
 };
 

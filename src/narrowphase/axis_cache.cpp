@@ -13,6 +13,8 @@ namespace {
 
 // To be raised whenever find_axes() or ProfileTree makes something else of the same mesh, tree and frame.
 constexpr std::uint32_t kAxesBuild = 1, kProfileBuild = 1;
+// Finding axes takes 40 ms in a mesh of some hundred triangles already, and an entry of them is small.
+constexpr std::size_t kMinForAxes = 200;
 
 static_assert(sizeof(ScrewAxis) == 8 * sizeof(double) && std::is_trivially_copyable_v<ProfileBox>);
 
@@ -41,7 +43,7 @@ std::optional<ProfileTree> load(const CacheName& name, const PatchTree& tree, co
 }  // namespace
 
 std::vector<ScrewAxis> cached_axes(const TriangleMesh& mesh) {
-  if (!has_cache_folder() || mesh.triangles.size() < kMinCached) return find_axes(mesh);
+  if (!has_cache_folder() || mesh.triangles.size() < kMinForAxes) return find_axes(mesh);
   const CacheName name{"axes", kAxesBuild, key_of(mesh)};
   std::vector<ScrewAxis> axes;
   CacheReader kept(name);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMutationsPerSeed = 40, kStructuredPerSeed = 400;
+constexpr int kMutationsPerSeed = 40, kStructuredPerSeed = 2000;
 // An input takes less than this, s.
 constexpr unsigned kLongest = 10;
 constexpr std::size_t kLongestMutated = 20'000;
