@@ -5,7 +5,9 @@
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
+#include "mesh/cache_entry.hpp"
 #include "models/shapes.hpp"
+#include "narrowphase/axis_cache.hpp"
 #include "narrowphase/patch_cache.hpp"
 #include "tegotae/narrowphase/hierarchy_cache.hpp"
 
@@ -85,6 +87,49 @@ TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
     set_hierarchy_cache(folder / "plain/cache");
     CHECK(same(*cached_patch_tree(mesh), built));
   }
+}
+
+TEST_CASE("axes and profiles that are kept are those that were found", "[patch_cache]") {
+  const TempFolder folder;
+  const auto mesh = std::make_shared<const TriangleMesh>(shapes::cylinder(0.01, 0.03, 250, 50));
+  REQUIRE(mesh->triangles.size() >= kMinCached);
+  const PatchTree tree(mesh);
+  const std::vector<ScrewAxis> axes = find_axes(*mesh);
+  REQUIRE(axes.size() == 1);
+  const ScrewFrame frame = ScrewFrame::of(axes[0], 0.001);
+  const ProfileTree built(tree, frame);
+  CHECK(built.boxes() > 1000);
+  const auto check = [&] {
+    const std::vector<ScrewAxis> kept = cached_axes(*mesh);
+    REQUIRE(kept.size() == 1);
+    CHECK(std::memcmp(kept.data(), axes.data(), sizeof(ScrewAxis)) == 0);
+    const ProfileTree profile = cached_profile(tree, frame);
+    CHECK(profile.places() == built.places());
+    REQUIRE(profile.boxes() == built.boxes());
+    CHECK(std::memcmp(profile.all_boxes().data(), built.all_boxes().data(), built.boxes() * sizeof(ProfileBox)) == 0);
+    CHECK(profile.r_max() == built.r_max());
+    CHECK(profile.z_min() == built.z_min());
+    CHECK(profile.z_max() == built.z_max());
+  };
+  const UseFolder use(folder / "cache");
+  check();
+  REQUIRE(files(folder / "cache").size() == 2);
+  check();
+  for (const fs::path& file : files(folder / "cache")) {
+    const std::string bytes = read_text(file);
+    for (const std::size_t at :
+         {std::size_t{17}, std::size_t{50}, std::size_t{60}, bytes.size() / 2, bytes.size() - 1}) {
+      INFO(file << " at " << at);
+      std::string bad = bytes;
+      bad[at] = static_cast<char>(bad[at] ^ 4);
+      std::ofstream(file, std::ios::binary) << bad;
+      check();
+      CHECK(read_text(file) == bytes);
+    }
+  }
+  // Another frame of the same axis is another profile.
+  cached_profile(tree, ScrewFrame::of(axes[0], 0.002));
+  CHECK(files(folder / "cache").size() == 3);
 }
 
 TEST_CASE("without a folder nothing is kept", "[patch_cache]") {
