@@ -61,7 +61,9 @@ class GltfCheck {
     each("bufferViews", [this](std::size_t i) { check_view(i); });
     each("accessors", [this](std::size_t i) { check_accessor(i); });
     each("meshes", [this](std::size_t i) { check_mesh(i); });
+    each("skins", [this](std::size_t i) { check_skin(i); });
     check_nodes();
+    if (top_.contains("scene")) reference(top_["scene"], "scenes", "the file");
   }
 
  private:
@@ -231,10 +233,25 @@ class GltfCheck {
 
   void check_mesh(std::size_t i) const {
     for (const json& primitive : list("meshes")[i].at("primitives")) {
-      for (const json& accessor : primitive.at("attributes")) reference(accessor, "accessors", called("mesh", i));
+      check_accessors(primitive.at("attributes"), called("mesh", i));
+      if (primitive.contains("targets"))
+        for (const json& target : primitive["targets"]) check_accessors(target, called("mesh", i));
+      if (const json* draco = extension(primitive, "KHR_draco_mesh_compression"))
+        reference(draco->at("bufferView"), "bufferViews", called("mesh", i));
       if (primitive.contains("indices")) reference(primitive["indices"], "accessors", called("mesh", i));
       if (primitive.contains("material")) reference(primitive["material"], "materials", called("mesh", i));
     }
+  }
+
+  void check_accessors(const json& attributes, const std::string& self) const {
+    for (const json& accessor : attributes) reference(accessor, "accessors", self);
+  }
+
+  void check_skin(std::size_t i) const {
+    const json& skin = list("skins")[i];
+    for (const json& joint : skin.at("joints")) reference(joint, "nodes", called("skin", i));
+    if (skin.contains("skeleton")) reference(skin["skeleton"], "nodes", called("skin", i));
+    if (skin.contains("inverseBindMatrices")) reference(skin["inverseBindMatrices"], "accessors", called("skin", i));
   }
 
   /// Every node has one parent at most and hangs under a root.
@@ -245,6 +262,9 @@ class GltfCheck {
     each("nodes", [&](std::size_t i) {
       const json& node = list("nodes")[i];
       if (node.contains("mesh")) reference(node["mesh"], "meshes", called("node", i));
+      if (node.contains("skin")) reference(node["skin"], "skins", called("node", i));
+      if (const json* instances = extension(node, "EXT_mesh_gpu_instancing"))
+        check_accessors(instances->at("attributes"), called("node", i));
       if (!node.contains("children")) return;
       for (const json& c : node["children"]) {
         const std::uint64_t to = reference(c, "nodes", called("node", i));
