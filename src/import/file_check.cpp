@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "import/check_text.hpp"
 #include "import/plain_obj.hpp"
@@ -58,9 +59,9 @@ std::string read_mesh_bytes(const std::string& path) {
 }
 
 PlainMesh plain_mesh(const std::string& path) {
-  const std::string bytes = read_mesh_bytes(path);
+  std::string bytes = read_mesh_bytes(path);
   const std::string extension = lower_extension(path);
-  if (extension == ".stl") return {plain_stl(path, bytes), "stl", {}};
+  if (extension == ".stl") return {plain_stl(path, std::move(bytes)), "stl", {}};
   PlainMesh mesh{{}, extension == ".obj" ? "obj" : "ply", {}};
   if (extension == ".ply")
     mesh.bytes = plain_ply(path, bytes, mesh.notes);

@@ -31,6 +31,7 @@ namespace {
 
 // Texts longer than this are no message of a helper.
 constexpr std::uint64_t kLongestText = 100'000;
+constexpr int kPipeBytes = 1 << 20;
 
 [[noreturn]] void fail(const std::string& path, const std::string& why) {
   throw Error(ErrorKind::file, path + ": " + why, {path, 0, {}, {}});
@@ -199,6 +200,7 @@ TriangleMesh received(Reader& reader, const std::string& path, const IsolatedLoa
 TriangleMesh read_isolated(const std::string& path, double unit_in_m, const IsolatedLoad& bounds) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(path, std::string("no pipe to the loading process: ") + std::strerror(errno));
+  fcntl(ends[0], F_SETPIPE_SZ, kPipeBytes);  // where it may not be so large, processes take turns more often
   const Descriptor in(ends[0]);
   Descriptor out(ends[1]);
   Helper helper(start(path, unit_in_m, bounds, out.get()));

@@ -1,6 +1,7 @@
 #include "tegotae/import/load.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "import/load_assimp.hpp"
 #include "import/load_cached.hpp"
@@ -29,8 +30,10 @@ TriangleMesh import(const std::string& path, double unit) {
   }
   const PlainMesh plain = plain_mesh(path);
   mesh.notes = plain.notes;
-  if (const auto triangles = triangles_of(plain)) {
-    append(*triangles, Matrix34::Identity(), unit, mesh);
+  if (auto triangles = triangles_of(plain)) {
+    mesh.vertices = std::move(triangles->vertices);
+    mesh.triangles = std::move(triangles->triangles);
+    for (Vec3& p : mesh.vertices) p = unit * (p + Vec3::Zero());  // as append() does it: there is no -0
     return mesh;
   }
   Assimp::Importer importer;

@@ -321,6 +321,25 @@ class Layout {
   std::vector<Place> places_;                          ///< of all nodes
 };
 
+/// The face relative to `origin`; returns its largest distance from it, m.
+double set_item(const TriangleMesh& mesh, std::uint32_t face, const Vec3& origin, PatchItem& t) {
+  std::array<Vec3, 3> v;
+  double farthest = 0;
+  for (int k = 0; k < 3; ++k) {
+    v[k] = mesh.vertices[mesh.triangles[face][k]] - origin;
+    farthest = std::max(farthest, v[k].norm());
+    t.v[k] = v[k].cast<float>();
+  }
+  const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]);
+  const double length = n.norm();
+  t.area = static_cast<float>(0.5 * length);
+  t.normal = length > 0 ? Vec3f((n / length).cast<float>()) : Vec3f(Vec3f::Zero());
+  // A sliver counts a little, or a set of slivers alone would have no frame.
+  t.area = std::max(std::numeric_limits<float>::min(), t.area);
+  t.area = std::max(t.area, 1e-6f * static_cast<float>((v[1] - v[0]).squaredNorm() + (v[2] - v[0]).squaredNorm()));
+  return farthest;
+}
+
 }  // namespace
 
 PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)) {
@@ -334,22 +353,15 @@ PatchTree::PatchTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move
   }
   origin_ = 0.5 * (lo + hi);
   std::vector<PatchItem> items(mesh_->triangles.size());
-  for (std::uint32_t f = 0; f < items.size(); ++f) {
-    PatchItem& t = items[f];
-    std::array<Vec3, 3> v;
-    for (int k = 0; k < 3; ++k) {
-      v[k] = corner(f, k) - origin_;
-      radius_ = std::max(radius_, v[k].norm());
-      t.v[k] = v[k].cast<float>();
-    }
-    const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]);
-    const double length = n.norm();
-    t.area = static_cast<float>(0.5 * length);
-    t.normal = length > 0 ? Vec3f((n / length).cast<float>()) : Vec3f(Vec3f::Zero());
-    // A sliver counts a little, or a set of slivers alone would have no frame.
-    t.area = std::max(std::numeric_limits<float>::min(), t.area);
-    t.area = std::max(t.area, 1e-6f * static_cast<float>((v[1] - v[0]).squaredNorm() + (v[2] - v[0]).squaredNorm()));
-  }
+  std::vector<double> radius((items.size() + kFitAtOnce - 1) / kFitAtOnce, 0);
+  const auto prepare = [&](int task) {
+    const std::size_t from = static_cast<std::size_t>(task) * kFitAtOnce;
+    for (std::size_t f = from; f < std::min(items.size(), from + kFitAtOnce); ++f)
+      radius[static_cast<std::size_t>(task)] = std::max(
+          radius[static_cast<std::size_t>(task)], set_item(*mesh_, static_cast<std::uint32_t>(f), origin_, items[f]));
+  };
+  parallel_for(static_cast<int>(radius.size()), 0, prepare, {});
+  radius_ = *std::max_element(radius.begin(), radius.end());
   const PatchClusters clusters = cluster_patches(*mesh_, items);
   Layout(*mesh_, clusters, items, radius_, nodes_, order_);
 }
