@@ -8,9 +8,9 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Sets the folder in which the library keeps large meshes as it has read them, and their hierarchies, so that a later
 /// start need not read and build them. An empty name (the default) disables the cache. Call it before starting threads
-/// that load meshes or build loops. The library uses a file of the cache only when it is whole and was made from the same
-/// content, bit for bit, by the same method; otherwise it reads the mesh file, or builds the hierarchy, again. The cache
-/// takes 4 GB at most. A folder that cannot be written is no error.
+/// that load meshes or build loops. The library uses a file of the cache only when it is whole and was made from the
+/// same content, bit for bit, by the same method; otherwise it reads the mesh file, or builds the hierarchy, again. The
+/// cache takes 4 GB at most. A folder that cannot be written is no error.
 void set_hierarchy_cache(const std::string& folder);
 
 /// Returns $XDG_CACHE_HOME/tegotae, else ~/.cache/tegotae; empty when neither is known.
