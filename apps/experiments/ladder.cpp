@@ -116,13 +116,13 @@ Rungs rungs_of(const Plan& p, const std::vector<Attempt>& attempts) {
 Csv csv_of(const Plan& p, const std::vector<Attempt>& attempts) {
   Csv csv{"ladder",
           {"resolver", "ratio", "clearance_um", "operator", "start", "completed", "time_s", "vibration_um",
-           "penetration_um", "intersecting"}};
+           "penetration_um", "intersecting", "held_back_ticks"}};
   for (std::size_t i = attempts.size(); i-- > 0;) {
     const Job& j = p.jobs[i];
     const Attempt& a = attempts[i];
     csv.rows.push_back({p.names[j.resolver], p.ratios[j.rung], clearance_um(p.ratios[j.rung]),
                         operator_profiles()[j.person].name, j.start, a.completed ? 1 : 0, a.time_to_bottom,
-                        1e6 * a.vibration, 1e6 * a.penetration, a.intersecting});
+                        1e6 * a.vibration, 1e6 * a.penetration, a.intersecting, a.held_back});
   }
   return csv;
 }

@@ -164,6 +164,7 @@ Attempt attempt(const PegTask& peg, const OperatorProfile& profile, const Insert
   a.vibration = rms_above(center, 1e-3, kVibrationHz);
   a.force_vibration = rms_above(force, 1e-3, kVibrationHz);
   a.intersecting = count_intersecting(scene, a.samples, kFclPoses);
+  a.held_back = a.samples.back().held_back;
   return a;
 }
 

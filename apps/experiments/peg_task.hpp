@@ -55,6 +55,7 @@ struct Attempt {
   double force_vibration = 0;  ///< the same of the force, N
   double penetration = 0;      ///< deepest, m
   std::int64_t intersecting = 0;  ///< of the poses asked of FCL
+  std::int64_t held_back = 0;     ///< ticks in which it was held back for long without a contact
   std::vector<Sample> samples{};
 };
 

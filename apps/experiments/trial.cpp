@@ -47,6 +47,7 @@ std::vector<Sample> run_trial(Scene scene, const SimulatedDeviceSettings& pen_se
     s.pen = pen.state.velocity;
     s.wrench = pen.wrench;
     s.contacts = report.contacts;
+    s.held_back = report.unexplained_lag_ticks;
     samples.push_back(s);
     if (done && done(s)) break;
     if (op) op->see(s.t, s.X);

@@ -20,6 +20,7 @@ struct Sample {
   Twist pen;      ///< velocity of the pen's body at the center of mass
   Wrench wrench;  ///< rendered on the pen at the center of mass
   int contacts = 0;
+  std::int64_t held_back = 0;  ///< TickReport::unexplained_lag_ticks
 };
 
 /// Runs the scene in virtual time with servo, safety chain and simulated pen, 1 kHz, as `tegotae run` does, but with

@@ -103,8 +103,9 @@ std::optional<CurvedPairs::Found> CurvedPairs::separate(std::uint32_t node_a, st
 
 std::optional<bool> CurvedPairs::thicker(std::uint32_t node_a, std::uint32_t node_b) const noexcept {
   for (std::uint32_t i = 0; i < used_; ++i) {
-    if (!groups_[i].motion.usable) continue;
-    const ProfileBox *a = (*axes_)[i].a->box(node_a), *b = (*axes_)[i].b->box(node_b);
+    const AxisPair& axes = (*axes_)[i];
+    if (!groups_[i].motion.usable || axes.b->frame().rise == 0) continue;
+    const ProfileBox *a = axes.a->box(node_a), *b = axes.b->box(node_b);
     if (a != nullptr && b != nullptr) return thickness(*a) > thickness(*b);
   }
   return std::nullopt;

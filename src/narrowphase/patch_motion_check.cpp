@@ -42,6 +42,8 @@ constexpr int kSomePairs = 500, kFacesPerPair = 5;
 // What is asked ahead of a front stops at so many pairs.
 constexpr int kEnoughPairs = 4000;
 constexpr double kOneSided = 0.35;
+// A front that has proved so many motions with that many pairs stays.
+constexpr int kProvedWithMany = 50;
 // What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
 constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
@@ -237,6 +239,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
 void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
                                   std::vector<FacePair>& blocking) noexcept {
   bool moved = false;
+  const bool timed = limit_.deadline_ns != kNoDeadline;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
     limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
@@ -247,14 +250,17 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
     const bool slides = !axes_[part]->empty();
     const bool tried = choice_[part] == Certificate::front_for_good;
     if ((cuts > kMaxCuts && report.pairs > kManyPairs && !slides && !tried) ||
-        (report.overflow && report.status == CertifyStatus::cut)) {
+        (report.overflow && report.status == CertifyStatus::cut && (!timed || cuts > kMaxCuts))) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;
       continue;
     }
     share_ = std::min(share_, report.share);
-    if (report.status == CertifyStatus::certified) continue;
+    if (report.status == CertifyStatus::certified) {
+      if (many(report.pairs)) ++ahead_[front_of_[part]].proved_with_many;
+      continue;
+    }
     for (const BlockingPair& pair : fronts_[front_of_[part]].blocking())
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
     if (report.exhausted && past(limit_.deadline_ns)) break;
@@ -286,14 +292,19 @@ CertifyReport PatchMotionCheck::ask_cells(const Pose& X, const Displacement& d, 
   return report;
 }
 
+bool PatchMotionCheck::many(int pairs) const noexcept {
+  return pairs > std::max(kSomePairs, static_cast<int>(held_->mesh().triangles.size()) / kFacesPerPair);
+}
+
 bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) const noexcept {
   if (choice_[part] == Certificate::front_for_good) return false;
-  const int many = std::max(kSomePairs, static_cast<int>(held_->mesh().triangles.size()) / kFacesPerPair);
-  if (report.pairs * static_cast<int>(near_fronts_.size()) <= many) return false;
+  // What has had so many pairs for long does well with them: a peg that leans in its hole.
+  if (ahead_[front_of_[part]].proved_with_many > kProvedWithMany) return false;
+  if (!many(report.pairs * static_cast<int>(near_fronts_.size()))) return false;
   int pairs = 0;
   for (const std::uint32_t near : near_fronts_)
     if (front_of_[near] != kNobody) pairs += fronts_[front_of_[near]].pairs();
-  return pairs > many && fronts_[front_of_[part]].one_sidedness() > kOneSided;
+  return many(pairs) && fronts_[front_of_[part]].one_sidedness() > kOneSided;
 }
 
 double PatchMotionCheck::least_gap_at_most(const Pose& X, std::uint32_t part) const noexcept {

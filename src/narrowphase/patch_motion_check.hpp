@@ -55,6 +55,7 @@ class PatchMotionCheck final : public MotionCheck {
     Pose X;                                                    ///< where
     double proved = 0;                                         ///< all of B is at least so far away, m
     double ceiling = std::numeric_limits<double>::infinity();  ///< and something of it no farther than this, m
+    int proved_with_many = 0;  ///< motions that were proved with so many pairs that A could lie on B
   };
 
   void take_up_near() noexcept;
@@ -67,6 +68,7 @@ class PatchMotionCheck final : public MotionCheck {
   void judge_cells(const CertifyReport& report) noexcept;
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
                           const WorkLimit& limit) noexcept;
+  bool many(int pairs) const noexcept;
   bool lies_on(const CertifyReport& report, std::uint32_t part) const noexcept;
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;

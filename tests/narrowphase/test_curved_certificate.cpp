@@ -397,3 +397,48 @@ TEST_CASE("threads, pegs and bores are paired about their axes, what does not ma
   AxisPairing pegs(tree(peg_of(0.0198)));
   CHECK(pegs.with(tree(hole_of()))->size() == 1);
 }
+
+TEST_CASE("a peg that is pressed against its hole costs no more with curves than by planes", "[curved]") {
+  const auto tree = [](const TriangleMesh& m) { return std::make_shared<const PatchTree>(mesh_of(m)); };
+  const auto peg = tree(peg_of(0.0198)), hole = tree(hole_of());
+  AxisPairing pairing(peg);
+  const Vec3 center = peg->origin();
+  struct Cost {
+    double pairs = 0, searches = 0;
+    int moved = 0, blocked = 0;
+  };
+  const auto cost = [&](const std::vector<AxisPair>* axes) {
+    PatchFront front(FrontCapacity{1u << 15, 32, axes == nullptr ? 0 : 1u << 12});
+    front.attach(*peg, center, *hole, axes);
+    front.set_clearance(3e-6);
+    std::mt19937 rng(3);
+    Cost sum;
+    Pose X{Quat::Identity(), Vec3(0, 0, -0.01)};
+    Vec3 way = Vec3::Zero(), turn = Vec3::Zero();
+    for (int i = 0; i < 4000; ++i) {
+      // A hand that pushes one way for a while and trembles: the peg jams, slides and comes free.
+      if (i % 200 == 0) way = random_in_ball(rng, 4e-5), turn = random_in_ball(rng, 2e-3);
+      Displacement d{way + random_in_ball(rng, 8e-5), turn + random_in_ball(rng, 4e-3)};
+      for (int k = 0; k < 4; ++k) {
+        const CertifyReport r = front.certify(X, d, {1 << 20, 8});
+        sum.pairs += r.pairs;
+        sum.searches += r.searches;
+        if (r.status == CertifyStatus::certified) {
+          X = displaced(X, center, d);
+          ++sum.moved;
+          break;
+        }
+        ++sum.blocked;
+        d = 0.5 * d;
+      }
+    }
+    return sum;
+  };
+  const Cost flat = cost(nullptr), curved = cost(pairing.with(hole));
+  CAPTURE(flat.pairs, curved.pairs, flat.searches, curved.searches, flat.moved, curved.moved, flat.blocked,
+          curved.blocked);
+  CHECK(flat.moved > 1000);
+  CHECK(flat.blocked > 1000);
+  CHECK(curved.pairs < flat.pairs);
+  CHECK(curved.searches < flat.searches);
+}
