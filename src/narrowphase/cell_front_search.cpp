@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What is farther from the way of a piece than this part of its width needs no plane.
-constexpr double kWantedShare = 0.5;
+constexpr double kWantedShare = 0.75;
 /// Cells are looked for farther ahead than the motion goes when it is this many times as far; what was met on the way
 /// ends the foresight at this share of the way to it.
 constexpr double kWorthForesight = 1.5, kForesightShare = 0.9;

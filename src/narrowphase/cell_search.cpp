@@ -6,36 +6,47 @@
 
 #include "narrowphase/moving_plane.hpp"
 #include "narrowphase/patch_lanes.hpp"
+#include "narrowphase/wide.hpp"
 
 namespace tegotae {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Nodes and faces of B that one search measures at most; a piece that needs more is better taken apart.
-constexpr int kMaxVisits = 160;
+constexpr float kFar = std::numeric_limits<float>::infinity();
 /// A plane known already stands for a piece of B as well when it is not nearer than this share of the nearest.
-constexpr double kGoodShare = 0.97;
+constexpr double kGoodShare = 0.8;
 /// A box of A that overlaps one of B of less than this share of its size is taken apart at once.
 constexpr double kSmallShare = 0.5;
 /// Blocking triangles of B that one search lists.
 constexpr std::size_t kMaxBlocking = 2;
 /// Products of unit vectors shorter than this have no reliable direction.
 constexpr double kParallel = 1e-6;
-/// Distances along the axes of boxes, which are of unit length and at right angles up to single precision, are right up
-/// to this share.
-constexpr double kAxisSlack = 1 - 1e-5;
-/// For the same reason the way of a piece in its frame is right up to this share.
-constexpr double kWaySlack = 1e-6;
-/// Distances are listed in single precision, rounded down.
-constexpr double kFloatSlack = 1 - 1e-6;
+/// What is so many times as far as is wanted is not listed.
+constexpr double kListed = 6;
+/// Halvings of the range of distances among which the nearest are looked for.
+constexpr int kHalvings = 10;
+
+/// A number of single precision that is no larger.
+float round_down(double x) {
+  const float nearest = static_cast<float>(x);
+  return nearest - 2.4e-7F * std::abs(nearest);
+}
+
+/// Among `count` distances, the end of which is padded with infinity to a multiple of kMeasured: one up to which,
+/// itself not included, there are at most `room`, and nearly as many.
+TEGOTAE_WIDE float nearest_end(const float* distance, std::size_t count, std::size_t room, float low, float high) {
+  for (int i = 0; i < kHalvings; ++i) {
+    const float middle = 0.5F * (low + high);
+    int nearer = 0;
+    for (std::size_t k = 0; k < count; ++k) nearer += distance[k] < middle;
+    (static_cast<std::size_t>(nearer) <= room ? low : high) = middle;
+  }
+  return low;
+}
 
 }  // namespace
 
 CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lane_{} {
-  stack_.reserve(kMaxVisits + kMeasured + kCellItems);
-  near_.reserve(kMaxVisits + kMeasured + kCellItems);
-  far_.reserve(kMaxVisits + kMeasured + kCellItems);
-  waiting_.reserve(kCellItems);
   blocking_.reserve(kMaxBlocking);
 }
 
@@ -120,46 +131,54 @@ bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least
 
 void CellSearch::tell_items(bool found) {
   // What was found of the near ones, those that the search had not come to, and the nearest of the others.
-  for (const Entry& rest : stack_) list(rest.item, rest.distance);
-  for (const Listed& rest : waiting_) list(rest.item, rest.distance);
+  for (std::size_t i = 0; i < stacked_; ++i) near_.add(stack_[i].item, stack_[i].distance);
+  for (std::size_t i = 0; i < waiting_.count; ++i) near_.add(waiting_.item[i], waiting_.distance[i]);
   items_.clear = beyond_;
   items_.count = items_.near = 0;
-  if (near_.size() > kCellItems) {
+  if (near_.count > kCellItems) {
     items_.clear = 0;
     return;
   }
-  const std::size_t room = kCellItems - near_.size();
-  if (far_.size() > room) {
-    const auto end = far_.begin() + static_cast<std::ptrdiff_t>(room);
-    std::nth_element(far_.begin(), end, far_.end(),
-                     [](const Listed& p, const Listed& q) { return p.distance < q.distance; });
-    items_.clear = std::min(items_.clear, end->distance);
-    far_.resize(room);
+  for (std::size_t i = 0; i < near_.count; ++i) {
+    items_.item[i] = near_.item[i];
+    items_.distance[i] = near_.distance[i];
   }
-  if (found) items_.near = static_cast<std::uint32_t>(near_.size());
-  for (const auto* list : {&near_, &far_}) {
-    for (const Listed& l : *list) {
-      items_.item[items_.count] = l.item;
-      items_.distance[items_.count++] = static_cast<float>(kFloatSlack * l.distance);
+  items_.count = static_cast<std::uint32_t>(near_.count);
+  if (found) items_.near = items_.count;
+  const std::size_t room = kCellItems - near_.count;
+  float end = kFar;
+  if (far_.count > room) {
+    float low = kFar, high = -kFar;
+    for (std::size_t i = 0; i < far_.count; ++i) {
+      low = std::min(low, far_.distance[i]);
+      high = std::max(high, far_.distance[i]);
     }
+    end = nearest_end(far_.distance.data(), far_.count, room, low, high);
   }
-}
-
-void CellSearch::leave_out(std::uint32_t item, double distance) {
-  clear_ = std::min(clear_, distance);
-  far_.push_back({item, distance});
+  float rest = kFar;
+  for (std::size_t i = 0; i < far_.count; ++i) {
+    const float far = far_.distance[i];
+    const bool listed = far < end;
+    rest = std::min(rest, listed ? kFar : far);
+    if (!listed) continue;
+    items_.item[items_.count] = far_.item[i];
+    items_.distance[items_.count++] = far;
+  }
+  items_.clear = std::min(items_.clear, double{rest});
 }
 
 void CellSearch::measure(const std::uint32_t* items, int count) {
   std::size_t box_count = 0, face_count = 0;
   const PatchTree& tree = *query_.tree;
   const Vec3 origin = tree.origin() + frame_.origin;
+  const PatchNode* nodes = tree.nodes().data();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const std::uint32_t place = items[i] & ~CellItems::kFace;
     if (place == items[i]) {
-      const PatchNode& b = tree.nodes()[place];
+      const PatchNode& b = nodes[place];
       for (std::size_t c = 0; c < 3; ++c) {
-        boxes_.center[c][box_count] = b.center[c] - frame_.origin[static_cast<Eigen::Index>(c)];
+        const auto axis = static_cast<Eigen::Index>(c);
+        boxes_.center[c][box_count] = static_cast<float>(double{b.center[c]} - frame_.origin[axis]);
         boxes_.half[c][box_count] = b.half[c];
         for (std::size_t k = 0; k < 3; ++k) boxes_.edge[k][c][box_count] = b.axis[k][c];
       }
@@ -170,59 +189,65 @@ void CellSearch::measure(const std::uint32_t* items, int count) {
       const Vec3& corner = tree.corner(place, static_cast<int>(k));
       for (std::size_t c = 0; c < 3; ++c) {
         const auto axis = static_cast<Eigen::Index>(c);
-        faces_.edge[k][c][face_count] = corner[axis] - origin[axis];
+        faces_.edge[k][c][face_count] = static_cast<float>(corner[axis] - origin[axis]);
       }
     }
     lane_[i] = face_count++;
   }
   visits_ += count;
-  if (box_count > 0) measure_boxes(frame_, boxes_, static_cast<int>(box_count), near_boxes_);
-  if (face_count > 0) measure_triangles(frame_, faces_, static_cast<int>(face_count), near_faces_);
+  if (box_count > 0) measure_boxes(frame_, boxes_, near_boxes_);
+  if (face_count > 0) measure_triangles(frame_, faces_, near_faces_);
 }
 
-double CellSearch::distance(std::uint32_t item, std::size_t i) const {
-  const Nearness& nearness = (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
-  return kAxisSlack * std::sqrt(nearness.distance2[lane_[i]]) - way_slack_;
+/// The normal of a side of a piece, of unit length up to single precision.
+Vec3 CellSearch::normal(const Entry& e, const Hull& b, const Side& side) const {
+  const int number = static_cast<int>(std::abs(side.normal));
+  const double sign = side.normal < 0 ? -1 : 1;
+  if (number <= 3) return sign * frame_.axis[static_cast<std::size_t>(number - 1)];
+  if (!e.is_face()) return sign * b.axis(number - 4);
+  // Axes of a frame may be left-handed, so the side is that on which its origin is.
+  const Vec3 n = (b.corner(1) - b.corner(0)).cross(b.corner(2) - b.corner(0));
+  const double length = n.norm();
+  if (!(length > 0)) return Vec3::Zero();
+  return (n.dot(frame_.origin - b.corner(0)) < 0 ? -1 : 1) / length * n;
 }
 
-CellSearch::Side CellSearch::side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const {
-  const auto number = static_cast<std::size_t>(side.number[lane]);
-  Side out{side.gap[lane], Vec3::Zero()};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto axis = static_cast<Eigen::Index>(c);
-    const double n = number < 3                  ? frame_.axis[number][axis]
-                     : &nearness == &near_faces_ ? nearness.plane[c][lane]
-                                                 : boxes_.edge[number - 3][c][lane];
-    out.n[axis] = side.sign[lane] * n;
+/// Puts a piece on the stack, of which those from `first` on are sorted.
+void CellSearch::add_entry(std::uint32_t item, std::size_t lane, std::size_t first) {
+  const Nearness& n = nearness(item);
+  const Entry e{
+      item, n.distance[lane], {n.any.gap[lane], n.any.normal[lane]}, {n.upright.gap[lane], n.upright.normal[lane]}};
+  std::size_t k = stacked_++;
+  for (; k > first && stack_[k - 1].distance < e.distance; --k) stack_[k] = stack_[k - 1];
+  stack_[k] = e;
+}
+
+/// What needs no plane is listed unless it is far beyond what the next searches may want.
+void CellSearch::leave_out(std::uint32_t item, float far) {
+  clear_ = std::min(clear_, double{far});
+  if (far < list_end_) {
+    far_.add(item, far);
+  } else {
+    beyond_ = std::min(beyond_, double{far});
   }
-  return out;
-}
-
-CellSearch::Entry CellSearch::entry(std::uint32_t item, std::size_t i, double distance) const {
-  const Nearness& nearness = (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
-  return {item, distance, side(nearness, nearness.any, lane_[i]), side(nearness, nearness.upright, lane_[i])};
 }
 
 void CellSearch::push(const std::uint32_t* items, int count) {
   measure(items, count);
-  const std::size_t first = stack_.size();
+  const std::size_t first = stacked_;
+  const float wanted = static_cast<float>(query_.wanted);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const double far = distance(items[i], i);
-    if (far >= query_.wanted) {
+    const float far = nearness(items[i]).distance[lane_[i]];
+    if (far >= wanted) {
       leave_out(items[i], far);
-      continue;
+    } else {
+      add_entry(items[i], lane_[i], first);
     }
-    // The nearest is on top.
-    stack_.push_back(entry(items[i], i, far));
-    for (std::size_t k = stack_.size() - 1; k > first && stack_[k - 1].distance < far; --k)
-      std::swap(stack_[k - 1], stack_[k]);
   }
 }
 
 void CellSearch::set_frame(const MovingHull& a) {
-  const Vec3 ahead = a.end.middle() - a.start.middle();
-  frame_ = HullFrame(a.start, ahead);
-  way_slack_ = kWaySlack * ahead.norm();
+  frame_ = HullFrame(a.start, a.end.middle() - a.start.middle());
 }
 
 bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved, double enough, CellItems& items,
@@ -232,20 +257,20 @@ bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved,
   query_ = {};
   query_.tree = &tree;
   set_frame(a);
-  std::array<double, kCellItems> far;
+  std::array<float, kCellItems> far;
   std::array<std::uint32_t, kMeasured> some{}, place{};
   int count = 0;
   const auto measure_some = [&] {
     measure(some.data(), count);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      far[place[k]] = distance(some[k], k);
+      far[place[k]] = nearness(some[k]).distance[lane_[k]];
       if (far[place[k]] < enough) return false;
     }
     count = 0;
     return true;
   };
   for (std::uint32_t i = 0; i < items.count; ++i) {
-    far[i] = items.distance[i] - moved;
+    far[i] = round_down(items.distance[i] - moved);
     if (i < items.near || far[i] >= enough) continue;
     some[static_cast<std::size_t>(count)] = items.item[i];
     place[static_cast<std::size_t>(count++)] = i;
@@ -254,8 +279,8 @@ bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved,
   if (!measure_some()) return false;
   items.clear = clear;
   for (std::uint32_t i = 0; i < items.count; ++i) {
-    items.distance[i] = static_cast<float>(far[i] > 0 ? kFloatSlack * far[i] : far[i] / kFloatSlack);
-    if (i >= items.near) clear = std::min(clear, far[i]);
+    items.distance[i] = far[i];
+    if (i >= items.near) clear = std::min(clear, double{far[i]});
   }
   return true;
 }
@@ -286,10 +311,10 @@ void CellSearch::open(std::uint32_t node) {
 }
 
 CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
-  if (keeps_off(b, e.any.n, 0)) return Outcome::found;
+  if (keeps_off(b, normal(e, b, e.any), 0)) return Outcome::found;
   if (face_of_a_ == nullptr) return Outcome::divide;
   if (under_known_plane(b, 0)) return Outcome::found;
-  Vec3 n = e.any.n;
+  Vec3 n = normal(e, b, e.any);
   if (best_of_all_axes(b, n) && keeps_off(b, n, 0)) return Outcome::found;
   if (full_ && !query_.is_face) return Outcome::divide;
   const Vec3& o = query_.tree->origin();
@@ -310,13 +335,13 @@ CellSearch::Outcome CellSearch::settle(const Entry& e) {
   const double good = std::min(query_.wanted, kGoodShare * least_);
   // What leaves its surface goes against no plane that lies on it.
   const bool upright = e.upright.gap >= good;
-  if (under_known_plane(b, good) || (upright && keeps_off(b, e.upright.n, good)) ||
-      (e.any.gap >= good && keeps_off(b, e.any.n, good))) {
-    list(e.item, e.distance);
+  if (under_known_plane(b, good) || (upright && keeps_off(b, normal(e, b, e.upright), good)) ||
+      (e.any.gap >= good && keeps_off(b, normal(e, b, e.any), good))) {
+    near_.add(e.item, e.distance);
     return Outcome::found;
   }
   if (e.is_face()) {
-    list(e.item, e.distance);
+    near_.add(e.item, e.distance);
     return settle_face(e, b);
   }
   if (face_of_a_ == nullptr && !(e.any.gap > 0) && b.half(0) < kSmallShare * a_->radius) return Outcome::divide;
@@ -326,33 +351,40 @@ CellSearch::Outcome CellSearch::settle(const Entry& e) {
 
 void CellSearch::begin(const Query& query) {
   query_ = query;
+  list_end_ = static_cast<float>(kListed * query.wanted);
   set_frame(*a_);
   most_bulge_ = 0.125 * kUnitSlack * sweep_->theta2 * (a_->reach + sweep_->center_distance);
   planes_ = 0;
   known_.clear();
-  near_.clear();
-  far_.clear();
+  near_.count = far_.count = waiting_.count = stacked_ = 0;
   margin_ = least_ = clear_ = beyond_ = kInfinity;
   passing_ = full_ = false;
   blocking_.clear();
-  stack_.clear();
-  waiting_.clear();
   if (query.known == nullptr) {
     const std::uint32_t top = query.is_face ? query.node | CellItems::kFace : query.node;
     push(&top, 1);
     return;
   }
-  clear_ = beyond_ = query.known->clear - query.moved;
-  for (std::size_t i = 0; i < query.known->count; ++i) {
-    const Listed l{query.known->item[i], query.known->distance[i] - query.moved};
-    if (l.distance >= query.wanted) {
-      leave_out(l.item, l.distance);
+  take_known(*query.known, query.moved);
+}
+
+void CellSearch::take_known(const CellItems& known, double moved) {
+  clear_ = beyond_ = known.clear - moved;
+  const float wanted = static_cast<float>(query_.wanted);
+  for (std::size_t i = 0; i < known.count; ++i) {
+    const float far = round_down(known.distance[i] - moved);
+    if (far >= wanted) {
+      leave_out(known.item[i], far);
       continue;
     }
     // The nearest last.
-    waiting_.push_back(l);
-    for (std::size_t k = waiting_.size() - 1; k > 0 && waiting_[k - 1].distance < l.distance; --k)
-      std::swap(waiting_[k - 1], waiting_[k]);
+    std::size_t k = waiting_.count++;
+    for (; k > 0 && waiting_.distance[k - 1] < far; --k) {
+      waiting_.distance[k] = waiting_.distance[k - 1];
+      waiting_.item[k] = waiting_.item[k - 1];
+    }
+    waiting_.distance[k] = far;
+    waiting_.item[k] = known.item[i];
   }
 }
 
@@ -360,13 +392,13 @@ void CellSearch::begin(const Query& query) {
 /// none left.
 bool CellSearch::has_next() {
   std::array<std::uint32_t, kMeasured> some;
-  while (stack_.empty() && !waiting_.empty()) {
+  while (stacked_ == 0 && waiting_.count > 0) {
     int count = 0;
-    for (; count < kMeasured && !waiting_.empty(); waiting_.pop_back())
-      some[static_cast<std::size_t>(count++)] = waiting_.back().item;
+    while (count < kMeasured && waiting_.count > 0)
+      some[static_cast<std::size_t>(count++)] = waiting_.item[--waiting_.count];
     push(some.data(), count);
   }
-  return !stack_.empty();
+  return stacked_ > 0;
 }
 
 CellGaps CellSearch::gaps() const {
@@ -395,12 +427,12 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
   const std::int64_t before = visits_;
   begin(query);
   while (has_next()) {
-    const Entry e = stack_.back();
-    stack_.pop_back();
-    const bool enough = visits_ - before > kMaxVisits && !query.is_face;
+    const Entry e = stack_[--stacked_];
+    const bool enough = visits_ - before > static_cast<std::int64_t>(kMaxVisits) && !query.is_face;
     const Outcome outcome = enough ? Outcome::divide : settle(e);
     if (outcome == Outcome::divide && !blocking_.empty()) return Outcome::blocked;
-    if (outcome == Outcome::divide && (near_.empty() || near_.back().item != e.item)) list(e.item, e.distance);
+    if (outcome == Outcome::divide && (near_.count == 0 || near_.item[near_.count - 1] != e.item))
+      near_.add(e.item, e.distance);
     if (outcome == Outcome::divide) tell_items(false);
     if (outcome != Outcome::found) return outcome;
   }

@@ -52,22 +52,30 @@ class CellSearch {
   std::int64_t visits() const { return visits_; }
 
  private:
+  /// Pieces of B that one search has to do with at most: those that it measures, and those that were listed for it.
+  static constexpr std::size_t kMaxVisits = 160, kMaxPieces = kMaxVisits + kMeasured + kCellItems;
+
+  /// One of the normals of a Nearness.
   struct Side {
-    double gap;  ///< along n, m
-    Vec3 n;
+    float gap, normal;
   };
   /// A piece of B, as in CellItems, and how far it is from the piece of A at the start.
   struct Entry {
     std::uint32_t item;
-    double distance;    ///< lower bound, m
+    float distance;     ///< lower bound, m
     Side any, upright;  ///< see Nearness
     bool is_face() const { return (item & CellItems::kFace) != 0; }
     std::uint32_t place() const { return item & ~CellItems::kFace; }
   };
-
-  struct Listed {
-    std::uint32_t item;
-    double distance;  ///< lower bound, m
+  /// Pieces of B with a lower bound of their distance (m) each.
+  struct List {
+    std::size_t count = 0;
+    alignas(64) std::array<float, kMaxPieces + kMeasured> distance;
+    std::array<std::uint32_t, kMaxPieces + kMeasured> item;
+    void add(std::uint32_t which, float far) {
+      item[count] = which;
+      distance[count++] = far;
+    }
   };
 
   void begin(const Query& query);
@@ -80,17 +88,19 @@ class CellSearch {
   void push(const std::uint32_t* items, int count);
   /// Measures pieces.
   void measure(const std::uint32_t* items, int count);
-  /// Of the piece that was measured at place i.
-  double distance(std::uint32_t item, std::size_t i) const;
-  Side side(const Nearness& nearness, const Nearness::Side& side, std::size_t lane) const;
-  Entry entry(std::uint32_t item, std::size_t i, double distance) const;
-  void leave_out(std::uint32_t item, double distance);
+  /// What was measured of a piece, and at which place.
+  const Nearness& nearness(std::uint32_t item) const {
+    return (item & CellItems::kFace) != 0 ? near_faces_ : near_boxes_;
+  }
+  void add_entry(std::uint32_t item, std::size_t lane, std::size_t first);
+  Vec3 normal(const Entry& e, const Hull& b, const Side& side) const;
+  void leave_out(std::uint32_t item, float far);
+  void take_known(const CellItems& known, double moved);
   Hull hull_of(std::uint32_t item) const;
   bool under_known_plane(const Hull& b, double good);
   bool keeps_off(const Hull& b, const Vec3& n, double at_least);
   bool best_of_all_axes(const Hull& b, Vec3& n) const;
   bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
-  void list(std::uint32_t item, double distance) { near_.push_back({item, distance}); }
   void tell_items(bool found);
   void tell(FreeCell& cell) const;
 
@@ -108,14 +118,15 @@ class CellSearch {
   double most_bulge_ = 0;          ///< along any normal, m
   double margin_ = 0, least_ = 0;  ///< of the planes: at the start, and at the nearer end, m
   double clear_ = 0;
-  double way_slack_ = 0;  ///< of distances, m
-  double beyond_ = 0;     ///< what is in no list is at least so far, m
+  float list_end_ = 0;  ///< what is farther away is in no list, m
+  double beyond_ = 0;   ///< what is in no list is at least so far, m
   CellItems items_;
-  std::vector<Listed> near_, far_;  ///< pieces of B that were settled, or are farther away than is wanted
+  List near_, far_;  ///< pieces of B that were settled, or are farther away than is wanted
   bool passing_ = false;
-  bool full_ = false;  ///< a plane more was needed than a cell has
-  std::vector<Entry> stack_;
-  std::vector<Listed> waiting_;  ///< pieces that an earlier search listed and this one has not come to
+  bool full_ = false;                    ///< a plane more was needed than a cell has
+  std::array<Entry, kMaxPieces> stack_;  ///< the nearest of those that were measured together last
+  std::size_t stacked_ = 0;
+  List waiting_;  ///< pieces that an earlier search listed and this one has not come to, the nearest last
   std::vector<std::uint32_t> blocking_;
   std::int64_t visits_ = 0;
 };

@@ -46,7 +46,7 @@ inline Vec3 single(const Vec3& v) {
 }
 
 /// Most pieces of B that a cell's list has room for.
-inline constexpr int kCellItems = 31;
+inline constexpr int kCellItems = 47;
 
 /// The pieces of B that are nearest to a piece of A: nodes of B's tree or, with the highest bit set, faces.
 struct CellItems {

@@ -9,59 +9,93 @@ namespace tegotae {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Faces thinner than this part of their longest edge have no plane.
 constexpr double kParallel = 1e-6;
+/// Crosses of edges shorter than this (m²) are too near to the least number of single precision.
+constexpr float kLeastCross2 = 1e-30F;
+/// Distances are right up to this share of themselves: normals and axes are of unit length, and at right angles, up to
+/// single precision. Positions and extents, from the frame's origin, are right up to this share of their sum: a dozen
+/// roundings of 6e-8, and 1e-6 of the way, whose direction is no better than the axes.
+constexpr float kAxisSlack = 1 - 1e-5F, kSizeSlack = 8e-6F;
 
 /// Conditions on vectors longer than a register would go number by number.
-constexpr int kLane = 4;
-typedef double Lane __attribute__((vector_size(kLane * sizeof(double)), may_alias));
-typedef std::int64_t LaneBits __attribute__((vector_size(kLane * sizeof(double)), may_alias));
+constexpr int kLane = 8, kFineLane = 4;
+typedef float Lane __attribute__((vector_size(kLane * sizeof(float)), may_alias));
+typedef std::int32_t LaneBits __attribute__((vector_size(kLane * sizeof(float)), may_alias));
+typedef double FineLane __attribute__((vector_size(kFineLane * sizeof(double)), may_alias));
+typedef std::int64_t FineBits __attribute__((vector_size(kFineLane * sizeof(double)), may_alias));
+static_assert(kMeasured == kLane);
 
 struct Lanes3 {
   Lane x, y, z;
 };
+struct Fine3 {
+  FineLane x, y, z;
+};
 
-/// Four numbers of a field, from `first` on.
-template <typename Field>
-TEGOTAE_INLINE Lane load(const Field& field, int first) {
-  return *reinterpret_cast<const Lane*>(field.data() + first);
+TEGOTAE_INLINE Lane load(const NearHulls::Field& field) {
+  return *reinterpret_cast<const Lane*>(field.data());
 }
-template <typename Field>
-TEGOTAE_INLINE void store(Lane x, Field& field, int first) {
-  *reinterpret_cast<Lane*>(field.data() + first) = x;
+TEGOTAE_INLINE void store(Lane x, Nearness::Field& field) {
+  *reinterpret_cast<Lane*>(field.data()) = x;
 }
-template <typename Field>
-TEGOTAE_INLINE Lanes3 load3(const std::array<Field, 3>& f, int first) {
-  return {load(f[0], first), load(f[1], first), load(f[2], first)};
+TEGOTAE_INLINE Lanes3 load3(const std::array<NearHulls::Field, 3>& f) {
+  return {load(f[0]), load(f[1]), load(f[2])};
+}
+TEGOTAE_INLINE FineLane load_fine(const KnownPlanes::Field& field, int first) {
+  return *reinterpret_cast<const FineLane*>(field.data() + first);
 }
 TEGOTAE_INLINE Lane magnitude(Lane x) {
-  return (Lane)((LaneBits)x & 0x7fffffffffffffff);
+  return (Lane)((LaneBits)x & 0x7fffffff);
 }
-TEGOTAE_INLINE Lane lesser(Lane a, Lane b) {
+TEGOTAE_INLINE FineLane magnitude(FineLane x) {
+  return (FineLane)((FineBits)x & 0x7fffffffffffffff);
+}
+template <typename Number>
+TEGOTAE_INLINE Number lesser(Number a, Number b) {
   return a < b ? a : b;
 }
-TEGOTAE_INLINE Lane greater(Lane a, Lane b) {
+template <typename Number>
+TEGOTAE_INLINE Number greater(Number a, Number b) {
   return a > b ? a : b;
 }
-TEGOTAE_INLINE Lane dot(const Lanes3& a, const Vec3& b) {
+TEGOTAE_INLINE Lane least(Lane a, Lane b, Lane c) {
+  return lesser(lesser(a, b), c);
+}
+TEGOTAE_INLINE Lane most(Lane a, Lane b, Lane c) {
+  return greater(greater(a, b), c);
+}
+TEGOTAE_INLINE FineLane dot(const Fine3& a, const Vec3& b) {
   return a.x * b.x() + a.y * b.y() + a.z * b.z();
 }
-TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<double, 3>& b) {
+TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<float, 3>& b) {
   return a.x * b[0] + a.y * b[1] + a.z * b[2];
+}
+TEGOTAE_INLINE Lane dot(const Lanes3& a, const Lanes3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+TEGOTAE_INLINE Lane sum(const Lanes3& a) {
+  return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
 }
 /// Components along the axes of the frame.
 TEGOTAE_INLINE Lanes3 turned(const Lanes3& v, const HullFrame& a) {
-  return {dot(v, a.axis[0]), dot(v, a.axis[1]), dot(v, a.axis[2])};
+  return {dot(v, a.row[0]), dot(v, a.row[1]), dot(v, a.row[2])};
+}
+/// 1 / sqrt(x) up to single precision, and some finite number for 0: vectors have no root of their own.
+TEGOTAE_INLINE Lane reciprocal_root(Lane x) {
+  Lane y = (Lane)(0x5f3759df - ((LaneBits)x >> 1));
+  for (int i = 0; i < 3; ++i) y = y * (1.5F - (0.5F * x * y) * y);
+  return y;
 }
 
-/// The best normal so far; `n` along the axes of the frame, or of B.
+/// The best normal so far; see Nearness::Side.
 struct Best {
-  Lane gap = Lane{} - kInfinity, side = Lane{}, number = Lane{};
+  Lane gap = Lane{} - kFar, normal = Lane{};
 
-  TEGOTAE_INLINE void offer(Lane up, Lane down, double k) {
-    const Lane more = greater(up, down), one = Lane{} + 1, sign = up > down ? one : -one, k_lane = Lane{} + k;
-    side = more > gap ? sign : side;
-    number = more > gap ? k_lane : number;
+  TEGOTAE_INLINE void offer(Lane up, Lane down, float number) {
+    const Lane more = greater(up, down), one = Lane{} + number, sign = up > down ? one : -one;
+    normal = more > gap ? sign : normal;
     gap = greater(more, gap);
   }
 };
@@ -70,8 +104,9 @@ struct Best {
 TEGOTAE_INLINE void offer_axis(const HullFrame& a, int i, Lane low, Lane high, Best& best, Best& upright,
                                Lane& distance2) {
   const Lane up = a.low[i] - high, down = low - a.high[i];
-  best.offer(up, down, i);
-  if (i == 2) upright.offer(up, down, i);
+  const float number = static_cast<float>(1 + i);
+  best.offer(up, down, number);
+  if (i == 2) upright.offer(up, down, number);
   const Lane apart = greater(greater(up, down), Lane{});
   distance2 += apart * apart;
 }
@@ -81,133 +116,125 @@ TEGOTAE_INLINE void extent(const HullFrame& a, const Lanes3& n, Lane& low, Lane&
   const Lane way = magnitude(dot(n, a.way));
   if (a.triangle) {
     const Lane p = dot(n, a.corner[0]), q = dot(n, a.corner[1]), r = dot(n, a.corner[2]);
-    low = lesser(lesser(p, q), r) - way;
-    high = greater(greater(p, q), r) + way;
+    low = least(p, q, r) - way;
+    high = most(p, q, r) + way;
     return;
   }
   high = a.half[0] * magnitude(n.x) + a.half[1] * magnitude(n.y) + a.half[2] * magnitude(n.z) + way;
   low = -high;
 }
 
-TEGOTAE_INLINE void tell(const Best& best, const Best& upright, Lane distance2, int first, Nearness& out) {
-  store(best.gap, out.any.gap, first);
-  store(best.number, out.any.number, first);
-  store(best.side, out.any.sign, first);
-  store(upright.gap, out.upright.gap, first);
-  store(upright.number, out.upright.number, first);
-  store(upright.side, out.upright.sign, first);
-  const Lane apart = greater(best.gap, Lane{});
-  store(greater(distance2, apart * apart), out.distance2, first);
-}
-
-TEGOTAE_INLINE void measure_four_boxes(const HullFrame& a, const NearHulls& b, int first, Nearness& out) {
-  const Lanes3 center = load3(b.center, first), d = turned(center, a);
-  Best best, upright;
-  Lane distance2{};
-  const Lanes3 half = load3(b.half, first);
-  const Lanes3 own[3] = {load3(b.edge[0], first), load3(b.edge[1], first), load3(b.edge[2], first)};
-  const Lanes3 m[3] = {turned(own[0], a), turned(own[1], a), turned(own[2], a)};
-  const Lane x = half.x * magnitude(m[0].x) + half.y * magnitude(m[1].x) + half.z * magnitude(m[2].x);
-  const Lane y = half.x * magnitude(m[0].y) + half.y * magnitude(m[1].y) + half.z * magnitude(m[2].y);
-  const Lane z = half.x * magnitude(m[0].z) + half.y * magnitude(m[1].z) + half.z * magnitude(m[2].z);
-  offer_axis(a, 0, d.x - x, d.x + x, best, upright, distance2);
-  offer_axis(a, 1, d.y - y, d.y + y, best, upright, distance2);
-  offer_axis(a, 2, d.z - z, d.z + z, best, upright, distance2);
-  for (int j = 0; j < 3; ++j) {
-    Lane low, high;
-    extent(a, m[j], low, high);
-    const Lane level = center.x * own[j].x + center.y * own[j].y + center.z * own[j].z;
-    const Lane width = j == 0 ? half.x : j == 1 ? half.y : half.z;
-    const Lane up = low - (level + width), down = level - width - high;
-    best.offer(up, down, 3 + j);
-    if (j == 2) upright.offer(up, down, 3 + j);
-  }
-  tell(best, upright, distance2, first, out);
-}
-
-TEGOTAE_INLINE void measure_four_triangles(const HullFrame& a, const NearHulls& b, int first, Nearness& out) {
-  const Lanes3 corner[3] = {load3(b.edge[0], first), load3(b.edge[1], first), load3(b.edge[2], first)};
-  const Lanes3 p[3] = {turned(corner[0], a), turned(corner[1], a), turned(corner[2], a)};
-  Best best, upright;
-  Lane distance2{};
-  offer_axis(a, 0, lesser(lesser(p[0].x, p[1].x), p[2].x), greater(greater(p[0].x, p[1].x), p[2].x), best, upright,
-             distance2);
-  offer_axis(a, 1, lesser(lesser(p[0].y, p[1].y), p[2].y), greater(greater(p[0].y, p[1].y), p[2].y), best, upright,
-             distance2);
-  offer_axis(a, 2, lesser(lesser(p[0].z, p[1].z), p[2].z), greater(greater(p[0].z, p[1].z), p[2].z), best, upright,
-             distance2);
-  const Lanes3 e{corner[1].x - corner[0].x, corner[1].y - corner[0].y, corner[1].z - corner[0].z};
-  const Lanes3 f{corner[2].x - corner[0].x, corner[2].y - corner[0].y, corner[2].z - corner[0].z};
-  Lanes3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
-  const Lane length2 = n.x * n.x + n.y * n.y + n.z * n.z;
-  const Lane size2 = e.x * e.x + e.y * e.y + e.z * e.z + f.x * f.x + f.y * f.y + f.z * f.z;
-  // Of a triangle without a plane the normal is zero, and separates nothing.
-  Lane scale{}, lost{};
-  for (int k = 0; k < kLane; ++k) {
-    const bool flat = length2[k] > kParallel * kParallel * size2[k] * size2[k];
-    scale[k] = flat ? 1 / std::sqrt(length2[k]) : 0;
-    lost[k] = flat ? 0 : kInfinity;
-  }
-  n.x *= scale;
-  n.y *= scale;
-  n.z *= scale;
-  Lane low, high;
-  extent(a, turned(n, a), low, high);
-  const Lane level = n.x * corner[0].x + n.y * corner[0].y + n.z * corner[0].z;
-  best.offer(low - level - lost, level - high - lost, 3);
-  upright.offer(low - level - lost, level - high - lost, 3);
-  store(n.x, out.plane[0], first);
-  store(n.y, out.plane[1], first);
-  store(n.z, out.plane[2], first);
-  tell(best, upright, distance2, first, out);
+/// `size`: of the positions and extents of B's pieces.
+TEGOTAE_INLINE void tell(const HullFrame& a, const Best& best, const Best& upright, Lane distance2, Lane size,
+                         Nearness& out) {
+  store(best.gap, out.any.gap);
+  store(best.normal, out.any.normal);
+  store(upright.gap, out.upright.gap);
+  store(upright.normal, out.upright.normal);
+  const Lane apart = greater(best.gap, distance2 * reciprocal_root(distance2));
+  store(kAxisSlack * apart - kSizeSlack * (size + a.size), out.distance);
 }
 
 }  // namespace
 
 HullFrame::HullFrame(const Hull& a, const Vec3& ahead) : origin(a.middle() + 0.5 * ahead), triangle(a.is_triangle()) {
+  std::array<double, 3> from, to, shift;
   if (!triangle) {
     for (int i = 0; i < 3; ++i) {
       axis[i] = a.axis(i);
-      half[i] = a.half(i);
-      way[i] = 0.5 * axis[i].dot(ahead);
-      high[i] = half[i] + std::abs(way[i]);
-      low[i] = -high[i];
+      shift[i] = 0.5 * axis[i].dot(ahead);
+      half[i] = static_cast<float>(a.half(i));
+      to[i] = a.half(i);
+      from[i] = -to[i];
     }
-    return;
-  }
-  const Vec3 middle = a.middle();
-  Vec3 longest = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 e = a.corner((k + 1) % 3) - a.corner(k);
-    if (e.squaredNorm() > longest.squaredNorm()) longest = e;
-  }
-  const double length = longest.norm();
-  axis[0] = length > 0 ? Vec3(longest / length) : Vec3(Vec3::UnitX());
-  axis[2] = (a.corner(1) - a.corner(0)).cross(a.corner(2) - a.corner(0));
-  if (!(axis[2].norm() > kParallel * length * length))
-    axis[2] = axis[0].cross(std::abs(axis[0].x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
-  axis[1] = axis[2].cross(axis[0]).normalized();
-  axis[2] = axis[0].cross(axis[1]);
-  low.fill(kInfinity);
-  high.fill(-kInfinity);
-  for (int i = 0; i < 3; ++i) {
-    way[i] = 0.5 * axis[i].dot(ahead);
+  } else {
+    const Vec3 middle = a.middle();
+    Vec3 longest = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
-      corner[k][i] = axis[i].dot(a.corner(k) - middle);
-      low[i] = std::min(low[i], corner[k][i]);
-      high[i] = std::max(high[i], corner[k][i]);
+      const Vec3 e = a.corner((k + 1) % 3) - a.corner(k);
+      if (e.squaredNorm() > longest.squaredNorm()) longest = e;
     }
-    low[i] -= std::abs(way[i]);
-    high[i] += std::abs(way[i]);
+    const double length = longest.norm();
+    axis[0] = length > 0 ? Vec3(longest / length) : Vec3(Vec3::UnitX());
+    axis[2] = (a.corner(1) - a.corner(0)).cross(a.corner(2) - a.corner(0));
+    if (!(axis[2].norm() > kParallel * length * length))
+      axis[2] = axis[0].cross(std::abs(axis[0].x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+    axis[1] = axis[2].cross(axis[0]).normalized();
+    axis[2] = axis[0].cross(axis[1]);
+    from.fill(kInfinity);
+    to.fill(-kInfinity);
+    for (int i = 0; i < 3; ++i) {
+      shift[i] = 0.5 * axis[i].dot(ahead);
+      for (int k = 0; k < 3; ++k) {
+        const double at = axis[i].dot(a.corner(k) - middle);
+        corner[k][i] = static_cast<float>(at);
+        from[i] = std::min(from[i], at);
+        to[i] = std::max(to[i], at);
+      }
+    }
   }
+  double all = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) row[i][k] = static_cast<float>(axis[i][k]);
+    way[i] = static_cast<float>(shift[i]);
+    low[i] = static_cast<float>(from[i] - std::abs(shift[i]));
+    high[i] = static_cast<float>(to[i] + std::abs(shift[i]));
+    all += std::max(to[i], -from[i]) + std::abs(shift[i]);
+  }
+  size = static_cast<float>(all);
 }
 
-TEGOTAE_WIDE void measure_boxes(const HullFrame& a, const NearHulls& b, int count, Nearness& out) noexcept {
-  for (int first = 0; first < count; first += kLane) measure_four_boxes(a, b, first, out);
+TEGOTAE_WIDE void measure_boxes(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept {
+  const Lanes3 center = load3(b.center), d = turned(center, a), half = load3(b.half);
+  const Lanes3 own[3] = {load3(b.edge[0]), load3(b.edge[1]), load3(b.edge[2])};
+  const Lanes3 m[3] = {turned(own[0], a), turned(own[1], a), turned(own[2], a)};
+  const Lane x = half.x * magnitude(m[0].x) + half.y * magnitude(m[1].x) + half.z * magnitude(m[2].x);
+  const Lane y = half.x * magnitude(m[0].y) + half.y * magnitude(m[1].y) + half.z * magnitude(m[2].y);
+  const Lane z = half.x * magnitude(m[0].z) + half.y * magnitude(m[1].z) + half.z * magnitude(m[2].z);
+  Best best, upright;
+  Lane distance2{};
+  offer_axis(a, 0, d.x - x, d.x + x, best, upright, distance2);
+  offer_axis(a, 1, d.y - y, d.y + y, best, upright, distance2);
+  offer_axis(a, 2, d.z - z, d.z + z, best, upright, distance2);
+  const Lane width[3] = {half.x, half.y, half.z};
+  for (int j = 0; j < 3; ++j) {
+    Lane low, high;
+    extent(a, m[j], low, high);
+    const Lane level = dot(center, own[j]);
+    const Lane up = low - (level + width[j]), down = level - width[j] - high;
+    best.offer(up, down, static_cast<float>(4 + j));
+    if (j == 2) upright.offer(up, down, 6);
+  }
+  tell(a, best, upright, distance2, sum(center) + sum(half), out);
 }
 
-TEGOTAE_WIDE void measure_triangles(const HullFrame& a, const NearHulls& b, int count, Nearness& out) noexcept {
-  for (int first = 0; first < count; first += kLane) measure_four_triangles(a, b, first, out);
+TEGOTAE_WIDE void measure_triangles(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept {
+  const Lanes3 corner[3] = {load3(b.edge[0]), load3(b.edge[1]), load3(b.edge[2])};
+  const Lanes3 p[3] = {turned(corner[0], a), turned(corner[1], a), turned(corner[2], a)};
+  Best best, upright;
+  Lane distance2{};
+  offer_axis(a, 0, least(p[0].x, p[1].x, p[2].x), most(p[0].x, p[1].x, p[2].x), best, upright, distance2);
+  offer_axis(a, 1, least(p[0].y, p[1].y, p[2].y), most(p[0].y, p[1].y, p[2].y), best, upright, distance2);
+  offer_axis(a, 2, least(p[0].z, p[1].z, p[2].z), most(p[0].z, p[1].z, p[2].z), best, upright, distance2);
+  // The plane of the triangle, along the axes of the frame.
+  const Lanes3 e{p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+  const Lanes3 f{p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+  Lanes3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
+  const Lane length2 = dot(n, n), size2 = dot(e, e) + dot(f, f), scale = reciprocal_root(length2);
+  n.x *= scale;
+  n.y *= scale;
+  n.z *= scale;
+  Lane low, high;
+  extent(a, n, low, high);
+  // Rounding of the normal of a thin triangle has its corners at different heights.
+  const Lane h0 = dot(n, p[0]), h1 = dot(n, p[1]), h2 = dot(n, p[2]);
+  const Lane none = Lane{} - kFar, least_cross = Lane{} + kLeastCross2;
+  const Lane least_length2 = static_cast<float>(kParallel * kParallel) * size2 * size2;
+  const LaneBits flat = length2 > greater(least_length2, least_cross);
+  const Lane up = flat ? low - most(h0, h1, h2) : none, down = flat ? least(h0, h1, h2) - high : none;
+  best.offer(up, down, 4);
+  upright.offer(up, down, 4);
+  tell(a, best, upright, distance2, most(sum(corner[0]), sum(corner[1]), sum(corner[2])), out);
 }
 
 void KnownPlanes::clear() {
@@ -219,20 +246,20 @@ void KnownPlanes::clear() {
 
 TEGOTAE_WIDE int first_above(const KnownPlanes& planes, int count, const Hull& b, double gap_start, double gap_end,
                              std::array<double, kCellPlanes>& tops) noexcept {
-  static_assert(kCellPlanes % kLane == 0);
-  for (int first = 0; first < count; first += kLane) {
-    const Lanes3 n = load3(planes.n, first);
-    Lane top;
+  static_assert(kCellPlanes % kFineLane == 0);
+  for (int first = 0; first < count; first += kFineLane) {
+    const Fine3 n{load_fine(planes.n[0], first), load_fine(planes.n[1], first), load_fine(planes.n[2], first)};
+    FineLane top;
     if (b.is_triangle()) {
       top = greater(greater(dot(n, b.corner(0)), dot(n, b.corner(1))), dot(n, b.corner(2)));
     } else {
       top = dot(n, b.middle()) + b.half(0) * magnitude(dot(n, b.axis(0))) + b.half(1) * magnitude(dot(n, b.axis(1))) +
             b.half(2) * magnitude(dot(n, b.axis(2)));
     }
-    store(top, tops, first);
-    const Lane start = load(planes.low_start, first) - top, end = load(planes.low_end, first) - top;
-    const LaneBits above = (start >= gap_start) & (end >= gap_end);
-    for (int k = 0; k < kLane; ++k)
+    __builtin_memcpy(tops.data() + first, &top, sizeof(top));
+    const FineLane start = load_fine(planes.low_start, first) - top, end = load_fine(planes.low_end, first) - top;
+    const FineBits above = (start >= gap_start) & (end >= gap_end);
+    for (int k = 0; k < kFineLane; ++k)
       if (above[k] != 0) return first + k;
   }
   return kCellPlanes;

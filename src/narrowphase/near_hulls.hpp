@@ -16,18 +16,20 @@ struct HullFrame {
   HullFrame(const Hull& a, const Vec3& ahead);
   HullFrame() = default;
 
-  Vec3 origin = Vec3::Zero();                     ///< the hull's middle on half of its way, B's axes
-  std::array<Vec3, 3> axis;                       ///< B's axes, of unit length up to single precision
-  std::array<double, 3> low{}, high{};            ///< extent along the axes, from the origin, m
-  std::array<double, 3> way{};                    ///< half of `ahead` along the axes, m
-  std::array<double, 3> half{};                   ///< extents of a box, m
-  std::array<std::array<double, 3>, 3> corner{};  ///< of a triangle on half of its way, along the axes, m
+  Vec3 origin = Vec3::Zero();                    ///< the hull's middle on half of its way, B's axes
+  std::array<Vec3, 3> axis;                      ///< B's axes, of unit length up to single precision
+  std::array<std::array<float, 3>, 3> row{};     ///< the same in single precision
+  std::array<float, 3> low{}, high{};            ///< extent along the axes, from the origin, m
+  std::array<float, 3> way{};                    ///< half of `ahead` along the axes, m
+  std::array<float, 3> half{};                   ///< extents of a box, m
+  std::array<std::array<float, 3>, 3> corner{};  ///< of a triangle on half of its way, along the axes, m
+  float size = 0;                                ///< sum of the extents, m
   bool triangle = false;
 };
 
 /// Pieces of B, field after field: boxes or triangles, never both. Unused places may hold any finite numbers.
 struct alignas(64) NearHulls {
-  typedef std::array<double, kMeasured> Field;
+  typedef std::array<float, kMeasured> Field;
   std::array<Field, 3> center;               ///< of boxes, from the origin of the frame, B's axes, m
   std::array<std::array<Field, 3>, 3> edge;  ///< axes of boxes; corners of triangles like the centers
   std::array<Field, 3> half;                 ///< of boxes, m
@@ -35,22 +37,20 @@ struct alignas(64) NearHulls {
 
 /// How far pieces of B are from the piece of A.
 struct alignas(64) Nearness {
-  typedef std::array<double, kMeasured> Field;
+  typedef std::array<float, kMeasured> Field;
   /// The best of some normals.
   struct Side {
-    Field gap;     ///< m; negative: they overlap
-    Field number;  ///< 0 to 2: axes of the frame, from 3 on: axes of the box of B, or its plane
-    Field sign;    ///< 1 or -1: with it the normal goes from B to A
+    Field gap;     ///< m, up to single precision; negative: they overlap
+    Field normal;  ///< 1 to 3: axes of the frame, from 4 on: axes of the box of B, or its plane; negative: turned about
+                   ///< so that it goes from B to A
   };
-  Field distance2;             ///< square of a lower bound of the distance, m²
-  Side any;                    ///< the best of the normals of both pieces' faces
-  Side upright;                ///< the better of the normals of both pieces' surfaces, the faces of boxes that are thin
-  std::array<Field, 3> plane;  ///< unit normals of triangles of B, zero where there is none
+  Field distance;  ///< lower bound, rounding in single precision taken off, m
+  Side any;        ///< the best of the normals of both pieces' faces
+  Side upright;    ///< the better of the normals of both pieces' surfaces, the faces of boxes that are thin
 };
 
-/// Up to rounding in double precision and what the axes are longer than one.
-void measure_boxes(const HullFrame& a, const NearHulls& b, int count, Nearness& out) noexcept;
-void measure_triangles(const HullFrame& a, const NearHulls& b, int count, Nearness& out) noexcept;
+void measure_boxes(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept;
+void measure_triangles(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept;
 
 /// Planes that a cell has so far, field after field; those that are not there nothing is above.
 struct alignas(64) KnownPlanes {

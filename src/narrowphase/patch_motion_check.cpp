@@ -49,7 +49,7 @@ constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
 // for contact have too many others in reach.
 constexpr double kHeadwayEdges = 1.0;
-// Cells (about 1030 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
+// Cells (about 1160 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kMinCells = 1u << 13;
 constexpr double kCellsPerFace = 1.5;
