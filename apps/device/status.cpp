@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// An application's or a servo's heartbeat that is older tells that nobody is there.
+// An application or a servo whose heartbeat is older is gone.
 constexpr double kAliveSeconds = 0.5;
 
 struct Status {

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   Rig rig(scene, pen, settings);
   rig.start();
   for (int frame = 0; frame <= 60; ++frame) {
-    rig.step();  // reads the pen, moves the part, tells the servo
+    rig.step();  // reads the pen, moves the part, publishes both to the servo
     if (frame % 10 == 0)
       std::printf("frame %2d: %2zu contacts, %5.2f N up\n", frame, rig.contacts().size(), rig.pen().wrench.force.z());
     std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / 60));  // draw here

@@ -35,7 +35,7 @@ void show(Rig& rig, const Scene& scene) {
     try {
       SceneChange change = rig.change(scene);
       if (change.wait(0.1) == ChangeState::in_force || !change.cancel()) return;
-    } catch (const Error&) {  // the held part is where a part should go: a real viewer tells the user
+    } catch (const Error&) {  // the held part is in the way of the new part: a real viewer shows the message
     }
   }
 }

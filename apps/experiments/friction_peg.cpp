@@ -80,9 +80,9 @@ Planar balance(const PegLead& lead, const PlanarPeg& peg, const std::vector<Plan
   return p;
 }
 
-/// Whether the mesh peg goes on in the contact loop, under a load that stays what it is wherever the peg goes. First it
-/// comes into contact on both sides under `aside`, the load without the push: under the whole load it would sink while
-/// it turns over its play, by up to a quarter of the depth, and what is asked then is another point of the diagram.
+/// Whether the mesh peg slides in the contact loop under a constant load. First `aside`, the load without the push,
+/// brings it into contact on both sides: under the full load it would sink by up to a quarter of the depth while it
+/// tilts through its play, and the result would belong to another point of the diagram.
 bool slides(LoadRig& rig, const Wrench& aside, const Wrench& load) {
   constexpr int kComing = 40, kWatched = 20;
   constexpr double kFar = 1e-3, kGoesOn = 1e-5;  // m

@@ -20,7 +20,7 @@ Claim at_least(const std::string& name, double value, double limit, const std::s
 struct Axis {
   std::string label;
   bool log = false;
-  bool whole = false;    ///< a tick at every whole number, and no other
+  bool whole = false;    ///< a tick mark at every integer, and no other
   bool percent = false;  ///< shown from 0 to 100
 };
 

@@ -34,7 +34,7 @@ std::string p_text(double p) {
   return text;
 }
 
-/// The four resolvers' means with the 95 % confidence interval, a little beside each other.
+/// The means of the four resolvers with the 95 % confidence interval, side by side.
 Plot plot(const std::string& title, const std::vector<std::string>& names, const std::vector<double>& ratios,
           const std::vector<std::vector<std::vector<double>>>& values) {
   Plot p{title, {"diameter of the peg by that of the hole"}, {"task time (s)"}, {}};

@@ -21,7 +21,8 @@ constexpr double kPushed = 0.012;         // how far the hand goes on behind the
 constexpr double kTilt = 12 * 0.0174533;  // of the cube in procedure B, about y, rad
 // The phases of the figures: (A) free, (B) at the wall, (C) at wall and floor; s.
 constexpr double kBegin = 0.5, kAtWall = 1.5, kDown = 3.0, kHold = 4.5, kEnd = 5.5;
-// Force that tells of contact (N). On its way down the wall the cube also rubs, so the floor is met with the pen there.
+// Force that indicates contact (N). Sliding down the wall, the cube rubs: contact with the floor is detected by the
+// pen.
 constexpr double kTouch = 0.02;
 // After the first touch the cube settles on its gap, s.
 constexpr double kSettle = 0.1;

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
 
   return guarded_main(app, argc, argv, [&] {
     set_hierarchy_cache(default_cache_folder());
-    // A recording wants its scene with it; one that cannot be written is told by the run.
+    // A recording needs its scene beside it; the run reports a recording that cannot be written.
     if (folder.empty() && !options.record.empty() &&
         std::filesystem::is_directory(std::filesystem::absolute(options.record).parent_path()))
       folder = options.record + ".scene";

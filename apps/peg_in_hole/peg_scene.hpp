@@ -6,7 +6,7 @@
 
 namespace tegotae::apps {
 
-// Fits that can be told from each other and still fit: at 0.9995 the radial clearance is 5 µm.
+// Range in which fits differ and still have clearance: at 0.9995 the radial clearance is 5 µm.
 inline constexpr double kLoosestRatio = 0.5;
 inline constexpr double kTightestRatio = 0.9995;
 /// Height of the peg's tip above the block's top face where the script starts, m.

@@ -138,7 +138,7 @@ void contacts() {
   }
 }
 
-/// A pen that goes through a sheet of 0.2 mm in steps of 8 mm: where it is, and the pieces that the part makes.
+/// A pen that passes through a sheet of 0.2 mm in steps of 8 mm: its poses, and the sub-steps of the part.
 void way() {
   HapticLoop loop(scene_of(box(Vec3(80, 60, 0.2) * kMm), box(Vec3(8, 8, 8) * kMm), at(-25, 14, 20)));
   Table table("way", "tick,pen_x,pen_z,x,z,qw,qy");

@@ -84,7 +84,7 @@ bool wanted(const Options& o, const JudgedScene& scene) {
   return o.scenes.empty() || std::find(o.scenes.begin(), o.scenes.end(), scene.name) != o.scenes.end();
 }
 
-/// The command that makes the whole table, as the file shows it.
+/// The command that makes the complete table, as the file shows it.
 std::string command(const Options& o) {
   return format("Command: `plan_judge --seeds %d --seconds %g", o.judge.seeds, o.judge.seconds) +
          (o.parts.empty() ? "" : " --parts " + o.parts) + " --markdown " + o.markdown +

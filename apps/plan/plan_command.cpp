@@ -24,15 +24,15 @@
 namespace tegotae::plan {
 namespace {
 
-constexpr std::int64_t kIterations = 20000;  // unless told, where no clock ends the search
-constexpr double kSeconds = 60;              // unless told, where one does
+constexpr std::int64_t kIterations = 20000;  // default of a search without a time limit
+constexpr double kSeconds = 60;              // default of a search with one
 
 PlanOptions plan_options(const PlanCommand& o, const Scene& scene, apps::StatusLine& status) {
   PlanOptions options;
   if (!o.goal.empty()) options.goal = apps::parse_pose(o.goal, scene);
   options.clearance = o.clearance;
   options.seed = o.seed.value_or(1);
-  // Who names a seed or a number of iterations wants the same again: no clock ends that.
+  // A seed or a number of iterations asks for a repeatable search: no time limit ends it.
   const bool counted = o.seed || o.iterations;
   options.iterations =
       o.iterations.value_or(counted && !o.seconds ? kIterations : std::numeric_limits<std::int64_t>::max());
@@ -54,7 +54,7 @@ void finish(PlanReport& r, const std::optional<review::ClearanceBand>& band, app
   const review::Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
     status.show(what, done, total);
   };
-  // A part's center is where its contact loop has it, which the scan tells; radius and rows only set the pace.
+  // The scan reports the part's center as the contact loop has it; radius and rows only set the pace.
   const Sphere ball = bounding_sphere(*held_part(r.file.scene).mesh);
   const std::vector<RecordFrame> rows = path_rows(r.plan.path, r.plan.center, ball.radius);
   const review::Scan scan = review::scan_path(r.file.scene, r.file.path, rows, progress, band ? band->high : 0);

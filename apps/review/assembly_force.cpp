@@ -13,23 +13,23 @@ namespace tegotae::review {
 namespace {
 
 constexpr std::size_t kSegments = 200;  // of the way
-// A part that goes on by more than this in a tick (m) moves: 0.1 mm/s at 1 kHz.
+// A part that advances by more than this in a tick (m) moves: 0.1 mm/s at 1 kHz.
 constexpr double kMoves = 1e-7;
-// Of the deepest: who stands there is seated.
+// Share of the greatest depth: a part that rests this close to it is seated.
 constexpr double kSeated = 0.01;
-// Ways that are shorter (m) are none.
+// A path shorter than this (m) has no force over depth.
 constexpr double kMinWay = 1e-3;
 constexpr double kPeriod = 1e-3;  // s, of the contact loop in runs
 constexpr std::size_t kTellEvery = 256;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A tick as forces are told of it.
+/// The contact forces of a tick and the depth they act at.
 struct Tick {
   double t = 0, depth = 0;
   ContactForces forces;
 };
 
-/// Sum, count and largest of the ticks of a stretch.
+/// Sum, count and maximum over the ticks of a segment.
 struct Sum {
   double force = 0, friction = 0, most = 0;
   int count = 0;
@@ -42,7 +42,7 @@ struct Sum {
   double mean() const { return count > 0 ? force / count : kNan; }
 };
 
-/// What the ticks of a run say, stretch by stretch.
+/// Collects the ticks of a run by segment.
 struct Profile {
   std::vector<Sum> in = std::vector<Sum>(kSegments), out = in, stands = in;
   ForcePeak insertion, seating, pull_out;

@@ -13,7 +13,7 @@ struct Review;
 /// What resists the part at a depth: the contacts' forces along the way, N, positive against the motion. NaN where the
 /// part was not seen moving so.
 struct DepthForce {
-  double depth = 0;           ///< m along the way from the start; the middle of a stretch
+  double depth = 0;           ///< m along the way from the start; the middle of a segment
   double insertion = 0;       ///< mean of the ticks in which it went on
   double insertion_peak = 0;  ///< the largest of them
   double friction = 0;        ///< of `insertion`, what is friction

@@ -42,8 +42,7 @@ struct BandFindings {
 /// `rows` are those of the recording that was scanned.
 BandFindings find_band(const ClearanceBand& band, const std::vector<RecordFrame>& rows, const Scan& scan);
 
-/// In lines, for people: how much of the path is in which zone, the longest stretches, and the tightest place of each
-/// part.
+/// Lines of text: the share of the path in each zone, the longest segments, and the tightest place of each part.
 std::vector<std::string> band_text(const BandFindings& found, const std::vector<PartClearance>& tightest,
                                    const Scene& scene);
 

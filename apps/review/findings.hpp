@@ -10,7 +10,7 @@
 
 namespace tegotae::review {
 
-/// A stretch of time, s.
+/// An interval of time, s.
 struct Span {
   double begin = 0, end = 0;
   double length() const { return end - begin; }

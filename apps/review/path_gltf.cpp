@@ -124,7 +124,7 @@ class Gltf {
     for (const std::size_t i : looked_at(rows.size(), kMaxKeys)) {
       const RecordFrame& row = rows[i];
       const auto t = static_cast<float>(row.t - rows.front().t);
-      if (!times.empty() && t <= times.back()) {  // pieces of one tick: the last stands for it
+      if (!times.empty() && t <= times.back()) {  // sub-steps of one tick: the last one represents it
         times.pop_back();
         places.resize(places.size() - 3);
         turns.resize(turns.size() - 4);

@@ -12,7 +12,8 @@ namespace tegotae::review {
 namespace {
 
 constexpr std::size_t kMaxRows = 20000;
-// Of the held part's radius: nearer parts have their distances told, whichever is nearest.
+// Share of the held part's radius: the scan measures the distance of every part nearer than this, not of the nearest
+// alone.
 constexpr double kReachShare = 0.2;
 constexpr double kTwoSided = 0.1736;  // sine of 10 degrees
 constexpr int kMaxSteps = 500;

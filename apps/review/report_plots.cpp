@@ -15,7 +15,7 @@ using nlohmann::json;
 constexpr std::size_t kMaxPoints = 1500;  // of a line: more than pixels
 constexpr std::size_t kMaxParts = 5;
 constexpr double kMinShown = 1e-4;  // mm: where the logarithm of an intersection is drawn
-// A limit farther above the largest value than this is told in the title: drawn, it would press the line to the ground.
+// A bound farther above the largest value than this goes into the title: drawn, it would flatten the line.
 constexpr double kMaxAbove = 4;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -34,7 +34,7 @@ class Buckets {
     for (std::size_t k = 0; k < size(); ++k) out.push_back(number(time(k)));
     return out;
   }
-  /// Of each stretch the value that `better` prefers; NaN where there is none.
+  /// The value of each segment that `better` prefers; NaN where there is none.
   template <typename Value, typename Better>
   json line(const Value& value, const Better& better) const {
     json out = json::array();

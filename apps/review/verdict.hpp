@@ -10,7 +10,7 @@ namespace tegotae::review {
 
 enum class Outcome { goes, does_not_go, open };
 
-/// A sentence of evidence; `good` and `bad` speak for and against, others only tell.
+/// A sentence of evidence; `good` and `bad` speak for and against, the others are neutral.
 struct Evidence {
   enum class Kind { good, bad, plain } kind;
   std::string text;

@@ -14,7 +14,7 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-// The shell goes at once, so that nobody has to wait for the browser's end.
+// The shell returns at once: the program does not wait until the browser ends.
 constexpr const char* kCommand = "command -v xdg-open >/dev/null && { xdg-open \"$1\" </dev/null >/dev/null 2>&1 & }";
 
 }  // namespace

@@ -103,10 +103,9 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
                     options.review)
               : run_session(file, settings);
   }
-  if (!run) return kDone;  // somebody looked, and held nothing
+  if (!run) return kDone;  // the page was open and held no part
   const RunSummary& summary = *run;
-  const Blocker blocker =
-      watch.find(file.scene);  // of a run that was looked at nobody knows: its scene may have changed
+  const Blocker blocker = watch.find(file.scene);  // none after a run with a page, which may have changed the scene
   if (options.json)
     std::cout << json_line(summary, file, blocker) << std::endl;
   else

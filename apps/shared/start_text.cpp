@@ -25,7 +25,7 @@ std::string length(double m) {
   return m < 1e-3 ? format("%.2f um", 1e6 * m) : format("%.3f mm", 1e3 * m);
 }
 
-/// How the pair stood, and what that means now.
+/// The initial contact of the pair, and how the run treats it.
 std::string line(const InitialContact& pair, const Scene& scene) {
   const Clash& c = pair.clash;
   const bool overlap = c.kind == ClashKind::overlap;

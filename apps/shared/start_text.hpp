@@ -13,7 +13,7 @@ nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene
 /// The same for a person, a line for each pair, as it is now; empty when the start was free.
 std::string start_text(const InitialContactReport& start, const Scene& scene);
 
-/// What a fit without room did to the run, a line a part; empty when it did nothing.
+/// How initial contacts without clearance changed the run, a line a part; empty when they did not.
 std::string held_fast_text(const RunSummary& summary, const Scene& scene);
 nlohmann::ordered_json held_fast_json(const RunSummary& summary,
                                       const Scene& scene);  ///< the same, of names and lengths

@@ -18,12 +18,11 @@ void add_progress_option(CLI::App& command);
 /// Lets this process report what is under way also where stderr is no terminal: a line at most every two seconds.
 /// Call it before there are other threads.
 void say_progress_in_pipes();
-/// Whether it does.
+/// Whether this process reports progress there.
 bool progress_in_pipes();
 constexpr std::chrono::seconds kPipePeriod(2);
 
-/// A line on stderr that tells how far something has come: on a terminal, where it is gone when the object is, and
-/// after say_progress_in_pipes().
+/// A progress line on stderr: on a terminal, where the destructor clears it, and after say_progress_in_pipes().
 class StatusLine {
  public:
   StatusLine();

@@ -19,12 +19,12 @@ struct TableLayout {
 
 /// The row of a case, without the line's end.
 std::string row_text(const Result& r);
-/// A whole table.
+/// The complete table.
 std::string table_text(const TableLayout& layout, const std::map<int, Result>& rows);
 
 /// The finished cases of a file: a comment line with the fingerprint, the header, a row a case in the order of their
-/// numbers. Replaced as a whole, so that it is never half written, whoever is killed when; two processes that make the
-/// same cases may have the same file. Every number of processes and interruptions leads to the same bytes.
+/// numbers. The file is replaced atomically, so that a killed process leaves no half of it; two processes that make the
+/// same cases may share the file. Every number of processes and interruptions leads to the same bytes.
 class CaseTable {
  public:
   /// Reads what an earlier call left at `path`. Throws Error `file:line: reason` when that is of something else.

@@ -76,7 +76,7 @@ std::string task_lines(const DriverJob& job) {
   return text;
 }
 
-/// Starts the program in a process group of its own, which is how it is told to stop.
+/// Starts the program in a process group of its own, so that one signal stops all of it.
 pid_t start(const std::vector<std::string>& command, const std::string& log) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));

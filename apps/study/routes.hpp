@@ -8,7 +8,7 @@
 
 namespace tegotae::study {
 
-/// A way for the held part from its start to the goal: what an operator does, one task after the other.
+/// A path of the held part from its start to the goal: the tasks of an operator, one after the other.
 struct Route {
   std::string name;  ///< "straight", "along -z", "along the part's x"
   std::vector<InsertionTask> legs;
@@ -17,8 +17,8 @@ struct Route {
 };
 
 /// The routes worth trying: the straight one, and in (out) along an axis of the world or of the part where nothing is
-/// in the way at the poses that were looked at. Whether the part goes in or comes out is told by what is nearer to the
-/// other parts, the goal or the start. `center`: center of mass of the held part, file frame, m.
+/// in the way at the sampled poses. The part goes in when its goal is nearer to the other parts than its start, else it
+/// comes out. `center`: center of mass of the held part, file frame, m.
 std::vector<Route> find_routes(const Scene& scene, const Pose& goal, const Vec3& center);
 
 /// The routes straight out of all other parts, as far as `tegotae plan --out` goes: along the axes of the world or of

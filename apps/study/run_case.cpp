@@ -245,7 +245,7 @@ bool run_task(const Task& task, const Attempt& a, const RecordTo& record_to, Res
       one.why = apps::blocked_text(blocker.part, blocker.place_W);
     }
   } catch (const Error& e) {
-    // A size that was drawn may leave no room where the part starts: so it does not go.
+    // A drawn size may leave no clearance at the start: the case failed.
     if (!changed || record_to) throw;
     one.why = e.what();
   }

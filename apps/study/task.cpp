@@ -92,7 +92,7 @@ Task Tasks::make(std::size_t scene, std::size_t order, std::size_t step) const {
               all.end());
     for (Part& part : all) part.held = part.name == parts[step];
   }
-  const Vec3 center = HapticLoop(file.scene).center();  // tells what is wrong with the scene, too
+  const Vec3 center = HapticLoop(file.scene).center();  // throws when the scene is invalid
   std::vector<Route> routes;
   if (study_.goal == apps::kOut) {
     routes = find_routes_out(file.scene, center);

@@ -18,7 +18,7 @@ struct TryOptions {
 /// The subcommand `try`.
 CLI::App* add_try(CLI::App& app, TryOptions& options);
 
-/// Tries what is missing in the folder, and tells what came out. Returns the exit code. Throws Error.
+/// Runs the trials that the folder lacks and prints the outcome. Returns the exit code. Throws Error.
 int run_tries(const TryOptions& options);
 
 }  // namespace tegotae::study

@@ -33,8 +33,8 @@ void FrameMaker::add_loop(const HapticLoop& loop, Frame& frame) const {
     }
 }
 
-/// A reason that lasts for a tick of the servo may pass between two of this loop's, as when both were held up; the
-/// servo's count of it tells.
+/// A reason that lasts one servo tick can fall between two ticks of this loop, for instance when both were delayed: the
+/// servo's counter shows it.
 void FrameMaker::look_for_reason(const TickView& tick) {
   if (tick.pen.reason == ForceOff::none) force_off_ = tick.servo.force_off;
   if (tick.pen.reason != ForceOff::engage) {

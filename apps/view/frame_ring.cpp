@@ -18,8 +18,8 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 }  // namespace
 
-/// A seqlock, like those of shared memory (tegotae/device/shm.h tells why it is enough): `state` is twice the number of
-/// the frame plus 2 when the frame is whole, and odd while it is written.
+/// A seqlock, like those of shared memory (tegotae/device/shm.h says why it is enough): `state` is twice the number of
+/// the frame plus 2 when the frame is complete, and odd while it is written.
 struct FrameRing::Slot {
   std::atomic<std::uint64_t> state{0};
   std::atomic<std::uint64_t> words[sizeof(Frame) / sizeof(std::uint64_t)] = {};

@@ -39,8 +39,8 @@ class LiveView final : public RunObserver, public ViewSource {
 
   /// Waits until a part is held. Returns the scene for the next session; nothing when `stop` is set before.
   std::optional<SceneFile> next();
-  /// The session of next() could not begin. Whether the page asked for it: then that is told `why`, and nothing is
-  /// held.
+  /// The session of next() could not begin. Returns whether the page asked for it: then the page gets `why`, and no
+  /// part is held.
   bool refused(const std::string& why);
   /// That session is over. Whether the page asked for what follows: the scene anew, or with the part put down.
   bool again();
@@ -80,7 +80,7 @@ class LiveView final : public RunObserver, public ViewSource {
   enum class Request { none, restart, put_down };
   /// Of the session that the page asked for by holding a part.
   enum class Start { none, asked, begun, refused };
-  // A segment that begins, the one that ends, and room.
+  // The segment that begins, the one that ends, and a spare.
   static constexpr std::size_t kSlots = 4;
 
   void show(PageParts parts);

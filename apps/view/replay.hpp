@@ -19,7 +19,7 @@ class Server;
 SceneFile load_recorded_scene(const std::string& path, const RecordingInfo& info, const std::string& scene,
                               SceneOptions how = {});
 
-/// What the info tells of recordings before and after it, of the same run in other scenes: sentences.
+/// Sentences about the recordings before and after this one, of the same run in other scenes.
 std::vector<std::string> scene_changes(const RecordingInfo& info);
 
 /// Frames that a page gets: more than pixels in a plot, and a file of some megabytes.

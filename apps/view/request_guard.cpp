@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kTokenBytes = 16;
 constexpr auto kOnceValid = std::chrono::minutes(1);
 
-/// Takes the same time wherever they differ.
+/// Takes a time that does not depend on where they differ.
 bool same(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -40,7 +40,7 @@ bool RequestGuard::knows_host(std::string_view host) const {
   const std::string port = ":" + std::to_string(address_.port);
   if (host == address_.text()) return true;
   if ((address_.host == "127.0.0.1" || address_.host == "[::1]") && host == "localhost" + port) return true;
-  // Listening everywhere means any of the machine's addresses, as numbers: a name could be anybody's.
+  // A server on all interfaces accepts any numeric address of the machine, but no name: a name can point anywhere.
   return address_.wildcard() && host.size() > port.size() && host.substr(host.size() - port.size()) == port &&
          host.substr(0, host.size() - port.size()).find_first_not_of("0123456789.[]abcdefABCDEF:") == host.npos;
 }

@@ -141,7 +141,8 @@ struct Server::Impl {
                 "'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\nX-Frame-Options: DENY\r\n");
   }
 
-  /// False, and answered where anybody waits for it, when there is no whole body of at most `most` bytes.
+  /// False without a body: too long or one request too many, which it answers, or incomplete because the client is
+  /// gone.
   bool read_body(mg_connection* connection, long long length, std::size_t most, std::string& body) {
     constexpr const char* text = "text/plain; charset=utf-8";
     if (length < 0 || length > static_cast<long long>(most)) {

@@ -8,9 +8,9 @@
 
 namespace tegotae::view {
 
-/// Serves the view page and what it shows, from threads of its own (at low priority). Everything asks for the token in
-/// url(), for this server as host, and for this page as origin where the browser tells; requests and clients are
-/// bounded, and a client that does not take what it gets is dropped.
+/// Serves the view page and its data from threads of its own (at low priority). Every request needs the token in url(),
+/// this server as host and, where the browser sends an origin, this page as origin. Requests and clients are bounded; a
+/// client that does not read is dropped.
 class Server {
  public:
   /// Listens at once. Throws Error with the cause when it cannot. Keeps a reference to `source`.
