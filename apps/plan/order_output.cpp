@@ -1,6 +1,7 @@
 #include "plan/order_output.hpp"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "broadphase/bounding_spheres.hpp"
@@ -83,12 +84,18 @@ Json link(const std::string& file) {
   return {{"text", file}, {"href", file}};
 }
 
+struct Column {
+  const char* head;
+  bool words;  ///< which begin at the left, and numbers end at the right
+};
+
 /// A table without the columns that are empty in every row.
-Json filled(const std::vector<std::string>& head, const std::vector<std::vector<Json>>& rows) {
-  Json t = {{"head", Json::array()}, {"rows", std::vector<Json>(rows.size(), Json::array())}};
-  for (std::size_t k = 0; k < head.size(); ++k) {
+Json filled(const std::vector<Column>& columns, const std::vector<std::vector<Json>>& rows) {
+  Json t = {{"head", Json::array()}, {"rows", std::vector<Json>(rows.size(), Json::array())}, {"text", Json::array()}};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
     if (std::all_of(rows.begin(), rows.end(), [k](const auto& row) { return row[k] == ""; })) continue;
-    t["head"].push_back(head[k]);
+    if (columns[k].words) t["text"].push_back(t["head"].size());
+    t["head"].push_back(columns[k].head);
     for (std::size_t i = 0; i < rows.size(); ++i) t["rows"][i].push_back(rows[i][k]);
   }
   return t;
@@ -102,14 +109,47 @@ Json order_table(const Scene& scene, const Disassembly& order) {
                     review::length_text(r.plan.clearance), names(scene, waited_for(order, r), ", "),
                     link(step_file(i) + ".glb"), link(step_file(i) + ".csv")});
   }
-  return filled(
-      {"step", "part", "motions", "clearance proved", "tried in vain before, stopped by", "to look at", "path"}, rows);
+  return filled({{"step", false},
+                 {"part", true},
+                 {"motions", false},
+                 {"clearance proved", false},
+                 {"tried in vain before, stopped by", true},
+                 {"to look at", true},
+                 {"path", true}},
+                rows);
 }
 
 Json blocked_table(const Scene& scene, const Disassembly& order) {
   std::vector<std::vector<Json>> rows;
   for (const Blocked& b : order.blocked) rows.push_back({scene.parts[b.part].name, names(scene, b.by, ", "), b.error});
-  return filled({"part", "stopped by", "not tried, because"}, rows);
+  return filled({{"part", true}, {"stopped by", true}, {"not tried, because", true}}, rows);
+}
+
+/// The parts, each in the column after those that it waited for, with an arrow to each that stopped it. What is left
+/// stands last.
+Json blocked_graph(const Scene& scene, const Disassembly& order) {
+  std::map<std::size_t, std::size_t> layer;
+  Json nodes = Json::array(), arrows = Json::array();
+  std::map<std::size_t, std::size_t> place;
+  const auto add = [&](std::size_t part, const std::string& text, std::size_t column) {
+    layer[part] = column;
+    place[part] = nodes.size();
+    nodes.push_back({{"text", text}, {"layer", column}});
+  };
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < order.order.size(); ++i) {
+    std::size_t column = 0;
+    for (const std::size_t by : waited_for(order, order.order[i]))
+      if (layer.count(by) > 0) column = std::max(column, layer[by] + 1);
+    for (const std::size_t part : order.order[i].parts)
+      if (place.count(part) == 0) add(part, format("%zu. ", i + 1) + scene.parts[part].name, column);
+    columns = std::max(columns, column + 1);
+  }
+  for (const std::size_t part : order.left) add(part, scene.parts[part].name, columns);
+  for (const Blocked& b : order.blocked)
+    for (const std::size_t by : b.by)
+      if (place.count(b.part) > 0 && place.count(by) > 0) arrows.push_back({place[b.part], place[by]});
+  return {{"nodes", nodes}, {"arrows", arrows}};
 }
 
 std::string left_text(const Scene& scene, const Disassembly& order) {
@@ -127,7 +167,10 @@ std::string order_html(const SceneFile& file, const Disassembly& order) {
     report["sections"].push_back({{"title", "Steps"}, {"tables", {order_table(file.scene, order)}}});
   if (!order.blocked.empty())
     report["sections"].push_back({{"title", "What blocked what"},
-                                  {"text", "The last try of each part that failed; order.dot has it as a graph."},
+                                  {"text",
+                                   "The last try of each part that failed: an arrow leads to each part that stopped "
+                                   "it. order.dot has the same for Graphviz."},
+                                  {"graph", blocked_graph(file.scene, order)},
                                   {"tables", {blocked_table(file.scene, order)}}});
   return apps::report_page(report);
 }

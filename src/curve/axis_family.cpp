@@ -70,7 +70,7 @@ void AxisFamily::collect() {
     const Facet& f = facets_[i];
     if (!free_[i] || is_end(f, axis_)) continue;
     for (const double rise : rises_) {
-      if (angle_off(f, with_rise(axis_, rise)) > kAxisTolerance) continue;
+      if (!is_within(f, with_rise(axis_, rise), kAxisTolerance)) continue;
       near_.push_back(i);
       break;
     }

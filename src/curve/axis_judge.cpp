@@ -21,7 +21,7 @@ double AxisJudge::share_within(const ScrewMotion& motion, double tolerance, std:
   for (std::size_t i = 0; i < facets_.all.size(); i += stride) {
     const Facet& f = facets_.all[i];
     all += f.area;
-    if (free_[i] && !is_end(f, motion) && angle_off(f, motion) < tolerance) in += f.area;
+    if (free_[i] && !is_end(f, motion) && is_within(f, motion, tolerance)) in += f.area;
   }
   return all > 0 ? in / all : 0;
 }
@@ -40,8 +40,8 @@ double AxisJudge::share_beside(const ScrewMotion& motion) const {
   for (std::size_t i = 0; i < facets_.all.size(); ++i) {
     const Facet& f = facets_.all[i];
     if (!free_[i] || is_end(f, motion)) continue;
-    const double off = angle_off(f, motion);
-    if (off < kAxisTolerance || (off < 4 * kAxisTolerance && !(angle_at_middle(f, plain) < kSharpTolerance)))
+    if (is_within(f, motion, kAxisTolerance) ||
+        (is_within(f, motion, 4 * kAxisTolerance) && !(angle_at_middle(f, plain) < kSharpTolerance)))
       in += f.area;
   }
   return in / facets_.area;

@@ -66,7 +66,7 @@ std::vector<Sample> samples_of(const std::vector<Facet>& facets, const std::vect
     nr /= length;
     nw /= length;
     const int turn = static_cast<int>(std::lround(std::atan2(nw, nr) / kPi * kNormalCells)) % kNormalCells;
-    for (const Vec3& x : t.corners()) {
+    for (const Vec3& x : t.corner) {
       const Vec3 q = f.local(x);
       Sample s;
       s.r = q.head<2>().norm();

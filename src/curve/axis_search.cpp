@@ -229,7 +229,7 @@ class Search {
     for (std::size_t i = 0; i < facets_.all.size(); ++i) {
       const Facet& f = facets_.all[i];
       if (is_end(f, motion)) free_[i] = 0;
-      if (!free_[i] || angle_off(f, motion) > 4 * kAxisTolerance) continue;
+      if (!free_[i] || !is_within(f, motion, 4 * kAxisTolerance)) continue;
       if (std::abs(f.normal.dot(motion.c)) >= kMinLean) {
         const double own = own_rise(f, plain, rough_).rise, rise = motion.rise();
         const bool other = std::abs(rise) < kMinSpread ? std::abs(own) > 2 * kSameSpread * spread_
@@ -246,7 +246,7 @@ class Search {
     weight_.clear();
     for (std::size_t i = 0; i < facets_.all.size(); ++i) {
       const Facet& f = facets_.all[i];
-      if (!free_[i] || is_end(f, motion) || angle_off(f, motion) > tolerance) continue;
+      if (!free_[i] || is_end(f, motion) || !is_within(f, motion, tolerance)) continue;
       const double speed2 = motion.velocity(f.center).squaredNorm();
       of_.push_back(i);
       weight_.push_back(f.area / std::max(speed2, 1e-4));

@@ -75,6 +75,7 @@ void Facets::add(const std::array<Vec3, 3>& corners) {
   Facet f;
   f.center = (v[0] + v[1] + v[2]) / 3;
   for (int i = 0; i < 3; ++i) f.edge[i] = v[(i + 1) % 3] - v[i];
+  for (int i = 0; i < 3; ++i) f.corner[i] = f.center + (f.edge[(i + 2) % 3] - f.edge[i]) / 3;
   f.normal = f.edge[0].cross(f.edge[1]);
   const double length = f.normal.norm();
   const double longest = std::max({f.edge[0].squaredNorm(), f.edge[1].squaredNorm(), f.edge[2].squaredNorm()});

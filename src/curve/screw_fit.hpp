@@ -10,12 +10,8 @@ namespace tegotae {
 /// What the search for axes knows of a triangle, in lengths of the mesh's size, from the middle of its box.
 struct Facet {
   Vec3 center, normal;
-  std::array<Vec3, 3> edge;
+  std::array<Vec3, 3> edge, corner;
   double area;
-
-  std::array<Vec3, 3> corners() const {
-    return {center + (edge[2] - edge[0]) / 3, center + (edge[0] - edge[1]) / 3, center + (edge[1] - edge[2]) / 3};
-  }
 };
 
 /// An instantaneous screw motion: the point x moves by c_bar + c × x, |c| = 1.
@@ -41,7 +37,7 @@ inline Vec3 chord_middle(const Facet& f, const ScrewMotion& m) {
   const double speed2 = v.squaredNorm();
   if (!(speed2 > 0)) return f.center;
   double lo = 0, hi = 0;
-  for (const Vec3& x : f.corners()) {
+  for (const Vec3& x : f.corner) {
     const double t = (x - f.center).dot(v);
     lo = t < lo ? t : lo;
     hi = t > hi ? t : hi;

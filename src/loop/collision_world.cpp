@@ -67,9 +67,9 @@ struct FixedParts {
 };
 
 std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixed, const ContactSettings& settings,
-                                        const Vec3& center, double radius) {
+                                        const Vec3& center, double radius, ProofEffort effort) {
   if (settings.narrowphase != NarrowPhase::fcl)
-    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses);
+    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses, effort);
   std::vector<const TriangleMesh*> meshes;
   for (const auto& mesh : fixed.meshes) meshes.push_back(mesh.get());
   return std::make_unique<FclMotionCheck>(*held.mesh, center, radius, meshes, fixed.poses, *settings.l_0);
@@ -77,7 +77,8 @@ std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixe
 
 }  // namespace
 
-CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
+CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settings, const MassProperties& mass,
+                               ProofEffort effort)
     : poll_time_(kPollShare * settings.tick_budget) {
   const SceneParts parts(scene);
   box_ = bounding_box(*parts.held->mesh);
@@ -95,7 +96,7 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   for (const InitialContacts::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, parts.fixed_id[c.part]);
   radius = radius_about(*parts.held->mesh, mass.center);
   reach = *settings.l_min + 2 * kReachShare * radius;
-  check = make_check(*parts.held, fixed, settings, mass.center, radius);
+  check = make_check(*parts.held, fixed, settings, mass.center, radius, effort);
   contacts = std::make_unique<ContactSet>(made.surfaces.at(parts.held->mesh.get()), std::move(fixed.surfaces),
                                           mass.center, kMaxConstraints);
   X = initial_separation(*this, mass, parts.held->pose, kMaxShift * (settings.touch_tolerance + 2 * kGapFloor));

@@ -8,6 +8,7 @@
 #include "contact/contact_set.hpp"
 #include "loop/initial_contacts.hpp"
 #include "narrowphase/motion_check.hpp"
+#include "narrowphase/patch_motion_check.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/mesh/mass.hpp"
 
@@ -28,7 +29,8 @@ struct CollisionWorld {
   Pose X;  ///< where the held part starts: where the scene puts it, or moved off what it touches there
 
   /// Throws Error when the held part overlaps a fixed one and the settings do not say to ignore it.
-  CollisionWorld(const Scene& scene, const ContactSettings& settings, const MassProperties& mass);
+  CollisionWorld(const Scene& scene, const ContactSettings& settings, const MassProperties& mass,
+                 ProofEffort effort = ProofEffort::full);
 
   /// Parts whose sphere and box come within `distance` (m) of the held part's at `pose`, as the checks number them.
   void query(const Pose& pose, const Vec3& center, double distance, std::vector<std::uint32_t>& near) const;

@@ -24,6 +24,21 @@ constexpr double kLMinShare = 8e-4, kMinLMin = 4e-6, kMaxLMin = 2e-5;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
 
+CouplingSettings fitted(const Scene& scene, const MassProperties& mass) {
+  CouplingSettings coupling = scene.coupling;
+  if (scene.max_torsional_stiffness)
+    coupling.torsional_stiffness = fitted_torsional_stiffness(
+        coupling.stiffness, radius_of_gyration(mass) / scene.scale, *scene.max_torsional_stiffness);
+  return coupling;
+}
+
+Scene coupled_by(Scene scene, const CouplingSettings& coupling) {
+  scene.coupling = coupling;
+  return scene;
+}
+
+}  // namespace
+
 ContactSettings completed(ContactSettings s, double radius) {
   const auto check = [](const char* name, double value) {
     if (!(std::isfinite(value) && value > 0))
@@ -53,19 +68,6 @@ ContactSettings completed(ContactSettings s, double radius) {
   return s;
 }
 
-CouplingSettings fitted(const Scene& scene, const MassProperties& mass) {
-  CouplingSettings coupling = scene.coupling;
-  if (scene.max_torsional_stiffness)
-    coupling.torsional_stiffness = fitted_torsional_stiffness(
-        coupling.stiffness, radius_of_gyration(mass) / scene.scale, *scene.max_torsional_stiffness);
-  return coupling;
-}
-
-Scene coupled_by(Scene scene, const CouplingSettings& coupling) {
-  scene.coupling = coupling;
-  return scene;
-}
-
 const Scene& checked(const Scene& scene) {
   for (const Part& p : scene.parts) {
     if (!p.mesh || p.mesh->triangles.empty())
@@ -75,8 +77,6 @@ const Scene& checked(const Scene& scene) {
   }
   return scene;
 }
-
-}  // namespace
 
 RunningScene::RunningScene(const Scene& scene)
     : held(held_part(checked(scene)).name),

@@ -13,6 +13,11 @@
 
 namespace tegotae {
 
+/// The scene, whose parts all have triangles and poses that can be. Throws Error for one that does not.
+const Scene& checked(const Scene& scene);
+/// Settings with nothing left open, for a held part whose bounding sphere has that radius (m). Throws Error.
+ContactSettings completed(ContactSettings settings, double radius);
+
 /// A scene with everything that a tick in it needs.
 struct RunningScene {
   /// What the held part must keep out of.

@@ -93,13 +93,15 @@ double mean_edge(const TriangleMesh& mesh) {
 
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
-                                   std::vector<Pose> poses)
+                                   std::vector<Pose> poses, ProofEffort effort)
     : center_(center),
       radius_(radius),
       held_(cached_patch_tree(held)),
-      pairing_(held_),
+      effort_(effort),
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)) {
+  static const std::vector<AxisPair> kNoAxes;
+  if (effort_ == ProofEffort::full) pairing_.emplace(held_);
   std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
   std::vector<CellFront::FixedPart> parts;
   bool any_axes = false;
@@ -107,7 +109,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
     auto& tree = trees[fixed[i].get()];
     if (!tree) tree = cached_patch_tree(fixed[i]);
     fixed_.push_back(tree);
-    axes_.push_back(pairing_.with(tree));
+    axes_.push_back(pairing_ ? pairing_->with(tree) : &kNoAxes);
     any_axes = any_axes || !axes_.back()->empty();
     parts.push_back({tree, poses_[i]});
   }
@@ -210,7 +212,8 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   const MotionAnswer answer = ask(X, d, clearance, blocking);
   // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
   // them costs a search, and few go together again in a call that ends so.
-  if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline) return answer;
+  if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline || effort_ == ProofEffort::quick)
+    return answer;
   begin_anew();
   return check(X, d, clearance, blocking);
 }
@@ -219,7 +222,9 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
                                    std::vector<FacePair>& blocking) noexcept {
   share_ = 1;
   ask_fronts(X, d, clearance, blocking);
-  if (!near_cells_.empty()) {
+  if (!near_cells_.empty() && effort_ == ProofEffort::quick) {
+    share_ = 0;
+  } else if (!near_cells_.empty()) {
     limit_.searches = kCellSearches;
     limit_.blocking = kMaxBlocking;
     const CertifyReport report =
@@ -243,8 +248,9 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
     limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
+    const auto ask = [&] { return ask_front(part, X, d, clearance, limit_); };
     const CertifyReport report =
-        ask_through(limit_.deadline_ns, kMaxIdleRounds, [&] { return ask_front(part, X, d, clearance, limit_); });
+        effort_ == ProofEffort::quick ? ask() : ask_through(limit_.deadline_ns, kMaxIdleRounds, ask);
     std::uint32_t& cuts = cuts_[front_of_[part]];
     cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
     const bool slides = !axes_[part]->empty();

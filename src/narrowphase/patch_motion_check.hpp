@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "narrowphase/axis_pairs.hpp"
 #include "narrowphase/cell_front.hpp"
@@ -10,6 +11,14 @@
 #include "narrowphase/patch_front.hpp"
 
 namespace tegotae {
+
+/// How much is done to prove motions.
+enum class ProofEffort : std::uint8_t {
+  /// No common axes of the parts are looked for, which takes up to a second for large meshes, and what is not proved in
+  /// one round of work by fronts is not proved: enough for motions that stay clear of contact.
+  quick,
+  full
+};
 
 /// The path certificate over the near fixed parts: a motion is free only when its whole path is. A part that meets A in
 /// few places has a PatchFront of its own, kept from tick to tick as long as the part stays near; where the pairs of a
@@ -21,7 +30,8 @@ class PatchMotionCheck final : public MotionCheck {
   /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
   /// center of mass `center` (m, file frame).
   PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
-                   const std::vector<std::shared_ptr<const TriangleMesh>>& fixed, std::vector<Pose> poses);
+                   const std::vector<std::shared_ptr<const TriangleMesh>>& fixed, std::vector<Pose> poses,
+                   ProofEffort effort = ProofEffort::full);
 
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
@@ -83,7 +93,8 @@ class PatchMotionCheck final : public MotionCheck {
   double radius_;
   std::shared_ptr<const PatchTree> held_;
   std::vector<std::shared_ptr<const PatchTree>> fixed_;
-  AxisPairing pairing_;
+  const ProofEffort effort_;
+  std::optional<AxisPairing> pairing_;              ///< none: no axes are looked for
   std::vector<const std::vector<AxisPair>*> axes_;  ///< of each part with the held one
   std::vector<Pose> poses_;
   std::vector<std::uint32_t> one_ = {0};  ///< the part of stands()

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "broadphase/bounding_spheres.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/clock.hpp"
@@ -32,6 +33,7 @@ constexpr double kTick = 1e-3;  // s; nothing depends on it
 /// The scene with the settings of a planner: work alone bounds a tick, nothing rubs or weighs, and a turn weighs as
 /// much as the way that it carries the part's points on average.
 Scene prepare(Scene scene, double clearance) {
+  checked(scene);
   if (!(clearance >= kGapFloor)) throw Error("the clearance of a plan is at least 1.1 um");
   ContactSettings& contact = scene.contact;
   contact.tick_budget = std::numeric_limits<double>::infinity();
@@ -57,20 +59,29 @@ MotionWorld::MotionWorld(Scene scene, double clearance)
 MotionWorld::MotionWorld(Scene scene, double clearance, bool)
     : scene_(std::move(scene)),
       clearance_(clearance),
-      loop_(scene_),
-      at_(scene_, loop_.settings, loop_.mass),
-      gyration_(radius_of_gyration(loop_.mass)) {
+      settings_(completed(scene_.contact, bounding_sphere(*held_part(scene_).mesh).radius)),
+      mass_(mass_properties(*held_part(scene_).mesh, report(*held_part(scene_).mesh).closed, settings_.density)),
+      at_(std::make_unique<CollisionWorld>(scene_, settings_, mass_, ProofEffort::quick)),
+      gyration_(radius_of_gyration(mass_)) {
   const SceneParts parts(scene_);
   for (const PartId id : parts.fixed_id) fixed_.push_back(id.index);
   near_.reserve(fixed_.size());
   blocking_.reserve(kMaxBlocking);
   report_.substeps.reserve(kMaxSubsteps);
+  // What touches is moved off as the certificate can tell, and is to start where it does in a loop.
+  if (at_->start.waiting() > 0) complete();
+}
+
+void MotionWorld::complete() {
+  if (is_complete()) return;
+  loop_ = std::make_unique<RunningScene>(scene_);
+  at_ = std::make_unique<CollisionWorld>(scene_, settings_, mass_);
 }
 
 double MotionWorld::free_share(const Pose& from, const Pose& to, double clearance, int again) {
   ++counts_.checked;
   const Displacement d = displacement(from, to, center());
-  const int parts = std::max(1, static_cast<int>(std::ceil(size(d) / at_.check->longest_motion())));
+  const int parts = std::max(1, static_cast<int>(std::ceil(size(d) / at_->check->longest_motion())));
   double share = 0;
   for (int i = 0; i < parts;) {
     // From where the proof has come to the end of this part of the motion.
@@ -81,43 +92,47 @@ double MotionWorld::free_share(const Pose& from, const Pose& to, double clearanc
     share = made == 1 ? end : share + made * (end - share);
     i += made == 1 ? 1 : 0;
     if (made == 1) continue;
-    if (--again < 0) return std::min(share, 1 - kMinProof);
+    // Where something is in the way, asking again from its place tells the same.
+    if (--again < 0 || (blocked_ && made <= kMinProof)) return std::min(share, 1 - kMinProof);
   }
   return 1;
 }
 
 double MotionWorld::step_share(const Pose& X, const Displacement& step, double clearance) {
-  at_.query(X, center(), size(step) + clearance, near_);
+  at_->query(X, center(), size(step) + clearance, near_);
   if (near_.empty()) return 1;
-  at_.check->begin(near_, kNoDeadline);
+  at_->check->begin(near_, kNoDeadline);
   blocking_.clear();
-  if (at_.check->check(X, step, clearance, blocking_) == MotionAnswer::free) return 1;
+  const MotionAnswer answer = at_->check->check(X, step, clearance, blocking_);
+  if (answer == MotionAnswer::free) return 1;
+  blocked_ = answer == MotionAnswer::blocked;
   blocker_.reset();
   if (!blocking_.empty()) {
     // Copies of fixed parts are numbered after them.
     std::uint32_t part = blocking_.front().part;
-    for (std::size_t w = 0; w < at_.start.waiting(); ++w)
-      if (at_.start.waiting(w).stand_in == part) part = at_.start.waiting(w).part;
+    for (std::size_t w = 0; w < at_->start.waiting(); ++w)
+      if (at_->start.waiting(w).stand_in == part) part = at_->start.waiting(w).part;
     if (part < fixed_.size()) blocker_ = fixed_[part];
   }
-  const double share = std::min(at_.check->free_share(), 1 - kMinProof);
+  const double share = std::min(at_->check->free_share(), 1 - kMinProof);
   // Cells that took over a part, which they keep until it was out of sight, give it back: what follows is elsewhere.
   near_.clear();
-  at_.check->begin(near_, kNoDeadline);
+  at_->check->begin(near_, kNoDeadline);
   return share;
 }
 
 void MotionWorld::comply(const Pose& from, const Pose& target, double longest, std::vector<Pose>& pieces) {
   ++counts_.complied;
   pieces.clear();
+  complete();
   // The loop of these settings (see prepare()).
-  static_cast<ContactLoop&>(*loop_.loop).stand_at(from);
+  static_cast<ContactLoop&>(*loop_->loop).stand_at(from);
   Pose X = from;
   double gone = 0;
   int rest = 0;
   for (int tick = 0; tick < kMaxTicks && gone < longest; ++tick) {
     reset(report_);
-    loop_.loop->step(target, kTick, kNoDeadline, report_);
+    loop_->loop->step(target, kTick, kNoDeadline, report_);
     const double moved = size(X, report_.proxy.X);
     rest = moved < kRestShare * radius() ? rest + 1 : 0;
     if (rest == kRestTicks) break;

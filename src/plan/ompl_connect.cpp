@@ -5,10 +5,12 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <utility>
 
+#include "plan/common_axes.hpp"
 #include "plan/growing_ways.hpp"
 
 namespace tegotae {
@@ -25,6 +27,9 @@ constexpr double kRange = 0.5, kMinEdge = 0.01, kSame = 0.01;
 constexpr int kMaxEdges = 64;
 // Of a motion, what has to have been made for that.
 constexpr double kThrough = 0.5;
+// A motion about a common axis: the longest turn of an edge (rad), and how far the center of mass, which goes straight
+// in an edge, may then be beside its way around the axis (m).
+constexpr double kAxisTurn = 2, kMaxSagitta = 2e-6;
 // How far trees are joined by one motion, in edges.
 constexpr double kJoinReach = 8;
 // A pose to begin at is the newest one, or of so many the one that was begun at least often.
@@ -78,6 +83,7 @@ class CompliantConnect final : public ob::Planner {
     add(from_start_, nullptr, task_.start, {});
     for (const Pose& goal : task_.goals) add(from_goals_, nullptr, goal, {});
     if (arrived(from_start_, from_start_.nodes.front())) return finish();
+    if (follow_axes(ended)) return finish();
     for (const Pose& goal : task_.goals) {
       if (ended || result_.iterations >= task_.iterations) break;
       if (iterate(from_start_, {&from_start_.nodes.front(), goal, {}}, ended)) return finish();
@@ -170,7 +176,7 @@ class CompliantConnect final : public ob::Planner {
     Pose target = what.target;
     bool done = false;
     for (int i = 0; i < kMaxEdges && !done && !ended; ++i) {
-      Node* next = world_.size(node->X, target) > 0 ? advance(tree, *node, target) : nullptr;
+      Node* next = world_.size(node->X, target) > 0 ? advance(tree, *node, target, range_) : nullptr;
       if (next != nullptr) {
         node = next;
         done = arrived(tree, *node);
@@ -182,6 +188,46 @@ class CompliantConnect final : public ob::Planner {
     }
     if (task_.progress) task_.progress(result_.iterations, result_.poses, result_.way);
     return done;
+  }
+
+  /// Moves the part along what it has in common with others: a screw comes out by turning on with the rise of its
+  /// thread, all the way. Of a goal alone that is tried from its side too.
+  bool follow_axes(const ob::PlannerTerminationCondition& ended) {
+    if (follow_axes(from_start_, ended)) return true;
+    return task_.exit == nullptr && follow_axes(from_goals_, ended);
+  }
+  bool follow_axes(Tree& tree, const ob::PlannerTerminationCondition& ended) {
+    Node& root = tree.nodes.front();
+    for (const CommonAxis& axis : common_axes(world_.scene(), root.X))
+      for (const double sign : {1.0, -1.0}) {
+        if (ended || result_.iterations >= task_.iterations) return false;
+        if (follow(tree, root, axis, sign, ended)) return true;
+      }
+    return false;
+  }
+
+  /// Moves the part on about an axis, or along it where that has no rise, as far as it comes; whether that made a path.
+  bool follow(Tree& tree, Node& root, const CommonAxis& axis, double sign,
+              const ob::PlannerTerminationCondition& ended) {
+    ++result_.iterations;
+    Node* node = &root;
+    while (!ended && in_room(node->X)) {
+      const Pose target = next_about(axis, node->X, sign);
+      Node* next = advance(tree, *node, target, world_.size(node->X, target));
+      if (next == nullptr) break;
+      const double share = made(*node, *next, displacement(node->X, target, world_.center()));
+      node = next;
+      if (is_out(tree, *node)) return true;
+      if (share < kThrough) break;
+      if (task_.progress) task_.progress(result_.iterations, result_.poses, result_.way);
+    }
+    return node != &root && joined(tree, *node);
+  }
+
+  Pose next_about(const CommonAxis& axis, const Pose& X, double sign) const {
+    if (axis.rise == 0) return axis.shifted(X, sign * range_);
+    const double beside = axis.distance(X, world_.center());
+    return axis.turned(X, sign * std::min(kAxisTurn, std::sqrt(8 * kMaxSagitta / std::max(beside, kMaxSagitta))));
   }
 
   /// How much of a motion a part that was led by it has made.
@@ -197,11 +243,11 @@ class CompliantConnect final : public ob::Planner {
     return (c.array() >= task_.room.low.array()).all() && (c.array() <= task_.room.high.array()).all();
   }
 
-  /// One edge from a node towards a pose; null when it would be too short.
-  Node* advance(Tree& tree, Node& from, const Pose& target) {
+  /// One edge from a node towards a pose, no longer than `longest`; null when it would be too short.
+  Node* advance(Tree& tree, Node& from, const Pose& target, double longest) {
     ++from.begun;
     const double length = world_.size(from.X, target);
-    const Pose next = world_.along(from.X, target, length <= range_ ? 1 : range_ / length);
+    const Pose next = world_.along(from.X, target, length <= longest ? 1 : longest / length);
     const double share = world_.free_share(from.X, next);
     std::vector<Pose> edge = {world_.along(from.X, next, share)};
     if (share < 1) {
@@ -227,11 +273,15 @@ class CompliantConnect final : public ob::Planner {
   }
 
   /// Whether a new node completes a path.
-  bool arrived(Tree& tree, Node& node) {
-    if (&tree == &from_start_ && task_.exit != nullptr && task_.exit->is_out(node.X)) {
-      result_.path = path_to(&node);
-      return true;
-    }
+  bool arrived(Tree& tree, Node& node) { return is_out(tree, node) || joined(tree, node); }
+
+  bool is_out(const Tree& tree, const Node& node) {
+    if (&tree != &from_start_ || task_.exit == nullptr || !task_.exit->is_out(node.X)) return false;
+    result_.path = path_to(&node);
+    return true;
+  }
+
+  bool joined(Tree& tree, Node& node) {
     Node& there = nearest(other(tree), node.X);
     if (world_.size(node.X, there.X) > kJoinReach * range_ || !world_.is_free(node.X, there.X)) return false;
     const bool forward = &tree == &from_start_;

@@ -22,6 +22,7 @@ std::string missing_planner() {
 
 SearchResult search(MotionWorld& world, const SearchTask& task) {
   seed_ompl(task.seed);
+  world.complete();
   SearchResult result;
   const auto space = std::make_shared<PoseSpace>(world.center(), world.gyration(), task.room);
   const auto si = space_information(space, world, world.clearance());

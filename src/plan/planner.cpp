@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <random>
 #include <utility>
 
 #include "loop/scene_parts.hpp"
@@ -36,10 +38,10 @@ constexpr double kWorthwhile = 1.5;
 // Clearances are told to this share of them.
 constexpr double kClearanceStep = 0.02;
 
-/// Processor time of this thread, s.
-double thread_seconds() {
+/// Processor time of this process, s: hierarchies are built by several threads.
+double processor_seconds() {
   timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
@@ -47,27 +49,28 @@ class Planning {
  public:
   Planning(const Scene& scene, const PlanOptions& options)
       : options_(options),
-        cpu_began_(thread_seconds()),
+        cpu_began_(processor_seconds()),
         began_(Clock::now()),
         world_(scene, std::max(options.clearance, kGapFloor)),
         exit_(world_.scene(), world_.center(), world_.radius()) {}
 
   Plan plan() {
     const SearchTask task = make_task();
-    const SearchResult result = search(world_, task);
+    SearchResult result = straight_way(task);
+    if (!result.found) result = search(world_, task);
     Plan plan;
-    plan.search_cpu = thread_seconds() - cpu_began_;
+    plan.search_cpu = processor_seconds() - cpu_began_;
     plan.found = result.found;
     plan.path = result.path;
     fill(result, plan);
     if (plan.found) improve(task, plan);
     tell({"certifying", result.iterations, result.poses, result.way});
-    plan.clearance = certified(world_, plan.path);
+    if (plan.clearance == 0) plan.clearance = certified(world_, plan.path);
     plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
     plan.interrupted = stopped();
     plan.seconds = seconds();
-    plan.cpu = thread_seconds() - cpu_began_;
+    plan.cpu = processor_seconds() - cpu_began_;
     return plan;
   }
 
@@ -86,6 +89,31 @@ class Planning {
     return part ? '"' + world_.scene().parts[*part].name + '"' : "another part";
   }
 
+  /// The straight ways alone, which most parts take, before anything is made that they do not need.
+  SearchResult straight_way(const SearchTask& task) {
+    SearchResult result;
+    if (world_.is_complete() || task.exit == nullptr) return result;
+    for (const Pose& goal : task.goals) {
+      if (ended() || result.iterations >= task.iterations) break;
+      ++result.iterations;
+      if (!world_.is_free(task.start, goal)) continue;
+      result.found = true;
+      result.path = {task.start, goal};
+      result.poses = result.path.size();
+      result.way = displacement(task.start, goal, world_.center()).dp.norm();
+      break;
+    }
+    return result;
+  }
+
+  /// Whether the part can stand there, by all that is known.
+  bool stands(const Pose& X) {
+    if (world_.free_share(X, X) == 1) return true;
+    if (world_.is_complete()) return false;
+    world_.complete();
+    return world_.free_share(X, X) == 1;
+  }
+
   static void include(WorldBox& room, const Vec3& p) {
     room.low = room.low.cwiseMin(p);
     room.high = room.high.cwiseMax(p);
@@ -102,7 +130,7 @@ class Planning {
     for (const Clash& c : find_clashes(there, look))
       if (c.kind == ClashKind::overlap || c.gap <= 0)
         throw Error("at the goal the held part is in " + name(there.parts[c.a].held ? c.b : c.a));
-    if (world_.free_share(goal, goal) < 1)
+    if (!stands(goal))
       throw Error("at the goal the held part is nearer to " + name(world_.blocker()) +
                   " than the clearance that the path is to leave");
     return goal;
@@ -110,7 +138,7 @@ class Planning {
 
   SearchTask make_task() {
     const Pose& start = world_.start();
-    if (world_.free_share(start, start) < 1)
+    if (!stands(start))
       throw Error("the held part starts nearer to " + name(world_.blocker()) +
                   " than the clearance that the path is to leave");
     SearchTask task;
@@ -138,20 +166,33 @@ class Planning {
     return path.size() > 1 || world.free_share(path.front(), path.front(), clearance) == 1;
   }
 
-  /// The most that a path is proved to leave, to a hundredth or two; 0: not even what is asked for.
+  /// The most that a path is proved to leave, to a hundredth or two; 0: not even what is asked for. In no order of
+  /// their own, few of its motions turn out to leave less than all before.
   static double certified(MotionWorld& world, const std::vector<Pose>& path) {
-    double low = world.clearance();
-    if (!leaves(world, path, low)) return 0;
-    double high = 2 * low;
-    while (high < world.radius() && leaves(world, path, high)) {
-      low = high;
-      high *= 2;
+    std::vector<std::size_t> order(std::max<std::size_t>(1, path.size() - 1));
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    double all = world.radius();
+    bool first = true;
+    for (const std::size_t i : order) {
+      const Pose &from = path[i], &to = path[std::min(i + 1, path.size() - 1)];
+      const auto leaves = [&](double clearance) { return world.free_share(from, to, clearance, kProofs) == 1; };
+      if (!std::exchange(first, false) && leaves(all)) continue;
+      if (!leaves(world.clearance())) return 0;
+      // From below: what is far beyond the truth takes the certificate long to refuse.
+      double low = world.clearance(), high = 2 * low;
+      while (high < all && leaves(high)) {
+        low = high;
+        high *= 2;
+      }
+      high = std::min(high, all);
+      while (high > (1 + kClearanceStep) * low) {
+        const double middle = std::sqrt(low * high);
+        (leaves(middle) ? low : high) = middle;
+      }
+      all = low;
     }
-    while (high > (1 + kClearanceStep) * low) {
-      const double middle = std::sqrt(low * high);
-      (leaves(world, path, middle) ? low : high) = middle;
-    }
-    return low;
+    return all;
   }
 
   /// Shortens a path by motions that leave `clearance`; whether the whole path then does. Whatever a library makes of
@@ -167,14 +208,15 @@ class Planning {
     return true;
   }
 
-  /// Shortens the path of a plan, and looks for one that leaves more.
+  /// Shortens the path of a plan, and looks for one that leaves more; sets its clearance where that became known.
   void improve(const SearchTask& task, Plan& plan) {
     const std::int64_t led = world_.counts().complied;
     const double most = std::min(certified(world_, {plan.path.front()}), certified(world_, {plan.path.back()}));
     if (kShortenShare * most > world_.clearance() && shorten_path(world_, task.room, kShortenShare * most, plan.path))
       return;
+    world_.complete();
     shorten_path(world_, task.room, world_.clearance(), plan.path);
-    const double now = certified(world_, plan.path);
+    const double now = plan.clearance = certified(world_, plan.path);
     for (const double share : kWiderShares) {
       const double clearance = share * most;
       // Of parts that hardly leave more than what is asked for there is no wider way to look for.
@@ -189,6 +231,7 @@ class Planning {
       count(wider, plan);
       if (!taken) continue;
       plan.path = std::move(result.path);
+      plan.clearance = 0;  // of this one not known yet
       return;
     }
   }

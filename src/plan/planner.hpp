@@ -57,7 +57,7 @@ struct Plan {
   std::int64_t motions = 0;              ///< that the certificate was asked about
   std::int64_t complied = 0;             ///< that the contact loop was led through
   double seconds = 0;                    ///< that it took
-  double search_cpu = 0, cpu = 0;        ///< s of this thread's processor time: of the search, and in all
+  double search_cpu = 0, cpu = 0;        ///< s of the process's processor time: of the search, and in all
 };
 
 /// Whether this build has a planner, and what is missing where it has none.

@@ -34,8 +34,9 @@ struct SearchResult {
   std::size_t poses = 0;
 };
 
-/// Searches with two trees of poses, one from the start and one from the goals. An edge is a motion that the path
-/// certificate proves free, or, where that is stopped, one that the contact loop makes when its pen is led on.
+/// Completes the world and searches with two trees of poses, one from the start and one from the goals. An edge is a
+/// motion that the path certificate proves free, or, where that is stopped, one that the contact loop makes when its
+/// pen is led on.
 SearchResult search(MotionWorld& world, const SearchTask& task);
 
 /// Shortens a path, by motions that leave `clearance` (m); what cannot be replaced stays.

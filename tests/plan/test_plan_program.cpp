@@ -1,5 +1,6 @@
 // `tegotae plan`: what it writes, and what it says.
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
@@ -119,6 +120,16 @@ TEST_CASE("an assembly is taken apart") {
       run_program("tegotae", "plan " + scene("locked-in") + " --all --iterations 30 --to " + (folder / "in"));
   CHECK(stays.code == 1);
   CHECK_THAT(stays.out, Contains("Did not come apart: key, lock") && Contains("key was stopped by lock"));
+  // The graph: two parts, and who stops whom.
+  const std::string page = read_text(folder / "in" + "/order.html");
+  const std::size_t begin = page.find("id=\"data\">") + 10;
+  const json report = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  const json graph = report.at("sections").back().at("graph");
+  CHECK(graph.at("nodes").size() == 2);
+  CHECK(graph.at("nodes").at(0).at("text") == "key");
+  // Each of two that do not come apart stops the other.
+  const std::set<json> arrows(graph.at("arrows").begin(), graph.at("arrows").end());
+  CHECK(arrows == std::set<json>{json::parse("[0, 1]"), json::parse("[1, 0]")});
 }
 
 TEST_CASE("what cannot be planned is an error of one line") {

@@ -13,25 +13,27 @@ function cellText(value) {
   return rounding ? "< 1e-6" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
 }
 
-// A table of {caption?, head: [...], rows: [[cell, ...], ...]}; a cell is text, a number or {text, class?, href?}.
-export function tableOf({ caption, head, rows }) {
+// A table of {caption?, head: [...], rows: [[cell, ...], ...], text?: [...]}; a cell is text, a number or {text, class?,
+// href?}. Columns of the places in `text` are of words, and begin at the left.
+export function tableOf({ caption, head, rows, text = [] }) {
   const table = element("table");
   if (caption) table.append(element("caption", caption));
   const headRow = element("tr");
-  for (const cell of head) headRow.append(element("th", String(cell)));
+  const align = (place) => (text.includes(place) ? "text" : "");
+  head.forEach((cell, place) => headRow.append(element("th", String(cell), align(place))));
   table.append(headRow);
   for (const row of rows) {
     const tr = element("tr");
-    for (const cell of row) {
+    row.forEach((cell, place) => {
       const rich = cell !== null && typeof cell === "object";
-      const td = element("td", rich ? "" : cellText(cell), rich ? cell.class : "");
+      const td = element("td", rich ? "" : cellText(cell), (rich && cell.class) || align(place));
       if (rich) {
-        const text = element(cell.href ? "a" : "span", cell.text);
-        if (cell.href) text.href = cell.href;
-        td.append(text);
+        const inside = element(cell.href ? "a" : "span", cell.text);
+        if (cell.href) inside.href = cell.href;
+        td.append(inside);
       }
       tr.append(td);
-    }
+    });
     table.append(tr);
   }
   const frame = element("div", "", "table");

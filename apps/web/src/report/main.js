@@ -1,6 +1,7 @@
 // Shows a report: the JSON that the program put into the page (see web/page.hpp).
 import { addPlot } from "../common/plot.js";
 import { element, tableOf } from "../common/dom.js";
+import { graphOf } from "./graph.js";
 
 const report = JSON.parse(document.getElementById("data").textContent);
 const root = document.getElementById("report");
@@ -24,6 +25,7 @@ function addSection(section) {
     root.append(row);
     for (const plot of section.plots) addPlot(row, plot);
   }
+  if (section.graph) root.append(graphOf(section.graph));
   for (const table of section.tables ?? []) root.append(tableOf(table));
 }
 
