@@ -9,14 +9,14 @@ namespace tegotae {
 namespace {
 
 // Below the servo (80): a tick that takes long never holds it up. Threads that the thread makes meanwhile inherit it.
-constexpr int kPriority = 70;
+constexpr int kLoopPriority = 70;
 
 }  // namespace
 
 LoopPriority::LoopPriority() noexcept {
   error_ = pthread_getschedparam(pthread_self(), &policy_, &before_);
   sched_param wanted{};
-  wanted.sched_priority = kPriority;
+  wanted.sched_priority = kLoopPriority;
   if (error_ == 0) error_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
 }
 

@@ -14,7 +14,7 @@ namespace tegotae {
 namespace {
 
 // Above ordinary real-time threads such as sound servers, below the kernel's own at 99.
-constexpr int kPriority = 80;
+constexpr int kServoPriority = 80;
 // The least that the kernel takes; 0 would restore the default of 50 µs.
 constexpr unsigned long kTimerSlackNs = 1;
 
@@ -47,7 +47,7 @@ RealtimeReport make_realtime(int cpu) {
     report.missing += std::string(report.missing.empty() ? "" : "; ") + what + ": " + std::strerror(error);
   };
   sched_param parameters{};
-  parameters.sched_priority = kPriority;
+  parameters.sched_priority = kServoPriority;
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
   report.fifo = error == 0;
   if (!report.fifo) refused("SCHED_FIFO", error);
