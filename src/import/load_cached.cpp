@@ -19,7 +19,8 @@ namespace {
 // To be raised whenever load_mesh() makes another mesh, or other notes, of the same file.
 constexpr std::uint32_t kBuild = 1;
 constexpr std::size_t kPiece = std::size_t{1} << 18;
-constexpr std::string_view kUri = "\"uri\"";
+// The key of a name in glTF, and what each other way to write it has.
+constexpr std::string_view kUri = "\"uri\"", kEscape = "\\u";
 
 /// Whether meshes of this kind of file may be made of other files too.
 bool may_name_others(const std::string& extension) {
@@ -55,7 +56,7 @@ std::optional<ContentKey> key_of_file(const std::string& path, double unit_in_m)
     sum.add(piece.data() + kept, static_cast<std::size_t>(n));
     if (!others) continue;
     piece.resize(kept + static_cast<std::size_t>(n));
-    if (piece.find(kUri) != piece.npos) return std::nullopt;
+    if (piece.find(kUri) != piece.npos || piece.find(kEscape) != piece.npos) return std::nullopt;
     kept = std::min(piece.size(), kUri.size() - 1);
     piece.erase(0, piece.size() - kept);
   }

@@ -264,16 +264,20 @@ TEST_CASE("files that name others, and folders that cannot be written", "[load_c
   buffer.append(reinterpret_cast<const char*>(big().triangles.data()), 12 * big().triangles.size());
   folder.write("a.bin", buffer);
   const auto n = [](std::size_t x) { return std::to_string(x); };
-  folder.write(
-      "a.gltf",
-      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
-      R"("indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
-          n(big().vertices.size()) + R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" +
-          n(3 * big().triangles.size()) + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + n(corners) +
-          R"(},{"buffer":0,"byteOffset":)" + n(corners) + R"(,"byteLength":)" + n(buffer.size() - corners) +
-          R"(}],"buffers":[{"uri":"a.bin","byteLength":)" + n(buffer.size()) + "}]}");
-  CHECK(load_mesh(folder / "a.gltf").triangles.size() == big().triangles.size());
-  CHECK(entries(folder / "cache").empty());
+  // As a string may be written, too.
+  for (const char* key : {"uri", "\\u0075ri", "ur\\u0069"}) {
+    CAPTURE(key);
+    folder.write(
+        "a.gltf",
+        R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
+        R"("indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
+            n(big().vertices.size()) + R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" +
+            n(3 * big().triangles.size()) + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + n(corners) +
+            R"(},{"buffer":0,"byteOffset":)" + n(corners) + R"(,"byteLength":)" + n(buffer.size() - corners) +
+            R"(}],"buffers":[{")" + key + R"(":"a.bin","byteLength":)" + n(buffer.size()) + "}]}");
+    CHECK(load_mesh(folder / "a.gltf").triangles.size() == big().triangles.size());
+    CHECK(entries(folder / "cache").empty());
+  }
   const std::string file = written(folder, big())[0];
   folder.write("plain", "");
   set_hierarchy_cache(folder / "plain/cache");
