@@ -1,11 +1,10 @@
 #include "bench/measure_start.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
-#include "core/output_file.hpp"
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
+#include "models/write_stl.hpp"
 #include "shared/temporary_folder.hpp"
 #include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
@@ -22,19 +21,6 @@ constexpr int kSegments = 1000, kRings = 499, kQuickRings = 19;
 constexpr int kSecondStarts = 3;
 // Where the part in hand is, m: beside the shaft, so that the two are looked at but FCL is not asked.
 const Vec3 kBeside(0.02, 0, 0);
-
-void write_stl(const TriangleMesh& mesh, const std::string& path) {
-  std::string bytes(80, '\0');
-  const auto put = [&bytes](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  put(static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const auto& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) put(0.0f);
-    for (const std::uint32_t v : t)
-      for (const double x : mesh.vertices[v]) put(static_cast<float>(1e3 * x));
-    put(std::uint16_t{0});
-  }
-  write_file(path, bytes);
-}
 
 /// Seconds until a loop has made its first tick.
 double start(const std::string& large, const std::string& small) {

@@ -78,12 +78,16 @@ const Scene& checked(const Scene& scene) {
   return scene;
 }
 
+MassProperties mass_of_held(const Scene& scene, double density) {
+  const auto& mesh = held_part(scene).mesh;
+  return mass_properties(*mesh, is_closed(cached_surface(mesh)->topology), density);
+}
+
 RunningScene::RunningScene(const Scene& scene)
     : held(held_part(checked(scene)).name),
       held_mesh(held_part(scene).mesh),
       settings(completed(scene.contact, bounding_sphere(*held_part(scene).mesh).radius)),
-      mass(mass_properties(*held_part(scene).mesh, is_closed(cached_surface(held_part(scene).mesh)->topology),
-                           settings.density)),
+      mass(mass_of_held(scene, settings.density)),
       radius(radius_about(*held_mesh, mass.center)),
       coupling(fitted(scene, mass)),
       weight(held_weight(scene, mass)),

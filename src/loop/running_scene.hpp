@@ -17,6 +17,8 @@ namespace tegotae {
 const Scene& checked(const Scene& scene);
 /// Settings with nothing left open, for a held part whose bounding sphere has that radius (m). Throws Error.
 ContactSettings completed(ContactSettings settings, double radius);
+/// Of the held part, of a uniform density (kg/m³).
+MassProperties mass_of_held(const Scene& scene, double density);
 
 /// A scene with everything that a tick in it needs.
 struct RunningScene {

@@ -60,7 +60,7 @@ MotionWorld::MotionWorld(Scene scene, double clearance, bool)
     : scene_(std::move(scene)),
       clearance_(clearance),
       settings_(completed(scene_.contact, bounding_sphere(*held_part(scene_).mesh).radius)),
-      mass_(mass_properties(*held_part(scene_).mesh, report(*held_part(scene_).mesh).closed, settings_.density)),
+      mass_(mass_of_held(scene_, settings_.density)),
       at_(std::make_unique<CollisionWorld>(scene_, settings_, mass_, ProofEffort::quick)),
       gyration_(radius_of_gyration(mass_)) {
   const SceneParts parts(scene_);

@@ -8,6 +8,7 @@
 
 #include "absent.hpp"
 #include "apps/run_program.hpp"
+#include "cache_folder.hpp"
 #include "catch.hpp"
 #include "import/load_assimp.hpp"
 #include "import/load_triangles.hpp"
@@ -15,6 +16,7 @@
 #include "mesh/surface.hpp"
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
+#include "models/write_stl.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/import/isolated_load.hpp"
 #include "tegotae/import/load.hpp"
@@ -26,19 +28,6 @@ using namespace tegotae::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct UseFolder {
-  explicit UseFolder(const std::string& path) { set_hierarchy_cache(path); }
-  ~UseFolder() { set_hierarchy_cache(""); }
-};
-
-std::vector<fs::path> entries(const std::string& folder) {
-  std::vector<fs::path> all;
-  if (fs::exists(folder))
-    for (const auto& entry : fs::directory_iterator(folder)) all.push_back(entry.path());
-  std::sort(all.begin(), all.end());
-  return all;
-}
 
 template <typename T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -85,16 +74,7 @@ std::vector<std::string> all_files() {
 std::vector<std::string> written(const TempFolder& folder, const TriangleMesh& mesh) {
   write_ply(mesh, folder / "a.ply", 1e-3);
   write_obj(mesh, folder / "a.obj");
-  std::string stl(80, ' ');
-  const auto put = [&stl](const auto& value) { stl.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  put(static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const auto& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) put(0.0f);
-    for (const std::uint32_t v : t)
-      for (int k = 0; k < 3; ++k) put(static_cast<float>(1e3 * mesh.vertices[v][k]));
-    put(std::uint16_t{0});
-  }
-  folder.write("a.stl", stl);
+  write_stl(mesh, folder / "a.stl");
   return {folder / "a.ply", folder / "a.obj", folder / "a.stl"};
 }
 
@@ -114,7 +94,7 @@ TEST_CASE("every file is the same with the cache, the first time and after", "[l
   for (const std::string& file : files) {
     INFO(file);
     const Answer plain = read(file);
-    const UseFolder use(folder / "cache");
+    const UseCache use(folder / "cache");
     const std::size_t before = entries(folder / "cache").size();
     for (int i = 0; i < 2; ++i) {
       const Answer cached = read(file);
@@ -184,7 +164,7 @@ TEST_CASE("a damaged entry is read anew and replaced", "[load_cached]") {
            same_bytes(s->regions.of_face, built.regions.of_face) &&
            same_bytes(s->regions.corners, built.regions.corners);
   };
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   REQUIRE(sound());
   REQUIRE(entries(folder / "cache").size() == 2);  // mesh, surface
   REQUIRE(sound());
@@ -220,7 +200,7 @@ TEST_CASE("a damaged entry is read anew and replaced", "[load_cached]") {
 TEST_CASE("an entry belongs to a content, an extension and a unit", "[load_cached]") {
   const TempFolder folder;
   const std::vector<std::string> files = written(folder, big());
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   const auto count = [&] { return entries(folder / "cache").size(); };
   load_mesh(files[0], 1e-3);
   REQUIRE(count() == 1);
@@ -241,7 +221,7 @@ TEST_CASE("what is kept needs no loading process", "[load_cached]") {
   const TempFolder folder;
   const std::string file = written(folder, big())[0];
   const TriangleMesh plain = load_mesh(file, 1e-3);
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   IsolatedLoad nobody;
   nobody.helper = folder / "nobody";
   CHECK_THROWS_AS(load_mesh_isolated(file, 1e-3, nobody), Error);
@@ -252,7 +232,7 @@ TEST_CASE("what is kept needs no loading process", "[load_cached]") {
 
 TEST_CASE("files that name others, and folders that cannot be written", "[load_cached]") {
   const TempFolder folder;
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   // A sphere with its corners in another file.
   std::string buffer;
   for (const Vec3& p : big().vertices)

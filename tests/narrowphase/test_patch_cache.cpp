@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/run_program.hpp"
+#include "cache_folder.hpp"
 #include "catch.hpp"
 #include "mesh/cache_entry.hpp"
 #include "models/shapes.hpp"
@@ -23,30 +24,17 @@ bool same(const PatchTree& a, const PatchTree& b) {
          a.order() == b.order() && a.origin() == b.origin() && a.radius() == b.radius();
 }
 
-std::vector<fs::path> files(const std::string& folder) {
-  std::vector<fs::path> all;
-  if (fs::exists(folder))
-    for (const auto& entry : fs::directory_iterator(folder)) all.push_back(entry.path());
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-struct UseFolder {
-  explicit UseFolder(const std::string& path) { set_hierarchy_cache(path); }
-  ~UseFolder() { set_hierarchy_cache(""); }
-};
-
 }  // namespace
 
 TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
   const TempFolder folder;
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   const auto mesh = std::make_shared<const TriangleMesh>(shapes::sphere(0.05, 200, 60));
   REQUIRE(mesh->triangles.size() >= kMinCached);
   const PatchTree built(mesh);
   CHECK(same(*cached_patch_tree(mesh), built));
-  REQUIRE(files(folder / "cache").size() == 1);
-  const fs::path file = files(folder / "cache")[0];
+  REQUIRE(entries(folder / "cache").size() == 1);
+  const fs::path file = entries(folder / "cache")[0];
   const std::string bytes = read_text(file);
   // Read, not built and written again: that would put a new file in place of the one with two names.
   fs::create_hard_link(file, folder / "second_name");
@@ -55,13 +43,13 @@ TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
 
   SECTION("small meshes are not kept") {
     cached_patch_tree(std::make_shared<const TriangleMesh>(shapes::box({1, 1, 1})));
-    CHECK(files(folder / "cache").size() == 1);
+    CHECK(entries(folder / "cache").size() == 1);
   }
   SECTION("another mesh gets another file") {
     auto moved = std::make_shared<TriangleMesh>(*mesh);
     moved->vertices[7].x() += 1e-15;
     cached_patch_tree(moved);
-    CHECK(files(folder / "cache").size() == 2);
+    CHECK(entries(folder / "cache").size() == 2);
   }
   SECTION("a damaged file is built anew and replaced") {
     for (const std::size_t at : {0ul, 9ul, 30ul, 60ul, 70ul, 84ul, 100ul, bytes.size() / 2, bytes.size() - 3}) {
@@ -111,11 +99,11 @@ TEST_CASE("axes and profiles that are kept are those that were found", "[patch_c
     CHECK(profile.z_min() == built.z_min());
     CHECK(profile.z_max() == built.z_max());
   };
-  const UseFolder use(folder / "cache");
+  const UseCache use(folder / "cache");
   check();
-  REQUIRE(files(folder / "cache").size() == 2);
+  REQUIRE(entries(folder / "cache").size() == 2);
   check();
-  for (const fs::path& file : files(folder / "cache")) {
+  for (const fs::path& file : entries(folder / "cache")) {
     const std::string bytes = read_text(file);
     for (const std::size_t at :
          {std::size_t{17}, std::size_t{50}, std::size_t{60}, bytes.size() / 2, bytes.size() - 1}) {
@@ -129,11 +117,11 @@ TEST_CASE("axes and profiles that are kept are those that were found", "[patch_c
   }
   // Another frame of the same axis is another profile.
   cached_profile(tree, ScrewFrame::of(axes[0], 0.002));
-  CHECK(files(folder / "cache").size() == 3);
+  CHECK(entries(folder / "cache").size() == 3);
 }
 
 TEST_CASE("without a folder nothing is kept", "[patch_cache]") {
   const TempFolder folder;
   cached_patch_tree(std::make_shared<const TriangleMesh>(shapes::sphere(0.05, 200, 60)));
-  CHECK(files(folder / "cache").empty());
+  CHECK(entries(folder / "cache").empty());
 }
