@@ -17,7 +17,13 @@ export async function openOn(browser, url, { width, height, dark, touch = false 
 // take longer than its patience.
 export const press = (page, selector) => page.click(selector, { force: true });
 
-export const at = (page, point) => page.evaluate((p) => window.__tegotae.project(p), point);
+// Where a point of the world is on the screen. A panel that has just come takes its width from the picture at once, but the
+// camera learns of it with the next frame.
+export const at = (page, point) =>
+  page.evaluate(async (p) => {
+    for (let frames = 0; frames < 2; ++frames) await new Promise(requestAnimationFrame);
+    return window.__tegotae.project(p);
+  }, point);
 export const size = (page, selector) => page.evaluate((s) => document.querySelector(s).getBoundingClientRect().toJSON(), selector);
 
 export async function nothingComplains(page) {
