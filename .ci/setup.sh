@@ -15,6 +15,7 @@ packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-de
 
 browser=false
 tools=()
+newest=()
 preset=release
 options=(-DTEGOTAE_BUILD_APPS=ON -DTEGOTAE_BUILD_TESTS=ON)
 for _ in 1 2; do
@@ -36,6 +37,7 @@ for _ in 1 2; do
       shift ;;
     --checks)
       tools=(clang-14 libclang-rt-14-dev clang-tidy-14 clang-format-14 doxygen)
+      newest=(clang-22 libc++-22-dev)  # for the public headers, each alone
       shift ;;
   esac
 done
@@ -84,6 +86,8 @@ if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
     { tail -n 20 "$log" >&2; fail "these packages are missing: $(missing_of "${packages[@]}" | xargs)"; }
   provide "${tools[@]}" ||
     echo "setup: no $(missing_of "${tools[@]}" | xargs): $(tail -n 1 "$log"); checks that need them are skipped" >&2
+  provide "${newest[@]}" ||
+    echo "setup: no $(missing_of "${newest[@]}" | xargs): the public headers are compiled with an older compiler" >&2
 else
   echo "setup: no apt here; going on with what is installed (needed: ${packages[*]})" >&2
 fi
