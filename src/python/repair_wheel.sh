@@ -18,7 +18,7 @@ while [ ${#todo[@]} -gt 0 ]; do
   name=${todo[0]} todo=("${todo[@]:1}")
   case $name in libc.so* | libm.so* | libdl.so* | ld-linux*) continue ;; esac
   [ ! -e "$libraries/$name" ] || continue
-  path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name && /x86-64|AArch64/ { print $NF; exit }')
+  path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name && /x86-64|AArch64/ && !path { path = $NF } END { print path }')
   cp -L "${path:?no $name on this system}" "$libraries/$name"
   patchelf --set-rpath '$ORIGIN' "$libraries/$name"
   mapfile -t -O ${#todo[@]} todo < <(patchelf --print-needed "$libraries/$name")
