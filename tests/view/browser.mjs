@@ -4,6 +4,7 @@ import "./browser_first_hour.mjs";
 import "./browser_live.mjs";
 import "./browser_replay.mjs";
 import "./browser_review.mjs";
+import "./browser_parts.mjs";
 import "./browser_step.mjs";
 import "./pieces.mjs";
 import { runCases } from "./cases.mjs";
