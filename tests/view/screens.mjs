@@ -99,6 +99,7 @@ export const reported = (html) => Buffer.from(html.match(/id="data">([^<]+)</)[1
 // With TEGOTAE_PICTURES=FOLDER a picture of the page as it is now.
 export async function picture(page, name) {
   if (!process.env.TEGOTAE_PICTURES) return;
+  await page.evaluate(() => document.activeElement.blur()); // no ring, no cross
   await page.waitForTimeout(1500);
   await page.screenshot({ path: join(process.env.TEGOTAE_PICTURES, `${name}.png`), timeout: patience });
 }
