@@ -23,6 +23,7 @@ async function pressByKeys(page) {
   await page.keyboard.press("1");
   await page.keyboard.press("h");
   for (let i = 0; i < 90 && !pushesBack(await state(page)); ++i) await page.keyboard.press("ArrowDown");
+  for (let i = 0; i < 8; ++i) await page.keyboard.press("ArrowDown"); // so that it still does when the hand has come to rest
   let last = await state(page);
   return until(page, (s) => {
     if (s.frame.t < last.frame.t + 0.3) return false;
