@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { folder, test } from "./cases.mjs";
 import { pushesBack, writeFloor } from "./floor.mjs";
 import { open, serve, state, until } from "./program.mjs";
-import { at, dragTo, figure, fits, nothingComplains, openOn, picture, press, reported, saved, size } from "./screens.mjs";
+import { at, dragTo, figure, fits, nothingComplains, openOn, picture, press, reported, saved, size, toolsAreSeen } from "./screens.mjs";
 
 const screens = [
   { width: 1366, height: 768, dark: false },
@@ -111,6 +111,7 @@ for (const screen of screens) {
     const program = await serve("tegotae", "run", writeFloor(), "--view", "--fast");
     const { page, context } = await openOn(browser, program.url, screen, { play: true });
     await fits(page, screen);
+    await toolsAreSeen(page, screen);
     await nothingComplains(page);
     await look(page);
     await measure(page);

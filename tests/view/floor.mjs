@@ -3,13 +3,14 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { folder } from "./cases.mjs";
 
+export const box = ([x0, y0, z0], [x1, y1, z1]) =>
+  [[x0, y0, z0], [x1, y0, z0], [x1, y1, z0], [x0, y1, z0], [x0, y0, z1], [x1, y0, z1], [x1, y1, z1], [x0, y1, z1]].map((v) => `v ${v.join(" ")}\n`).join("") +
+  ["1 4 3", "1 3 2", "5 6 7", "5 7 8", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"].map((f) => `f ${f}\n`).join("");
+
 // A block of 10 mm held 3 mm over a wide floor (top at z = 0) by a hand that rests, or follows `script`.
 export function writeFloor(script = "0,0,0,0.008,1,0,0,0\n") {
-  const box = (x, z0, z1) =>
-    [[-x, -x, z0], [x, -x, z0], [x, x, z0], [-x, x, z0], [-x, -x, z1], [x, -x, z1], [x, x, z1], [-x, x, z1]].map((v) => `v ${v.join(" ")}\n`).join("") +
-    ["1 4 3", "1 3 2", "5 6 7", "5 7 8", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"].map((f) => `f ${f}\n`).join("");
-  writeFileSync(join(folder, "floor.obj"), box(20, -5, 0));
-  writeFileSync(join(folder, "block.obj"), box(5, -5, 5));
+  writeFileSync(join(folder, "floor.obj"), box([-20, -20, -5], [20, 20, 0]));
+  writeFileSync(join(folder, "block.obj"), box([-5, -5, -5], [5, 5, 5]));
   writeFileSync(join(folder, "rest.csv"), "t,px,py,pz,qw,qx,qy,qz\n" + script);
   writeFileSync(join(folder, "floor.toml"),
     'unit = "mm"\n[[part]]\nname = "floor"\nmesh = "floor.obj"\n' +
@@ -19,6 +20,13 @@ export function writeFloor(script = "0,0,0,0.008,1,0,0,0\n") {
 
 // The floor is felt and shown.
 export const pushesBack = (s) => s.frame.forceOn && s.frame.force[2] > 0.5 && s.shown.contacts >= 3 && s.arrows.force > 0;
+
+// Boxes of mm, [[low, high], ...], as a scene in which nothing is held.
+export function writeBoxes(name, boxes) {
+  boxes.forEach(([low, high], i) => writeFileSync(join(folder, `${name}${i}.obj`), box(low, high)));
+  writeFileSync(join(folder, `${name}.toml`), 'unit = "mm"\n' + boxes.map((_, i) => `[[part]]\nname = "box ${i}"\nmesh = "${name}${i}.obj"\n`).join(""));
+  return join(folder, `${name}.toml`);
+}
 
 // Leads the part with the mouse, in the plane of the screen, to `below` m under where it is now.
 export async function drag(page, below) {

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { fixed, length, written } from "../../apps/web/src/common/number.js";
+import { ForceNotice } from "../../apps/web/src/view/force.js";
 import { featureAt, Surface } from "../../apps/web/src/view/feature.js";
 import { measuresBetween } from "../../apps/web/src/view/measures.js";
 import { stylusScript } from "../../apps/web/src/view/review.js";
@@ -75,6 +76,36 @@ test("pieces: the tree of groups", () => {
   const parts = [{ path: ["a", "b"] }, { path: [] }, { path: ["a"] }, { path: ["a", "b"] }, { path: ["b"] }];
   const rows = treeRows(parts).map((row) => (row.group ? `${row.group.name}:${row.parts.sort().join("")}@${row.depth}` : `${row.part}@${row.depth}`));
   assert.deepEqual(rows, ["a:023@0", "b:03@1", "0@2", "3@2", "2@1", "b:4@0", "4@1", "1@0"]);
+});
+
+test("pieces: what stands over the parts about the force, and when", () => {
+  const place = { textContent: "", classList: { toggle: () => {} } };
+  const notice = new ForceNotice(place);
+  const reasons = ["none", "a", "b", "c", "software", "the heartbeat"];
+  const at = (ms, frame) => {
+    notice.show({ forceOn: false, waiting: true, reason: 4, lagReason: 0, ...frame }, reasons, { leads: true }, ms);
+    return place.textContent;
+  };
+  const on = { forceOn: true, waiting: false };
+  // A run begins without a force: that is no news, unless it lasts.
+  for (const ms of [0, 300, 1000, 3900]) assert.equal(at(ms), "");
+  assert.match(at(4100), /^The force went off\. Let go of the part/);
+  assert.equal(at(4200, on), "", "it has never been on before");
+  // Then it is news sooner, with its reason, and so is that it is back, in passing.
+  assert.equal(at(10_000, { reason: 5 }), "");
+  assert.equal(at(10_300, { reason: 5 }), "");
+  assert.match(at(10_500, { reason: 5 }), /^The force went off: the heartbeat\. Let go of the part/);
+  assert.equal(at(11_000, on), "The force is on again.");
+  assert.equal(at(13_900, on), "The force is on again.");
+  assert.equal(at(14_100, on), "");
+  // What was too short to be told is not told afterwards.
+  assert.equal(at(20_000, { reason: 5 }), "");
+  assert.equal(at(20_100, on), "");
+  // What holds the part back, where it is no contact, and lasts.
+  assert.equal(at(30_000, { ...on, lagReason: 1 }), "");
+  assert.equal(at(31_000, { ...on, lagReason: 2 }), "");
+  assert.equal(at(31_500, { ...on, lagReason: 2 }), "The part is held back, and not by a contact: out of time.");
+  assert.equal(at(31_600, { ...on, lagReason: 1 }), "");
 });
 
 test("pieces: a script of what the hand did begins at 0 and goes on", () => {

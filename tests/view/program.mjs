@@ -50,11 +50,22 @@ export async function open(browser, url, { dark = false, width = 1366, height = 
   page.complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(String(error.stack)));
+  await page.addInitScript(noteWhatIsSaid);
   await page.goto(url);
   if (play) await page.click("#play");
   await until(page, (s) => (runs ? s.frame : s.status.generation));
   return page;
 }
+
+// Runs in the page: every text that has stood over the parts about the force, in order.
+function noteWhatIsSaid() {
+  window.__said = [];
+  addEventListener("DOMContentLoaded", () => {
+    const place = document.getElementById("force");
+    new MutationObserver(() => place.textContent && window.__said.push(place.textContent)).observe(place, { childList: true, characterData: true, subtree: true });
+  });
+}
+export const said = (page) => page.evaluate(() => window.__said);
 
 // The last values of the plot with this name.
 export const plotted = (s, name) => s.plots.find((plot) => plot.name === name).last;

@@ -40,6 +40,25 @@ export async function fits(page, screen) {
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight));
 }
 
+// No tool is out of sight without a hint: they wrap, and on the narrowest screens the row fades where it goes on.
+export async function toolsAreSeen(page, screen) {
+  const tools = (left) => page.evaluate(async (to) => {
+    const row = document.getElementById("tools");
+    row.scrollLeft = to;
+    for (let frames = 0; frames < 3; ++frames) await new Promise(requestAnimationFrame);
+    return { over: row.scrollWidth - row.clientWidth, more: row.dataset.more, mask: getComputedStyle(row).maskImage };
+  }, left);
+  const first = await tools(0);
+  if (screen.width > 480) assert.ok(first.over <= 1, `${first.over} px of the tools are cut off`);
+  if (first.over <= 1) return assert.deepEqual([first.more, first.mask], ["", "none"]);
+  assert.equal(first.more, "right");
+  const end = await tools(first.over);
+  assert.equal(end.more, "left");
+  const masks = [first.mask, end.mask];
+  assert.ok(masks.every((mask) => mask.includes("gradient")) && masks[0] !== masks[1], `${masks}`);
+  await tools(0);
+}
+
 export const figure = (s, name) => s.measured.find(([what]) => what === name)?.[2];
 
 // Drags from one point of the world to another, with the mouse or a finger; what lets go.
@@ -80,6 +99,7 @@ export const reported = (html) => Buffer.from(html.match(/id="data">([^<]+)</)[1
 // With TEGOTAE_PICTURES=FOLDER a picture of the page as it is now.
 export async function picture(page, name) {
   if (!process.env.TEGOTAE_PICTURES) return;
+  await page.evaluate(() => document.activeElement.blur()); // no ring, no cross
   await page.waitForTimeout(1500);
   await page.screenshot({ path: join(process.env.TEGOTAE_PICTURES, `${name}.png`), timeout: patience });
 }

@@ -1,79 +1,58 @@
 // Makes the pictures of docs/view.md and docs/review.md:
 //   TEGOTAE_BIN_DIR=build/release/bin node tests/view/screenshots.mjs
-// A live run in virtual time, stopped where the tilted peg jams (light), a recording at the rim (dark), and jammed on a narrow screen.
+// A recording where the tilted peg jams: whole (light), cut open (dark), on a narrow screen.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { launch, open, run, serve, state, until } from "./program.mjs";
+import { launch, open, run, serve, until } from "./program.mjs";
 
 const root = new URL("../..", import.meta.url).pathname;
 const scene = `${root}models/peg_in_hole_0.94.toml`;
 const folder = mkdtempSync(join(tmpdir(), "tegotae_pictures_"));
 const browser = await launch();
 
-// A cut through the peg, seen from in front and a little from above.
-async function aim(page) {
+const jam = 5300; // ms, where it jams
+
+// Seen from in front and a little from above; cut: through the peg's middle.
+async function aim(page, cut) {
   await page.keyboard.press("1");
-  await page.keyboard.press("s");
-  await page.keyboard.press("s");
-  await page.evaluate(() => {
-    document.getElementById("flip").click();
-    document.activeElement.blur();
-  });
+  if (cut) for (const key of ["s", "s"]) await page.keyboard.press(key);
   for (const key of ["ArrowUp", "ArrowUp", "ArrowUp", "ArrowRight", "ArrowRight", "ArrowRight", "f"]) await page.keyboard.press(key);
 }
 
 async function picture(page, name) {
   await page.waitForTimeout(1500);
+  await page.evaluate(() => document.activeElement.blur()); // no ring, no cross
+  await page.waitForTimeout(200);
   await page.screenshot({ path: `${root}docs/${name}` });
   await page.close();
 }
 
-async function stepTo(page, url, t) {
-  await page.waitForTimeout(500);
-  const ticks = Math.round((t - (await state(page)).frame.t) * 1000);
-  const token = new URL(url).searchParams.get("token");
-  await fetch(new URL("/command", url), { method: "POST", headers: { "X-Tegotae-Token": token }, body: JSON.stringify({ do: "step", ticks }) });
-  await until(page, (s) => Math.abs(s.frame.t - t) < 2e-3);
+// The same run as in docs/replay.html, with the contacts' forces, which only MCAP has.
+async function record() {
+  const recording = join(folder, "peg.mcap");
+  await run("peg_in_hole", "--fast", "--record", recording);
+  await run("tegotae", "replay", recording, "--html", join(folder, "peg.html"));
 }
 
-async function light() {
-  const program = await serve("tegotae", "run", scene, "--view", "--fast");
-  const page = await browser.newPage({ viewport: { width: 1366, height: 700 }, colorScheme: "light" });
-  await page.goto(program.url);
-  await page.waitForSelector("#parts li");
-  await page.selectOption("#speed", "0.5");
-  await page.click("#play");
-  await until(page, (s) => s.frame?.t > 4);
-  await page.click("#play");
-  await until(page, (s) => s.status.paused);
-  await stepTo(page, program.url, 5.25); // the first jam
-  await aim(page);
-  await picture(page, "view-light.png");
-  await program.stop();
-}
-
-async function dark() {
-  const recording = join(folder, "peg.csv"), file = join(folder, "peg.html");
-  await run("tegotae", "run", scene, "--fast", "--record", recording);
-  await run("tegotae", "replay", recording, scene, "--html", file);
-  const page = await open(browser, `file://${file}`, { dark: true, height: 700 });
-  await page.evaluate(() => {
+async function openAt(t, options) {
+  const page = await open(browser, `file://${join(folder, "peg.html")}`, options);
+  await page.evaluate((at) => {
     const bar = document.getElementById("scrub");
-    bar.value = 5800;
+    bar.value = at;
     bar.dispatchEvent(new Event("input"));
-  });
-  await aim(page);
-  await picture(page, "view-dark.png");
+  }, t);
+  return page;
+}
+
+async function wide(name, dark) {
+  const page = await openAt(jam, { dark, height: 700 });
+  await aim(page, dark);
+  await picture(page, name);
 }
 
 async function narrow() {
-  const page = await open(browser, `file://${join(folder, "peg.html")}`, { width: 390, height: 700 });
-  await page.evaluate(() => {
-    const bar = document.getElementById("scrub");
-    bar.value = 5300;
-    bar.dispatchEvent(new Event("input"));
-  });
+  const page = await openAt(jam, { width: 390, height: 700 });
   await page.click('#tabs [data-panel="right"]');
   await page.keyboard.press("f");
   await picture(page, "view-narrow.png");
@@ -82,8 +61,11 @@ async function narrow() {
 // The peg at rest over its hole, and the way that a guide would draw it.
 async function guide() {
   const program = await serve("tegotae", "run", scene, "--guide", `${root}models/insert_0.94.csv`, "--view", "--fast");
-  const page = await open(browser, program.url, { width: 1100, height: 620, play: true });
-  await page.click("#play");
+  const page = await browser.newPage({ viewport: { width: 1100, height: 620 }, colorScheme: "light" });
+  await page.goto(program.url);
+  await page.click("#step"); // which begins a run that stands
+  await until(page, (s) => s.frame);
+  await page.focus("#stage canvas");
   await page.keyboard.press("1");
   for (const key of ["ArrowUp", "ArrowUp", "ArrowRight", "ArrowRight", "f"]) await page.keyboard.press(key);
   await picture(page, "view-guide.png");
@@ -101,8 +83,9 @@ async function review() {
   await picture(page, "review.png");
 }
 
-await light();
-await dark();
+await record();
+await wide("view-light.png", false);
+await wide("view-dark.png", true);
 await narrow();
 await guide();
 await review();

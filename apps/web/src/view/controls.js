@@ -42,6 +42,16 @@ export function addViews(viewpoint) {
   }));
 }
 
+// On which sides of the tools there are more of them than one sees.
+export function showMore(tools) {
+  const show = () => {
+    const left = tools.scrollLeft > 1, right = tools.scrollLeft + tools.clientWidth < tools.scrollWidth - 1;
+    tools.dataset.more = [left && "left", right && "right"].filter(Boolean).join(" ");
+  };
+  tools.addEventListener("scroll", show);
+  new ResizeObserver(show).observe(tools);
+}
+
 // On a narrow page one panel at a time, or none.
 export function addPanels() {
   const buttons = [...$("tabs").querySelectorAll("button")];
@@ -74,15 +84,16 @@ export function addHelp() {
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }
 
-// actions: key -> function; "ctrl+z" and its like with that key. Arrow keys go to the camera unless the hand wants them.
-export function listenToKeys({ actions, viewpoint, hand }) {
+// actions: key -> function; "ctrl+z" and its like with that key. movers: the hand, the section plane; what they do not want
+// of the arrow keys goes to the camera.
+export function listenToKeys({ actions, viewpoint, movers }) {
   addEventListener("keydown", (event) => {
     if (event.altKey || isTyping(event) || $("help").open) return;
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     const command = event.ctrlKey || event.metaKey;
     const by = arrows[event.key];
-    if (!command && hand.key(event)) {
-      // it was the hand's
+    if (!command && movers.some((mover) => mover.key(event))) {
+      // it was theirs
     } else if (!command && by) {
       event.shiftKey ? viewpoint.pan(...by) : viewpoint.orbit(...by);
     } else if (!command && (event.key === "+" || event.key === "=" || event.key === "-")) {

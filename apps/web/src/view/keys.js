@@ -19,8 +19,11 @@ export const help = [
     ["arrows, Shift + arrows, + −", "orbit, pan, zoom"],
     ["O, U", "with or without perspective, another axis up"],
     ["S, [ and ]", "section plane: across x, y, z, off; move it. Its handle: drag, with Shift tilt"],
+    ["P, then arrows, Page Up / Down", "tilt the section plane, move it; Esc lets go"],
     ["E", "parts away from each other, and back"],
-    ["M", "measure: click two faces, edges or corners; Esc ends it"],
+    ["M", "measure: click two faces, edges or corners, or Enter for the one in the middle; Esc ends it"],
+    ["Enter", "a click in the middle of the picture, where the cross is (arrows and Shift + arrows bring something there)"],
+    ["N", "the next contact: its part, features, gap and force; Esc closes it"],
     ["T", "light or dark"],
   ]],
   ["Parts", [

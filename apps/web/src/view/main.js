@@ -6,7 +6,8 @@ import { embeddedBundle } from "./bundle.js";
 import { Viewpoint } from "./camera.js";
 import { Compass } from "./compass.js";
 import { ContactCard } from "./contact.js";
-import { addHelp, addPanels, addViews, listenToClicks, listenToKeys, showLayers } from "./controls.js";
+import { addHelp, addPanels, addViews, listenToClicks, listenToKeys, showLayers, showMore } from "./controls.js";
+import { listenToDrops } from "./drop.js";
 import { Parts } from "./edit.js";
 import { Ended } from "./ended.js";
 import { ForceNotice } from "./force.js";
@@ -36,11 +37,12 @@ const viewpoint = new Viewpoint(stage);
 listenToClicks(stage.canvas, click);
 const overlay = new Overlay(stage);
 const guide = new GuideLine(stage);
-const behind = new Behind(stage);
+const behind = new Behind(stage, overlay);
 const compass = new Compass(viewpoint, document.querySelector("#compass svg"), document.querySelector("#compass .bar"));
-const section = new Section(stage, viewpoint, () => lastNormal);
+const section = new Section(stage, viewpoint, { picked: () => lastNormal, changed: (keys) => showHand(keys ? "plane" : "") });
 const measure = new Measure(stage, viewpoint, $("measured"), (on) => {
   $("measure").setAttribute("aria-pressed", String(on));
+  if (on) stage.canvas.focus({ preventScroll: true }); // Enter is for the picture now
   rest.show(!stage.held && !on);
   allowHand();
 });
@@ -55,6 +57,7 @@ let parts, plots, rest, ended = null, live = null, player = null, about = null, 
 stage.onDraw = () => {
   compass.show();
   measure.follow();
+  contact.follow();
   if (frame) behind.show(frame);
 };
 
@@ -71,6 +74,7 @@ function showHand(what) {
   $("hand").textContent = {
     drag: fingers ? "" : hand.turns ? "Turns the part; G: moves it" : "Shift turns, the wheel moves away or nearer",
     keys: "Holding by keys: arrows, Page Up / Down, Shift turns, Esc lets go",
+    plane: "The section plane by keys: arrows tilt it, Page Up / Down move it, Esc lets go",
     take: fingers ? "Drag the blue part." : "Drag the blue part. Shift turns it, the wheel moves it away or nearer.",
   }[what] ?? "";
 }
@@ -81,6 +85,36 @@ function click(x, y) {
   if (measure.on) return measure.click(hit);
   if (frame && overlay.group.visible && contact.click(x, y, frame)) return;
   parts?.select(hit ? stage.parts.indexOf(hit.part) : null);
+}
+
+// A click in the middle of the picture, by a key.
+function clickMiddle() {
+  const { left, top, width, height } = stage.canvas.getBoundingClientRect();
+  click(left + width / 2, top + height / 2);
+}
+
+function nextContact() {
+  if (frame && overlay.group.visible) contact.next(frame);
+}
+
+function toggleHandKeys() {
+  section.letGo();
+  if (stage.held) hand.toggleKeys();
+  else parts.hold();
+}
+
+function togglePlaneKeys() {
+  if (hand.keys) hand.letGo();
+  section.toggleKeys();
+  if (section.keys) stage.canvas.focus({ preventScroll: true }); // the slider has arrow keys of its own
+}
+
+// The innermost of what is going on ends.
+function escape() {
+  if (section.keys) section.letGo();
+  else if (measure.on) measure.toggle(false);
+  else if (hand.leads) hand.letGo();
+  else contact.close();
 }
 
 function showFrame(next) {
@@ -297,6 +331,7 @@ function connect() {
   const help = addHelp();
   addViews(viewpoint);
   addPanels();
+  showMore($("tools"));
   const buttons = {
     play: control.play, step: control.step, restart: control.restart, fit: () => viewpoint.look(), near: showPart, theme: () => setTheme(!dark), ask: help,
     parallel: () => setParallel(!viewpoint.parallel), measure: () => measure.toggle(), live: playLive, turns: turnsOnDrag,
@@ -311,14 +346,15 @@ function connect() {
   const actions = {
     " ": () => timed() && control.play(), ".": () => timed() && control.step(), ",": control.back,
     r: control.restart, f: buttons.fit, c: buttons.near, t: buttons.theme, s: () => section.next(), "?": help,
-    "[": () => section.shift(-2), "]": () => section.shift(2), o: buttons.parallel, u: () => setUp({ z: "y", y: "x", x: "z" }[viewpoint.up]),
+    "[": () => section.shift(-0.02), "]": () => section.shift(0.02), p: togglePlaneKeys, o: buttons.parallel, u: () => setUp({ z: "y", y: "x", x: "z" }[viewpoint.up]),
     m: buttons.measure, e: () => explode(stage.explosion > 0 ? 0 : 0.8), g: turnsOnDrag,
     v: () => parts.toggleVisible(), i: () => parts.isolate(), x: () => parts.fade(), a: () => parts.showAll(), "ctrl+z": () => parts.edit && parts.undo(),
     "/": () => $("search").focus(),
-    h: () => (stage.held ? hand.toggleKeys() : parts.hold()), escape: () => (measure.on ? measure.toggle(false) : hand.letGo()),
+    h: toggleHandKeys, escape, enter: clickMiddle, n: nextContact,
   };
   for (let i = 0; i < 7; ++i) actions[String(i + 1)] = () => viewpoint.look(i);
-  listenToKeys({ actions, viewpoint, hand });
+  listenToKeys({ actions, viewpoint, movers: [hand, section] });
+  listenToDrops(showMessage);
   stage.canvas.addEventListener("pointermove", (event) => {
     if (!hand.enabled || event.buttons) return;
     stage.canvas.classList.toggle("grab", stage.pick(event.clientX, event.clientY, [stage.held]) !== null);
@@ -375,7 +411,7 @@ async function begin() {
   else live.watch();
 }
 
-addTestDoor({ stage, viewpoint, overlay, guide, hand, section, measure, get now() { return { about, parts, plots, player, frame, frames, status }; } });
+addTestDoor({ stage, viewpoint, overlay, guide, hand, section, measure, contact, get now() { return { about, parts, plots, player, frame, frames, status }; } });
 
 begin().catch((error) => {
   showMessage(error.message);

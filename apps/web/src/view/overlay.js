@@ -1,10 +1,10 @@
-// What acts on the held part: contact points with normals, nearest-feature pairs, the force of each contact and its cone of
+// What acts on the held part: contact points with normals (hollow and faint on its far side), nearest-feature pairs, the force of each contact and its cone of
 // friction, force and torque on the pen. Drawn over the parts, for most of it happens between them.
 import * as THREE from "three";
-import { disk } from "../common/disk.js";
+import { disk, ring } from "../common/disk.js";
 import { cssColor } from "../common/theme.js";
 import { round125 } from "./compass.js";
-import { norm } from "./frame.js";
+import { distance, norm } from "./frame.js";
 import { FrictionCones } from "./friction.js";
 
 const maxPairs = 128;
@@ -41,18 +41,18 @@ class Arrow {
   }
 }
 
-function dots(size) {
+function dots(size, map = disk()) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * maxPairs), 3));
-  const object = new THREE.Points(geometry, new THREE.PointsMaterial({ size, map: disk(), sizeAttenuation: false, ...over }));
+  const object = new THREE.Points(geometry, new THREE.PointsMaterial({ size, map, sizeAttenuation: false, ...over }));
   object.frustumCulled = false;
   return object;
 }
 
-function segments() {
+function segments(opacity = 1) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * maxPairs), 3));
-  const object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(over));
+  const object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ ...over, opacity }));
   object.frustumCulled = false;
   return object;
 }
@@ -78,12 +78,15 @@ export class Overlay {
     this.cones = new FrictionCones(over);
     this.contacts = dots(9);
     this.normals = segments();
+    this.farContacts = dots(11, ring());
+    this.farNormals = segments(0.35);
+    this.far = [];
     this.near = dots(5);
     this.links = segments();
     this.group = new THREE.Group();
-    this.layers = { contacts: [this.contacts, this.normals], pairs: [this.near, this.links], forces: [...this.exerted.map((shape) => shape.group), this.cones.object], arrows: [this.force.group, this.torque.group] };
+    this.layers = { contacts: [this.contacts, this.normals, this.farContacts, this.farNormals], pairs: [this.near, this.links], forces: [...this.exerted.map((shape) => shape.group), this.cones.object], arrows: [this.force.group, this.torque.group] };
     this.enabled = { contacts: true, pairs: true, forces: true, arrows: true };
-    for (const object of [this.links, this.near, this.normals, this.contacts]) object.renderOrder = 10;
+    for (const object of [this.links, this.near, ...this.layers.contacts]) object.renderOrder = 10;
     this.group.add(...Object.values(this.layers).flat());
     stage.scene.add(this.group);
   }
@@ -103,8 +106,7 @@ export class Overlay {
     this.torque.material.color.set(cssColor("--torque"));
     for (const shape of this.exerted) shape.material.color.set(cssColor("--contact"));
     this.cones.object.material.color.set(cssColor("--contact"));
-    this.contacts.material.color.set(cssColor("--contact"));
-    this.normals.material.color.set(cssColor("--contact"));
+    for (const object of this.layers.contacts) object.material.color.set(cssColor("--contact"));
     this.near.material.color.set(cssColor("--pair"));
     this.links.material.color.set(cssColor("--pair"));
   }
@@ -140,11 +142,32 @@ export class Overlay {
     const friction = this.cones.show(frame.forces, this.metersPerNewton, 0.3 * this.unit);
     const touching = frame.pairs.filter((pair) => pair.touching);
     const near = frame.pairs.filter((pair) => !pair.touching);
-    fill(this.contacts, touching.flatMap((p) => p.point));
-    fill(this.normals, touching.flatMap((p) => [...p.point, ...along(p.point, p.normal, 0.35 * this.unit)]));
+    this.showContacts(touching);
     fill(this.near, near.flatMap((p) => p.point));
     fill(this.links, near.flatMap((p) => [...p.point, ...along(p.point, p.normal, -p.gap)]));
-    this.shown = { contacts: touching.length, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length, friction };
+    this.shown = { contacts: touching.length, far: this.farCount, pairs: near.length, forces: this.exerted.filter((shape) => shape.group.visible).length, friction };
     return JSON.stringify(this.seen) !== before;
+  }
+
+  showContacts(touching) {
+    const isFar = ({ point }) => this.far.reduce((best, known) => (distance(known.point, point) < distance(best.point, point) ? known : best), this.far[0])?.far ?? false;
+    const [near, far] = [false, true].map((which) => touching.filter((p) => isFar(p) === which));
+    const draw = (pairs, points, normals) => {
+      fill(points, pairs.flatMap((p) => p.point));
+      fill(normals, pairs.flatMap((p) => [...p.point, ...along(p.point, p.normal, 0.35 * this.unit)]));
+    };
+    draw(near, this.contacts, this.normals);
+    draw(far, this.farContacts, this.farNormals);
+    this.farCount = far.length;
+  }
+
+  // far: [{point, far}], contacts of which it is known whether the held part stands before them.
+  setFar(far, frame) {
+    const before = JSON.stringify(this.far.map((known) => known.far));
+    this.far = far;
+    if (JSON.stringify(far.map((known) => known.far)) === before || !this.shown) return;
+    this.showContacts(frame.pairs.filter((p) => p.touching));
+    this.shown.far = this.farCount;
+    this.stage.draw();
   }
 }

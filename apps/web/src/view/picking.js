@@ -33,12 +33,13 @@ function nearest({ section, geometry }, ray, parts) {
     const mesh = new THREE.Mesh(geometry[part.mesh].surface, sides); // also while coarse ones are drawn
     mesh.matrixWorld.copy(part.mesh3d.matrixWorld);
     for (const hit of ray.intersectObject(mesh, false)) {
-      if (best && hit.distance >= best.distance) break;
       if (section && section.distanceToPoint(hit.point) < 0) continue;
       const normal = hit.face.normal.clone().transformDirection(mesh.matrixWorld);
       const inner = normal.dot(ray.ray.direction) > 0;
-      best = { part, point: hit.point, normal, face: hit.faceIndex, distance: hit.distance, cut: false };
-      if (inner && section) cutAt(best, ray.ray, section);
+      const found = { part, point: hit.point, normal, face: hit.faceIndex, distance: hit.distance, cut: false };
+      if (inner && section) cutAt(found, ray.ray, section);
+      // Another part's outer side may lie on this one's inner side, behind the cut.
+      if (!best || found.distance < best.distance) best = found;
       break;
     }
   }

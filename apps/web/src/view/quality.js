@@ -14,7 +14,7 @@ export class Quality {
     this.width = 0; // until the page is laid out
     // Eight bits as the screen has them, written and read as what they mean, so that blending is as light is. The copy has
     // the canvas's own pixels: there is nothing to filter.
-    this.fine = new THREE.WebGLRenderTarget(1, 1, { colorSpace: THREE.SRGBColorSpace, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, samples });
+    this.fine = new THREE.WebGLRenderTarget(1, 1, { colorSpace: THREE.SRGBColorSpace, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, stencilBuffer: true, samples });
     this.copy = new THREE.ShaderMaterial({
       uniforms: { picture: { value: this.fine.texture } },
       vertexShader: "varying vec2 at; void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }",

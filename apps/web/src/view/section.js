@@ -1,5 +1,5 @@
 // The section plane: along an axis, along the screen or along a face, moved by a slider, keys, or its handle in the
-// picture; Shift on the handle tilts it.
+// picture; Shift on the handle tilts it. What is cut away is on the eye's side, so that one sees the cut.
 import * as THREE from "three";
 import { cssColor } from "../common/theme.js";
 import { toggle } from "./controls.js";
@@ -8,11 +8,16 @@ import { project, rayAt } from "./picking.js";
 const $ = (id) => document.getElementById(id);
 const grabPixels = 22;
 const tiltPerPixel = 0.006; // rad
+const keyTilt = (3 * Math.PI) / 180, keyMove = 0.01; // rad, share of the scene's reach
+// Where one looks along the handle by less than this, a pixel would move it far: its way is then up and down the screen.
+const along = Math.cos((20 * Math.PI) / 180);
+// Of the reach: faces that lie exactly in the plane would be cut here and not there, by rounding.
+const aside = 1e-4;
 
 export class Section {
-  // picked(): the normal of the face that was picked last, or null.
-  constructor(stage, viewpoint, picked) {
-    Object.assign(this, { stage, viewpoint, picked, normal: null, kind: "off" });
+  // picked(): the normal of the face that was picked last, or null. changed(keys): whether keys move it, for the page to show.
+  constructor(stage, viewpoint, { picked, changed }) {
+    Object.assign(this, { stage, viewpoint, picked, changed, normal: null, kind: "off", keys: false });
     const kinds = { off: "Off", x: "x", y: "y", z: "z", screen: "Screen", face: "Face" };
     this.buttons = Object.entries(kinds).map(([kind, label]) => {
       const button = toggle(label, kind === "off", () => this.set(kind));
@@ -35,7 +40,11 @@ export class Section {
       normal = this.picked()?.clone().negate() ?? null;
       if (!normal) return;
     }
-    [this.kind, this.normal] = [kind, normal];
+    if (normal?.dot(this.viewpoint.axis(2)) > 1e-3) normal.negate();
+    Object.assign(this, { kind, normal });
+    if (!normal) this.letGo();
+    this.place = this.stage.box.getCenter(new THREE.Vector3());
+    $("flip").checked = false;
     $("cut").value = 0.5;
     this.apply();
   }
@@ -43,11 +52,39 @@ export class Section {
     const order = ["off", "x", "y", "z"];
     this.set(order[(order.indexOf(this.kind) + 1) % 4]);
   }
-  // By so many hundredths of what there is.
+  // By such a share of what there is.
   shift(by) {
     if (!this.normal) return;
-    $("cut").value = Number($("cut").value) + by / 100;
+    $("cut").value = Number($("cut").value) + by;
     this.apply();
+  }
+  // About the handle's place: right about the screen's up, down about its right.
+  tilt(right, down) {
+    if (!this.normal) return;
+    this.place.copy(this.handle.position);
+    this.normal.applyAxisAngle(this.viewpoint.axis(1), right).applyAxisAngle(this.viewpoint.axis(0), down).normalize();
+    this.kind = "tilted";
+    const [low, high] = this.reach();
+    $("cut").value = (high - this.place.dot(this.normal)) / (high - low);
+    this.apply();
+  }
+
+  // The plane is moved and tilted by keys, or no longer.
+  toggleKeys() {
+    this.keys = this.normal !== null && !this.keys;
+    this.changed(this.keys);
+  }
+  letGo() {
+    if (this.keys) this.toggleKeys();
+  }
+  // Whether the key was the plane's.
+  key(event) {
+    const by = { ArrowRight: [keyTilt, 0], ArrowLeft: [-keyTilt, 0], ArrowUp: [0, -keyTilt], ArrowDown: [0, keyTilt] }[event.key];
+    const pages = { PageUp: -keyMove, PageDown: keyMove }[event.key];
+    if (!this.keys || (!by && !pages) || event.shiftKey) return false;
+    if (by) this.tilt(...by);
+    else this.shift(pages);
+    return true;
   }
 
   // How far the scene reaches along the normal: [low, high].
@@ -65,9 +102,10 @@ export class Section {
     if (on) {
       const [low, high] = this.reach();
       const at = high + Number($("cut").value) * (low - high);
+      this.showHandle(new THREE.Plane(this.normal, -at), high - low);
       plane = new THREE.Plane(this.normal.clone(), -at);
-      this.showHandle(plane, high - low);
       if ($("flip").checked) plane.negate();
+      plane.constant -= aside * (high - low);
     }
     this.handle.visible = on;
     this.stage.setSection(plane);
@@ -91,8 +129,7 @@ export class Section {
 
   showHandle(plane, reach) {
     this.material.color.set(cssColor("--accent"));
-    const middle = this.stage.box.getCenter(new THREE.Vector3());
-    plane.projectPoint(middle, this.handle.position);
+    plane.projectPoint(this.place, this.handle.position);
     this.handle.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), plane.normal);
     this.handle.scale.setScalar(0.07 * this.stage.radius);
     this.length = reach;
@@ -106,11 +143,23 @@ export class Section {
     event.preventDefault();
     this.viewpoint.controls.enabled = false;
     this.stage.canvas.setPointerCapture(event.pointerId);
-    this.grip = { x: event.clientX, y: event.clientY, at: Number($("cut").value), on: this.alongAt(event) };
+    this.grip = { x: event.clientX, y: event.clientY };
+    this.regrip(event);
+  }
+
+  // A motion along the handle begins here.
+  regrip(event) {
+    const sight = this.handle.position.clone().sub(this.stage.camera.position);
+    const metersPerPixel = this.viewpoint.viewHeight(sight.length()) / this.stage.canvas.clientHeight;
+    const slope = sight.normalize().dot(this.normal);
+    // Up the screen is away from the eye.
+    this.grip.upright = Math.abs(slope) > along ? -Math.sign(slope) * metersPerPixel : null;
+    Object.assign(this.grip, { at: Number($("cut").value), on: this.alongAt(event) });
   }
 
   // How far along the handle's axis the pointer points.
   alongAt(event) {
+    if (this.grip.upright !== null) return event.clientY * this.grip.upright;
     const { ray } = rayAt(this.stage, event.clientX, event.clientY);
     const end = this.handle.position.clone().addScaledVector(this.normal, 1e3 * this.stage.radius);
     const from = this.handle.position.clone().addScaledVector(this.normal, -1e3 * this.stage.radius);
@@ -122,11 +171,12 @@ export class Section {
   move(event) {
     if (!this.grip) return;
     const [dx, dy] = [event.clientX - this.grip.x, event.clientY - this.grip.y];
+    Object.assign(this.grip, { x: event.clientX, y: event.clientY });
     if (event.shiftKey) {
-      this.normal.applyAxisAngle(this.viewpoint.axis(1), dx * tiltPerPixel).applyAxisAngle(this.viewpoint.axis(0), dy * tiltPerPixel).normalize();
-      this.kind = "tilted";
-      Object.assign(this.grip, { x: event.clientX, y: event.clientY });
-    } else $("cut").value = this.grip.at - (this.alongAt(event) - this.grip.on) / this.length;
+      this.tilt(dx * tiltPerPixel, dy * tiltPerPixel);
+      return this.regrip(event);
+    }
+    $("cut").value = this.grip.at - (this.alongAt(event) - this.grip.on) / this.length;
     this.apply();
   }
 

@@ -1,6 +1,7 @@
 // The parts in 3-D. Draws only when something changed.
 import * as THREE from "three";
 import { cssColor } from "../common/theme.js";
+import { Cap } from "./cap.js";
 import { coarseMesh } from "./lod.js";
 import { dress, partMaterials } from "./materials.js";
 import { pick } from "./picking.js";
@@ -32,7 +33,7 @@ const geometryOf = (attributes) => {
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: false });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: false, stencil: true });
     this.quality = new Quality(this.renderer);
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.001, 10);
@@ -87,18 +88,32 @@ export class Stage {
   }
 
   addPart({ name, mesh, path = [], color = null }, number) {
-    const { surface, edges } = this.geometry[mesh];
-    const materials = partMaterials(number);
+    const { surface, edges, closed } = this.geometry[mesh];
+    const materials = partMaterials(number, closed);
     const part = {
       name, mesh, path, fileColor: color && new THREE.Color().setRGB(...color.slice(0, 3), THREE.SRGBColorSpace), group: new THREE.Group(),
       pose: null, visible: true, faded: color !== null && color[3] < 0.99, materials,
-      mesh3d: new THREE.Mesh(surface, materials.surface), inside: new THREE.Mesh(surface, materials.cut), lines3d: new THREE.LineSegments(edges, materials.lines),
+      mesh3d: new THREE.Mesh(surface, materials.surface), lines3d: new THREE.LineSegments(edges, materials.lines),
     };
     part.radius = surface.boundingSphere.radius;
-    part.inside.renderOrder = 2;
-    part.group.add(part.mesh3d, part.inside, part.lines3d);
+    part.group.add(part.mesh3d, part.lines3d);
     this.world.add(part.group);
+    this.addInside(part, number);
     return part;
+  }
+
+  // What is seen of a part where it is cut open.
+  addInside(part, number) {
+    const { surface, closed } = this.geometry[part.mesh];
+    if (closed) {
+      part.cap = new Cap(surface, part.materials.cut, number);
+      this.scene.add(part.cap.face);
+    } else {
+      part.inside = new THREE.Mesh(surface, part.materials.cut);
+      part.inside.renderOrder = 2;
+    }
+    part.insides = part.cap?.counters ?? [part.inside];
+    part.group.add(...part.insides);
   }
 
   addCoarse(share) {
@@ -194,7 +209,7 @@ export class Stage {
     const faded = part.faded || this.seesThrough.has(this.parts.indexOf(part));
     const selected = part === this.parts[this.selected];
     dress(part.materials, { color: this.colorOf(part), held: part.held, selected, faded, section: this.section });
-    part.inside.visible = (this.section !== null && !faded) || !this.geometry[part.mesh].closed;
+    part.cap?.cut(faded ? null : this.section);
     part.mesh3d.renderOrder = faded ? 3 : 0;
   }
 
@@ -269,6 +284,7 @@ export class Stage {
       const coarse = moving && (this.heavy === true || this.slow);
       if (this.heavy) this.useCoarse(coarse);
       this.onDraw?.();
+      this.placeCaps();
       const triangles = this.quality.draw(this.scene, this.camera, coarse);
       ++this.drawn;
       this.last = { coarse, triangles, pixels: this.canvas.width * this.canvas.height };
@@ -276,6 +292,14 @@ export class Stage {
       ++this.drawnCoarse;
       this.rests();
     });
+  }
+
+  placeCaps() {
+    for (const { cap, group, mesh } of this.parts ?? []) {
+      if (!cap?.section) continue;
+      group.updateMatrixWorld();
+      cap.place(this.geometry[mesh].surface.boundingSphere.clone().applyMatrix4(group.matrixWorld), group.visible);
+    }
   }
 
   // The fine picture comes when no coarse one has followed for twice the time between the last two: a slow machine must not
@@ -299,7 +323,7 @@ export class Stage {
     this.coarse = on;
     for (const part of this.parts) {
       const { surface, coarse } = this.geometry[part.mesh];
-      part.mesh3d.geometry = part.inside.geometry = on ? coarse : surface;
+      for (const mesh of [part.mesh3d, ...part.insides]) mesh.geometry = on ? coarse : surface;
       part.lines3d.visible = !on;
     }
   }

@@ -4,7 +4,7 @@ import { distance, norm } from "./frame.js";
 import { project } from "./picking.js";
 
 export function addTestDoor(page) {
-  const { stage, viewpoint, overlay, guide, hand, section, measure } = page;
+  const { stage, viewpoint, overlay, guide, hand, section, measure, contact } = page;
   const length = (arrow) => (arrow.group.visible ? arrow.length : 0);
   window.__tegotae = {
     get state() {
@@ -18,8 +18,8 @@ export function addTestDoor(page) {
         arrows: { force: length(overlay.force), torque: length(overlay.torque) },
         force: frame ? norm(frame.force) : 0, lag: frame ? distance(frame.x, frame.y) : 0,
         camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), up: viewpoint.up, parallel: viewpoint.parallel,
-        section: stage.section && { normal: stage.section.normal.toArray(), constant: stage.section.constant }, handle: section.handle.position.toArray(),
-        measured: measure.rows, picked: measure.picked.map(({ kind }) => kind),
+        section: stage.section && { normal: stage.section.normal.toArray(), constant: stage.section.constant }, handle: section.handle.position.toArray(), caps: stage.parts?.filter(({ cap }) => cap?.face.visible).map(({ name }) => name),
+        contact: contact.at, measured: measure.rows, picked: measure.picked.map(({ kind }) => kind),
         count: player?.count, playing: player?.playing ?? false, message: document.getElementById("message").textContent,
       };
     },
