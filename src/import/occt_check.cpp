@@ -300,8 +300,8 @@ std::vector<std::string> shared_shapes(const Handle(XSControl_WorkSession) & ses
       names += (names.empty() ? "\"" : ", \"") + product_name(*product) + '"';
     const auto is_placed = [&](const Handle(Definition) & product) { return placed.count(product.get()) > 0; };
     const auto alone = std::count_if(group.begin(), group.end(), [&](const auto& p) { return !is_placed(p); });
-    notes.push_back("the products " + names + " have one shape (#" + std::to_string(shape) + "), which is read " +
-                    (alone == 0 ? "at each place: its parts may be called after one of them"
+    notes.push_back(names + " of #" + std::to_string(shape) + ", which is read " +
+                    (alone == 0                                           ? "at each place, called after one of them"
                      : alone == static_cast<std::ptrdiff_t>(group.size()) ? "once, not for each"
                                                                           : "only where an assembly places it"));
   }
@@ -316,14 +316,13 @@ std::vector<std::string> unplaced(const Handle(XSControl_WorkSession) & session)
     if (!shown.IsNull() && !shown->RepresentedProductRelation().IsNull())
       placed.insert(shown->RepresentedProductRelation()->Definition().Value().get());
   }
-  std::vector<std::string> notes;
+  std::vector<std::string> instances;
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
     if (!use.IsNull() && placed.count(use.get()) == 0)
-      notes.push_back("the instance #" + std::to_string(model->IdentLabel(use)) +
-                      " has no place of its own: it is read only where the shape of its assembly has it");
+      instances.push_back("#" + std::to_string(model->IdentLabel(use)));
   }
-  return notes;
+  return instances;
 }
 
 }  // namespace tegotae

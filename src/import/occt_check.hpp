@@ -18,10 +18,11 @@ std::vector<std::string> named_files(const std::string& path, const Handle(XSCon
 /// Solids of representations of which OpenCASCADE has made nothing, each "#17 is a BLOCK".
 std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & session);
 
-/// Representations that several products have for their shape, of which OpenCASCADE makes one: a note each.
+/// Representations that several products have for their shape, of which OpenCASCADE makes one, each
+/// "\"left\", \"right\" of #17, which is read ...".
 std::vector<std::string> shared_shapes(const Handle(XSControl_WorkSession) & session);
 
-/// Instances of products that no entity places, a note each.
+/// Instances of products that no entity places, each "#17".
 std::vector<std::string> unplaced(const Handle(XSControl_WorkSession) & session);
 
 }  // namespace tegotae

@@ -10,6 +10,7 @@
 #include "import/file_check.hpp"
 #include "import/read_parts.hpp"
 #include "import/step_entities.hpp"
+#include "import/utf8.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -56,7 +57,8 @@ bool is_step(const std::string& path) {
 std::string check_step(const std::string& path) {
   std::string bytes = read_bytes(path);
   require_single_bytes(path, bytes);
-  bytes = plain_step(path, std::move(bytes));
+  // Names in Latin-1, which older programs write, are no reason to lose letters.
+  bytes = plain_step(path, to_utf8(bytes));
   const std::string_view all(bytes);
   const std::size_t begin = all.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) throw Error(path + ": empty file");

@@ -11,8 +11,9 @@
 #include <Standard_Failure.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
-#include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <gp_Quaternion.hxx>
 #include <map>
 #include <optional>
@@ -28,8 +30,10 @@
 
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
+#include "import/note_texts.hpp"
 #include "import/occt_check.hpp"
 #include "import/occt_faces.hpp"
+#include "import/occt_names.hpp"
 #include "import/occt_shape.hpp"
 #include "import/occt_triangles.hpp"
 #include "import/part_file.hpp"
@@ -49,16 +53,6 @@ Pose pose_of(const TopLoc_Location& location) {
   X.q = Quat(q.W(), q.X(), q.Y(), q.Z()).normalized();
   X.p = meters(t.TranslationPart());
   return X;
-}
-
-std::string name_of(const TDF_Label& label) {
-  Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return "";
-  const TCollection_ExtendedString& text = name->Get();
-  std::string bytes(static_cast<std::size_t>(text.LengthOfCString()) + 1, '\0');
-  Standard_PCharacter at = bytes.data();
-  bytes.resize(static_cast<std::size_t>(text.ToUTF8CString(at)));
-  return bytes;
 }
 
 /// Keeps OpenCASCADE from printing for as long as it lives.
@@ -86,8 +80,22 @@ double rounding_margin(const std::vector<Vec3>& exact, const std::vector<Vec3>& 
   return std::ldexp(largest, -23);
 }
 
-// Facets of a part that nothing mates with in its file are so many times smaller than the part: 50 um for 200 mm.
-constexpr double kChordsAcross = 4000;
+// Facets of a part that nothing mates with in its file are so many times smaller than the part: 50 um for 200 mm; those
+// of its cylinders and cones, of which a mate may be in another file, 5 um for 200 mm.
+constexpr double kChordsAcross = 4000, kFineChordsAcross = 40000;
+
+/// Whether there are curves or points in `shape` that bound no face.
+bool has_lines(const TopoDS_Shape& shape, const TransferredTriangles& triangles) {
+  if (shape.ShapeType() > TopAbs_FACE && shape.ShapeType() < TopAbs_SHAPE) return true;
+  if (shape.ShapeType() != TopAbs_COMPOUND || triangles.stands_for_some(shape)) return false;
+  for (TopoDS_Iterator i(shape); i.More(); i.Next())
+    if (has_lines(i.Value(), triangles)) return true;
+  return false;
+}
+
+std::string in_quotes(const std::string& name) {
+  return '"' + name + '"';
+}
 
 class StepReader {
  public:
@@ -105,8 +113,12 @@ class StepReader {
     open();
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    std::vector<std::string> groups;
-    for (const TDF_Label& root : roots) add(root, root, TopLoc_Location(), groups, std::nullopt);
+    for (const TDF_Label& root : roots) {
+      if (content_of(root).faces)
+        add(root, root, TopLoc_Location(), {}, std::nullopt);
+      else
+        leave_out(root, name_of(root), "");
+    }
     pair_faces();
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       if (options_.progress) options_.progress(("tessellating " + described(leaves_[i])).c_str(), i, leaves_.size());
@@ -114,6 +126,7 @@ class StepReader {
     }
     tell_unread();
     drop_empty();
+    notes_.tell(assembly_.notes);
     return std::move(assembly_);
   }
 
@@ -125,8 +138,14 @@ class StepReader {
     std::vector<CadFace> cad;
     std::vector<bool> fine;
     std::optional<Color> color;
-    bool tessellated = false;
-    double coarse = 0;  // m, chord of the faces that are not fine
+    double chord = 0, coarse = 0;  // m, of the faces that are fine, and of the others
+  };
+
+  /// What a product holds, itself or in its components.
+  struct Content {
+    bool faces = false;  // or triangles
+    bool lines = false;  // beside faces
+    bool taken = false;  // something that was taken out of the text, read or not
   };
 
   void open() {
@@ -153,14 +172,13 @@ class StepReader {
     face_names_.emplace(session);
     const bool has_colors = check_entities(path_, session);
     reader.SetColorMode(has_colors);
-    if (!has_colors) assembly_.notes.push_back("colors are not read: their entities are damaged");
-    for (const std::string& file : named_files(path_, session))
-      assembly_.notes.push_back("the file \"" + file + "\" that it names is missing: its part is left out");
+    if (!has_colors) notes_.add(note_texts::kNoColors, "the file");
+    for (const std::string& file : named_files(path_, session)) notes_.add(note_texts::kMissingFile, in_quotes(file));
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
     for (const std::string& solid : unread_solids(session)) unread_.push_back(solid);
     unplaced_ = unplaced(session);
-    for (const std::string& note : shared_shapes(session)) assembly_.notes.push_back(note);
+    for (const std::string& shared : shared_shapes(session)) notes_.add(note_texts::kSharedShape, shared);
     check_named_files(reader);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
@@ -175,37 +193,99 @@ class StepReader {
         check_entities(path_ + ": " + file.Key().ToCString(), file.Value()->GetWS());
   }
 
-  /// `use` is the instance, `what` the product it shows (the same for a root).
-  void add(const TDF_Label& use, const TDF_Label& what, const TopLoc_Location& where, std::vector<std::string>& groups,
+  /// `use` is the instance, `what` the product it shows (the same for a root), which has faces; `groups` are the
+  /// products that it is in.
+  void add(const TDF_Label& use, const TDF_Label& what, const TopLoc_Location& where, std::vector<std::string> groups,
            std::optional<Color> color) {
     if (const auto own = color_of(use)) color = own;
-    std::string name = name_of(use);
-    if (name.rfind("=>", 0) == 0 || is_made_up(name, {"nauo"})) name = name_of(what);
+    const std::string name = name_of_use(use, what);
     if (!XCAFDoc_ShapeTool::IsAssembly(what)) {
       add_leaf(what, name, where, groups, color);
       return;
     }
-    groups.push_back(name);
     TDF_LabelSequence components;
     XCAFDoc_ShapeTool::GetComponents(what, components);
+    std::vector<std::pair<TDF_Label, TDF_Label>> filled;  // instance, product
     for (const TDF_Label& component : components) {
       TDF_Label product;
-      if (XCAFDoc_ShapeTool::GetReferredShape(component, product))
-        add(component, product, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
+      if (!XCAFDoc_ShapeTool::GetReferredShape(component, product)) continue;
+      if (content_of(product).faces)
+        filled.emplace_back(component, product);
+      else
+        leave_out(product, name_of_use(component, product), name);
     }
-    groups.pop_back();
+    // A product of one nameless solid is that solid.
+    const bool is_part = filled.size() == 1 && !XCAFDoc_ShapeTool::IsAssembly(filled[0].second) &&
+                         is_default_name(name_of_use(filled[0].first, filled[0].second)) && !is_default_name(name);
+    if (is_part) {
+      const auto& [component, product] = filled[0];
+      if (const auto own = color_of(component)) color = own;
+      add_leaf(product, name, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
+      return;
+    }
+    groups.push_back(name);
+    for (const auto& [component, product] : filled)
+      add(component, product, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
   }
 
-  void add_leaf(const TDF_Label& what, const std::string& name, const TopLoc_Location& where,
+  /// The instance's name, or the product's where it has none.
+  static std::string name_of_use(const TDF_Label& use, const TDF_Label& what) {
+    const std::string name = name_of(use);
+    return is_default_name(name) || is_made_up(name, {"nauo"}) ? name_of(what) : name;
+  }
+
+  /// What is without faces becomes no part. `what`, called `name`, is a component of the product `of`, if of any.
+  void leave_out(const TDF_Label& what, const std::string& name, const std::string& of) {
+    const Content content = content_of(what);
+    if (content.taken) return;  // told by its number, or curves of a drawing
+    if (of.empty() || !is_default_name(name))
+      notes_.add(note_texts::kNoFaces, in_quotes(name));
+    else if (content.lines)
+      notes_.add(note_texts::kLines, in_quotes(of));
+  }
+
+  Content content_of(const TDF_Label& what) {
+    TCollection_AsciiString entry;
+    TDF_Tool::Entry(what, entry);
+    const auto known = contents_.find(entry.ToCString());
+    if (known != contents_.end()) return known->second;
+    Content content;
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(what);
+    if (XCAFDoc_ShapeTool::IsAssembly(what)) {
+      TDF_LabelSequence components;
+      XCAFDoc_ShapeTool::GetComponents(what, components);
+      for (const TDF_Label& component : components) {
+        TDF_Label product;
+        if (!XCAFDoc_ShapeTool::GetReferredShape(component, product)) continue;
+        const Content one = content_of(product);
+        content = {content.faces || one.faces, content.lines || one.lines, content.taken || one.taken};
+      }
+    } else if (!shape.IsNull()) {
+      content = {TopExp_Explorer(shape, TopAbs_FACE).More() || triangles_.are_in(shape), has_lines(shape, triangles_),
+                 triangles_.any_in(shape)};
+    }
+    contents_[entry.ToCString()] = content;
+    return content;
+  }
+
+  void add_leaf(const TDF_Label& what, std::string name, const TopLoc_Location& where,
                 const std::vector<std::string>& groups, std::optional<Color> color) {
     TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(what);
-    if (shape.IsNull()) return;
     const TopLoc_Location own = shape.Location();
     shape.Location(TopLoc_Location());
+    if (is_default_name(name)) {
+      const auto product = std::find_if_not(groups.rbegin(), groups.rend(), is_default_name);
+      name = product != groups.rend() ? *product : std::filesystem::path(path_).stem().string();
+    }
     TCollection_AsciiString entry;
     TDF_Tool::Entry(what, entry);
     const auto [known, fresh] = leaf_of_.emplace(entry.ToCString(), leaves_.size());
-    if (fresh) leaves_.push_back({shape, name_of(what), faces_of(shape), {}, {}, color_of_product(what, shape)});
+    if (fresh) {
+      const std::string self = name_of(what);
+      leaves_.push_back(
+          {shape, is_default_name(self) ? name : self, faces_of(shape), {}, {}, color_of_product(what, shape)});
+      if (content_of(what).lines) notes_.add(note_texts::kLines, in_quotes(leaves_.back().name));
+    }
     AssemblyPart part;
     part.name = name;
     part.path = groups;
@@ -244,7 +324,8 @@ class StepReader {
   }
 
   /// Finds the faces that get the fine tessellation: those that mate. Of a part alone in its file nobody knows what it
-  /// will meet: fits are round as a rule, and facets of cylinders and cones are cheap.
+  /// will meet: fits are round as a rule, and facets of cylinders and cones are cheap, if they grow with the part.
+  /// Pieces that are split may mate with each other.
   void pair_faces() {
     std::vector<std::vector<CadFace>> faces;
     const bool alone = assembly_.parts.size() == 1;
@@ -252,7 +333,10 @@ class StepReader {
       for (const TopoDS_Face& face : leaf.faces) leaf.cad.push_back(describe(face));
       for (const CadFace& face : leaf.cad)
         leaf.fine.push_back(alone && (face.kind == FaceKind::cylinder || face.kind == FaceKind::cone));
+      leaf.chord = options_.chord;
       leaf.coarse = std::max(options_.chord, options_.coarse_chord);
+      if (alone && !options_.split)
+        leaf.chord = std::clamp(size_of(leaf) / kFineChordsAcross, options_.chord, leaf.coarse);
       if (alone) leaf.coarse = std::clamp(size_of(leaf) / kChordsAcross, options_.chord, leaf.coarse);
       faces.push_back(leaf.cad);
     }
@@ -263,7 +347,7 @@ class StepReader {
       leaves_[b.shape].fine[pair.face_b] = true;
       mating.add(a, b, leaves_[a.shape].cad[pair.face_a].kind);
     }
-    mating.tell(options_.chord, assembly_.notes);
+    mating.tell(options_.chord, notes_);
   }
 
   /// Name and size: facets by the million come from a unit that is not the part's.
@@ -285,64 +369,52 @@ class StepReader {
     Leaf& leaf = leaves_[i];
     // Fine faces first: what is finer than asked for is kept, and its edges with it.
     for (std::size_t f = 0; f < leaf.faces.size(); ++f)
-      if (leaf.fine[f]) tessellate(leaf.faces[f], options_.chord);
+      if (leaf.fine[f]) tessellate(leaf.faces[f], leaf.chord);
     tessellate(leaf.shape, leaf.coarse);
     std::vector<std::size_t> missing;
     TessellatedShape shape = joined(leaf.faces, missing);
-    const std::string self = '"' + leaf.name + '"';
-    if (!missing.empty())
-      assembly_.notes.push_back(self + ": no triangles could be made of " +
-                                face_names_->text(missing, leaf.faces, leaf.cad) +
-                                ": the part has a hole there; export it anew, or as a mesh");
+    const std::string self = in_quotes(leaf.name);
+    const auto at = [&](const std::vector<std::size_t>& which) {
+      return self + " at " + face_names_->text(which, leaf.faces, leaf.cad);
+    };
+    if (!missing.empty()) notes_.add(note_texts::kNoTriangles, at(missing));
     const std::vector<std::size_t> open = faces_with_free_edges(shape);
     const TriangleMesh plain = triangles_.in(leaf.shape);
-    leaf.tessellated = triangles_.any_in(leaf.shape);
-    if (!shape.mesh.triangles.empty())
-      note(self, keep_clearance(shape, leaf.cad, rounding_margin(shape.mesh.vertices, plain.vertices)));
+    const double margin = rounding_margin(shape.mesh.vertices, plain.vertices);
+    if (!shape.mesh.triangles.empty()) note(self, keep_clearance(shape, leaf.cad, margin), margin);
     append(plain, Matrix34::Identity(), 1, shape.mesh);
     if (!shape.mesh.triangles.empty()) {
       shape.mesh.name = leaf.name;
       if (!open.empty())
-        assembly_.notes.push_back(self + ": not closed at " + face_names_->text(open, leaf.faces, leaf.cad) +
-                                  ": its inside is not known; if it is to be a solid, sew it in the CAD program");
+        notes_.add(note_texts::kNotClosed, at(open));
       else if (!report(shape.mesh).closed)
-        assembly_.notes.push_back(self + ": its triangles are not closed: its inside is not known");
+        notes_.add(note_texts::kTrianglesNotClosed, self);
     }
     assembly_.shapes.push_back(std::make_shared<const TriangleMesh>(std::move(shape.mesh)));
     leaf.shape.Nullify();
   }
 
-  void note(const std::string& self, const ClearanceReport& kept) {
-    const auto micrometers = [](double m) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.3g um", 1e6 * m);
-      return std::string(text);
-    };
-    if (kept.into_clearance > 0)
-      assembly_.notes.push_back(self + ": facets of a cylinder reach " + micrometers(kept.into_clearance) +
-                                " into a clearance");
-    if (kept.bent > 1e-9)
-      assembly_.notes.push_back(self + ": a plane that runs into a hole tangentially is bent by " +
-                                micrometers(kept.bent));
-    if (kept.turned > 0)
-      assembly_.notes.push_back(self + ": " + std::to_string(kept.turned) + " facets beside holes were turned over");
+  /// Of a few rounding steps of the file nothing is told: no chord helps against them.
+  void note(const std::string& self, const ClearanceReport& kept, double margin) {
+    const double told = std::max(1e-8, 4 * margin);
+    if (kept.into_clearance > told) notes_.add(note_texts::kReachesIn, self, kept.into_clearance);
+    if (kept.bent > told) notes_.add(note_texts::kBent, self, kept.bent);
+    if (kept.turned > 0) notes_.add(note_texts::kTurned, self);
   }
 
   void tell_unread() {
-    for (const std::string& what : unplaced_) assembly_.notes.push_back(what);
-    for (const std::string& what : unread_) assembly_.notes.push_back(what + ", which is not read: left out");
-    for (const std::uint64_t id : triangles_.unused())
-      assembly_.notes.push_back("the triangles of #" + std::to_string(id) + " are of no product: left out");
+    for (const std::string& what : unplaced_) notes_.add(note_texts::kUnplaced, what);
+    for (const std::string& what : unread_) notes_.add(note_texts::kUnread, what);
+    for (const std::uint64_t id : triangles_.unused()) notes_.add(note_texts::kNoProduct, '#' + std::to_string(id));
   }
 
+  /// Parts of which no triangles could be made, which was told.
   void drop_empty() {
     auto& parts = assembly_.parts;
     const auto empty = [&](const AssemblyPart& part) { return assembly_.shapes[part.shape]->triangles.empty(); };
-    for (const AssemblyPart& part : parts)
-      if (empty(part) && !leaves_[part.shape].tessellated)
-        assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
-    if (parts.empty() && !unplaced_.empty()) throw Error(path_ + ": " + unplaced_.front());
+    if (parts.empty() && !unplaced_.empty())
+      throw Error(path_ + ": " + note_texts::kUnplaced.one + unplaced_.front() + " has no place: nothing can be read");
     if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
   }
 
@@ -353,10 +425,12 @@ class StepReader {
   Handle(XCAFDoc_ColorTool) colors_;
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
+  std::map<std::string, Content> contents_;
   TransferredTriangles triangles_;
   std::optional<FaceNames> face_names_;  // since the file is open
-  std::vector<std::string> unplaced_;    // instances, a note each
+  std::vector<std::string> unplaced_;    // instances, each "#17"
   std::vector<std::string> unread_;      // shapes, each "#17 is a ..."
+  ImportNotes notes_;
   Assembly assembly_;
 };
 

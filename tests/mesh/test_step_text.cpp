@@ -188,7 +188,7 @@ TEST_CASE("STEP: solids by operations and instances without a place are told, ne
   both.shape(plate, {both.origin(), both.block(), pin});
   const Assembly a = read(both);
   check_block(a, 0);
-  CHECK(has_note(a, r(pin) + " is a BLOCK, which is not read: left out"));
+  CHECK(has_note(a, r(pin) + " is a BLOCK: not read, so left out"));
 
   StepText alone;
   const int sphere = alone.add("SPHERE('',5.," + r(alone.point(0, 0, 0)) + ")");
@@ -207,7 +207,7 @@ TEST_CASE("STEP: solids by operations and instances without a place are told, ne
   const int use = loose.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','loose',''," + r(top) + "," + r(part) + ",$)");
   const Assembly b = read(loose);
   REQUIRE(b.parts.size() == 1);
-  CHECK(has_note(b, "the instance " + r(use) + " has no place"));
+  CHECK(has_note(b, "the instance " + r(use) + ": without a place"));
 }
 
 TEST_CASE("STEP: marks, comments, sections and schemas around the entities", "[step]") {
@@ -268,7 +268,7 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   folder.write("a.step", naming("other.stp"));
   const Assembly one = read_assembly(folder / "a.step");
   CHECK(one.parts.size() == 1);
-  CHECK(has_note(one, "the file \"other.stp\" that it names is missing"));
+  CHECK(has_note(one, "the file \"other.stp\": named in this one and missing"));
   folder.write("a.step", naming(elsewhere / "child.stp"));
   CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("no regular file in its folder or below"));
   const std::string up = "../" + std::filesystem::path(elsewhere / "child.stp").parent_path().filename().string();
@@ -311,7 +311,7 @@ TEST_CASE("STEP: products that have one shape between them are named", "[step]")
   shown_by(flat, right, shape);
   const Assembly once = read(flat);
   CHECK(once.parts.size() == 1);
-  CHECK(has_note(once, "\"left\", \"right\" have one shape (" + r(shape) + "), which is read once"));
+  CHECK(has_note(once, "the products \"left\", \"right\" of " + r(shape) + ", which is read once"));
 
   // One of them in an assembly, then both.
   StepText s;

@@ -223,7 +223,7 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
     one.shape(one.product("plate"), {one.origin(), one.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
     const Assembly a = read_text_of(with(one, item).text());
     REQUIRE(a.parts.size() == 1);
-    CHECK(has_note(a, r(item) + " is a " + kind + ", which is not read"));
+    CHECK(has_note(a, r(item) + " is a " + kind + ": not read, so left out"));
   }
   StepText lines = s;
   const int tip = solid(lines);
@@ -237,7 +237,7 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
   lost.shape(lost.product("plate"), {lost.origin(), lost.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
   const int item = solid(lost);
   lost.representation({item}, kShown);
-  CHECK(has_note(read_text_of(lost.text()), "the triangles of " + r(item) + " are of no product"));
+  CHECK(has_note(read_text_of(lost.text()), "the triangles of " + r(item) + ": of no product"));
 }
 
 TEST_CASE("STEP: texts and comments with signs of the language in them change nothing", "[step]") {
