@@ -10,10 +10,7 @@
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TDF_LabelSequence.hxx>
-#include <TDF_Tool.hxx>
 #include <TDocStd_Document.hxx>
-#include <TopExp_Explorer.hxx>
-#include <TopoDS_Iterator.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -26,12 +23,14 @@
 #include <gp_Quaternion.hxx>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
 #include "import/note_texts.hpp"
 #include "import/occt_check.hpp"
+#include "import/occt_content.hpp"
 #include "import/occt_faces.hpp"
 #include "import/occt_names.hpp"
 #include "import/occt_shape.hpp"
@@ -84,15 +83,6 @@ double rounding_margin(const std::vector<Vec3>& exact, const std::vector<Vec3>& 
 // of its cylinders and cones, of which a mate may be in another file, 5 um for 200 mm.
 constexpr double kChordsAcross = 4000, kFineChordsAcross = 40000;
 
-/// Whether there are curves or points in `shape` that bound no face.
-bool has_lines(const TopoDS_Shape& shape, const TransferredTriangles& triangles) {
-  if (shape.ShapeType() > TopAbs_FACE && shape.ShapeType() < TopAbs_SHAPE) return true;
-  if (shape.ShapeType() != TopAbs_COMPOUND || triangles.stands_for_some(shape)) return false;
-  for (TopoDS_Iterator i(shape); i.More(); i.Next())
-    if (has_lines(i.Value(), triangles)) return true;
-  return false;
-}
-
 std::string in_quotes(const std::string& name) {
   return '"' + name + '"';
 }
@@ -114,7 +104,7 @@ class StepReader {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
     for (const TDF_Label& root : roots) {
-      if (content_of(root).faces)
+      if (contents_.of(root).faces)
         add(root, root, TopLoc_Location(), {}, std::nullopt);
       else
         leave_out(root, name_of(root), "");
@@ -139,13 +129,6 @@ class StepReader {
     std::vector<bool> fine;
     std::optional<Color> color;
     double chord = 0, coarse = 0;  // m, of the faces that are fine, and of the others
-  };
-
-  /// What a product holds, itself or in its components.
-  struct Content {
-    bool faces = false;  // or triangles
-    bool lines = false;  // beside faces
-    bool taken = false;  // something that was taken out of the text, read or not
   };
 
   void open() {
@@ -209,7 +192,7 @@ class StepReader {
     for (const TDF_Label& component : components) {
       TDF_Label product;
       if (!XCAFDoc_ShapeTool::GetReferredShape(component, product)) continue;
-      if (content_of(product).faces)
+      if (contents_.of(product).faces)
         filled.emplace_back(component, product);
       else
         leave_out(product, name_of_use(component, product), name);
@@ -236,36 +219,21 @@ class StepReader {
 
   /// What is without faces becomes no part. `what`, called `name`, is a component of the product `of`, if of any.
   void leave_out(const TDF_Label& what, const std::string& name, const std::string& of) {
-    const Content content = content_of(what);
-    if (content.taken) return;  // told by its number, or curves of a drawing
+    const Content content = contents_.of(what);
+    // Triangles were told by their number, or are curves of a drawing; instances are told once.
+    if (content.taken || !left_out_.insert(entry_of(what)).second) return;
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(what, components);
     if (of.empty() || !is_default_name(name))
       notes_.add(note_texts::kNoFaces, in_quotes(name));
-    else if (content.lines)
+    else if (content.lines && components.IsEmpty())
       notes_.add(note_texts::kLines, in_quotes(of));
-  }
-
-  Content content_of(const TDF_Label& what) {
-    TCollection_AsciiString entry;
-    TDF_Tool::Entry(what, entry);
-    const auto known = contents_.find(entry.ToCString());
-    if (known != contents_.end()) return known->second;
-    Content content;
-    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(what);
-    if (XCAFDoc_ShapeTool::IsAssembly(what)) {
-      TDF_LabelSequence components;
-      XCAFDoc_ShapeTool::GetComponents(what, components);
+    else
       for (const TDF_Label& component : components) {
         TDF_Label product;
-        if (!XCAFDoc_ShapeTool::GetReferredShape(component, product)) continue;
-        const Content one = content_of(product);
-        content = {content.faces || one.faces, content.lines || one.lines, content.taken || one.taken};
+        if (XCAFDoc_ShapeTool::GetReferredShape(component, product))
+          leave_out(product, name_of_use(component, product), of);
       }
-    } else if (!shape.IsNull()) {
-      content = {TopExp_Explorer(shape, TopAbs_FACE).More() || triangles_.are_in(shape), has_lines(shape, triangles_),
-                 triangles_.any_in(shape)};
-    }
-    contents_[entry.ToCString()] = content;
-    return content;
   }
 
   void add_leaf(const TDF_Label& what, std::string name, const TopLoc_Location& where,
@@ -277,14 +245,12 @@ class StepReader {
       const auto product = std::find_if_not(groups.rbegin(), groups.rend(), is_default_name);
       name = product != groups.rend() ? *product : std::filesystem::path(path_).stem().string();
     }
-    TCollection_AsciiString entry;
-    TDF_Tool::Entry(what, entry);
-    const auto [known, fresh] = leaf_of_.emplace(entry.ToCString(), leaves_.size());
+    const auto [known, fresh] = leaf_of_.emplace(entry_of(what), leaves_.size());
     if (fresh) {
       const std::string self = name_of(what);
       leaves_.push_back(
           {shape, is_default_name(self) ? name : self, faces_of(shape), {}, {}, color_of_product(what, shape)});
-      if (content_of(what).lines) notes_.add(note_texts::kLines, in_quotes(leaves_.back().name));
+      if (contents_.of(what).lines) notes_.add(note_texts::kLines, in_quotes(leaves_.back().name));
     }
     AssemblyPart part;
     part.name = name;
@@ -425,8 +391,9 @@ class StepReader {
   Handle(XCAFDoc_ColorTool) colors_;
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
-  std::map<std::string, Content> contents_;
+  std::set<std::string> left_out_;  // products
   TransferredTriangles triangles_;
+  ProductContents contents_{triangles_};
   std::optional<FaceNames> face_names_;  // since the file is open
   std::vector<std::string> unplaced_;    // instances, each "#17"
   std::vector<std::string> unread_;      // shapes, each "#17 is a ..."
