@@ -47,6 +47,13 @@ inline constexpr NoteText kSharedShape{"the products ", "groups of products",
 inline constexpr NoteText kNoColors{"", "files", "colors are damaged and not read",
                                     "`color` in the scene file gives a part its color"};
 
+// STEP: what is read otherwise than it may be meant.
+inline constexpr NoteText kHidden{"", "bodies", "hidden in the file, and read all the same",
+                                  "if one is no part, take it out of the file or of the scene"};
+inline constexpr NoteText kNoUnit{"", "shapes",
+                                  "no unit of length, so taken for mm, or for the unit of the shape around it",
+                                  "export the file with its unit"};
+
 // glTF and 3MF.
 inline constexpr NoteText kEmptyMesh{"", "parts", "no triangles, so left out",
                                      "if it is a body, export it as a mesh of triangles"};

@@ -10,6 +10,7 @@
 #include "import/file_check.hpp"
 #include "import/read_parts.hpp"
 #include "import/step_entities.hpp"
+#include "import/step_lists.hpp"
 #include "import/utf8.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -71,6 +72,7 @@ std::string check_step(const std::string& path) {
   if (std::none_of(schemas.begin(), schemas.end(), known_schema))
     throw Error(path + ": unknown STEP schema " + schemas.front() +
                 " (known: AP203, AP214, AP242); export one of these");
+  require_lists(path, bytes);
   bytes.erase(end + 16, semicolon - end - 16);  // OpenCASCADE wants the two together
   return bytes;
 }

@@ -33,6 +33,7 @@
 #include "import/occt_content.hpp"
 #include "import/occt_faces.hpp"
 #include "import/occt_names.hpp"
+#include "import/occt_notes.hpp"
 #include "import/occt_shape.hpp"
 #include "import/occt_triangles.hpp"
 #include "import/part_file.hpp"
@@ -153,13 +154,15 @@ class StepReader {
       throw Error(path_ + ": damaged: not a readable STEP file");
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
     face_names_.emplace(session);
-    const bool has_colors = check_entities(path_, session);
-    reader.SetColorMode(has_colors);
-    if (!has_colors) notes_.add(note_texts::kNoColors, "the file");
+    const CheckedEntities checked = check_entities(path_, session);
+    unread_.insert(unread_.end(), checked.unread.begin(), checked.unread.end());
+    reader.SetColorMode(checked.has_colors);
+    if (!checked.has_colors) notes_.add(note_texts::kNoColors, "the file");
     for (const std::string& file : named_files(path_, session)) notes_.add(note_texts::kMissingFile, in_quotes(file));
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
+    tell_of(session, checked.of_shape, plain.shapes);
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
-    for (const std::string& solid : unread_solids(session)) unread_.push_back(solid);
+    for (const std::string& solid : unread_solids(session, checked.of_shape)) unread_.push_back(solid);
     unplaced_ = unplaced(session);
     for (const std::string& shared : shared_shapes(session)) notes_.add(note_texts::kSharedShape, shared);
     check_named_files(reader);
@@ -167,13 +170,28 @@ class StepReader {
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
   }
 
+  void tell_of(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& of_shape,
+               const std::vector<StepTriangles>& shapes) {
+    std::set<std::uint64_t> tessellated;
+    for (const StepTriangles& shape : shapes) tessellated.insert(shape.id);
+    curves_ = bare_curves(session, of_shape);
+    for (const std::string& body : hidden_bodies(session, tessellated)) notes_.add(note_texts::kHidden, body);
+    for (const std::string& shape : without_unit(session, of_shape)) notes_.add(note_texts::kNoUnit, shape);
+  }
+
   /// Other files are read with this one, and looked through after that only.
   void check_named_files(STEPCAFControl_Reader& reader) {
     NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator file(
         reader.ExternFiles());
     for (; file.More(); file.Next())
-      if (file.Value()->GetLoadStatus() == IFSelect_RetDone)
-        check_entities(path_ + ": " + file.Key().ToCString(), file.Value()->GetWS());
+      if (file.Value()->GetLoadStatus() == IFSelect_RetDone) check_named_file(file.Key().ToCString(), *file.Value());
+  }
+
+  void check_named_file(const std::string& name, const STEPCAFControl_ExternFile& file) {
+    const CheckedEntities checked = check_entities(path_ + ": " + name, file.GetWS());
+    for (const std::string& item : checked.unread) unread_.push_back(name + ": " + item);
+    for (const std::string& solid : unread_solids(file.GetWS(), checked.of_shape))
+      unread_.push_back(name + ": " + solid);
   }
 
   /// `use` is the instance, `what` the product it shows (the same for a root), which has faces; `groups` are the
@@ -382,6 +400,11 @@ class StepReader {
     if (parts.empty() && !unplaced_.empty())
       throw Error(path_ + ": " + note_texts::kUnplaced.one + unplaced_.front() + " has no place: nothing can be read");
     if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
+    if (parts.empty() && !triangles_.unused().empty())
+      throw Error(path_ + ": the triangles of #" + std::to_string(triangles_.unused().front()) +
+                  " are of no product: nothing else can be read");
+    if (parts.empty() && !curves_.empty())
+      throw Error(path_ + ": " + curves_.front() + ": curves without faces are no part");
   }
 
   const std::string &path_, &bytes_;
@@ -397,6 +420,7 @@ class StepReader {
   std::optional<FaceNames> face_names_;  // since the file is open
   std::vector<std::string> unplaced_;    // instances, each "#17"
   std::vector<std::string> unread_;      // shapes, each "#17 is a ..."
+  std::vector<std::string> curves_;      // the same, without faces
   ImportNotes notes_;
   Assembly assembly_;
 };
