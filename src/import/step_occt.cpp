@@ -150,7 +150,9 @@ class StepReader {
     if (mentions_triangles(bytes_)) plain = take_triangles(path_, bytes_);
     unread_ = plain.unread;
     std::istringstream text(plain.text.empty() ? bytes_ : plain.text);
-    if (reader.ChangeReader().ReadStream(path_.c_str(), text) != IFSelect_RetDone)
+    // Of a relative path with a folder OpenCASCADE looks for the other files of parts in a wrong one.
+    const std::string whole = std::filesystem::absolute(path_).string();
+    if (reader.ChangeReader().ReadStream(whole.c_str(), text) != IFSelect_RetDone)
       throw Error(path_ + ": damaged: not a readable STEP file");
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
     face_names_.emplace(session);

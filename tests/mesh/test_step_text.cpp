@@ -241,6 +241,12 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   const std::size_t child = both.parts[0].name == "child" ? 0 : 1;
   check_block(both, child, 100);
   check_block(both, 1 - child);
+  // The folder that is named from here counts, not the one that the program runs in.
+  const std::string from_here = std::filesystem::relative(folder / "a.step").string();
+  for (const std::string& relative : {from_here, "./" + from_here}) {
+    INFO(relative);
+    CHECK(read_assembly(relative).parts.size() == 2);
+  }
   // What is left out of it is told like what is left out of this one.
   StepText child_text;
   const int pin = child_text.add("BLOCK(''," + r(child_text.origin()) + ",400.,3.,3.)");
