@@ -95,7 +95,8 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
   add_length_option(*import, "--chord", options.assembly.chord,
                     "STEP: how far facets may be from curved faces that mate (5um)");
   add_length_option(*import, "--coarse-chord", options.assembly.coarse_chord,
-                    "STEP: how far they may be from other curved faces (50um; less in a small part alone in its file)");
+                    "STEP: how far they may be from other curved faces (50um); a part alone in its file is between the "
+                    "two by its size");
   import->add_option("--seconds", options.seconds, "How long reading, or the facets of one part, may take (600)")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("S");

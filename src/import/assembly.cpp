@@ -52,12 +52,15 @@ void split_parts(Assembly& assembly) {
   assembly.parts = std::move(parts);
 }
 
-/// Shapes equal to the bit become one: not every program that writes assemblies keeps instances.
-void share_equal_shapes(Assembly& assembly) {
+/// Shapes equal to the bit become one: not every program that writes assemblies keeps instances. Those of no part go.
+void share_shapes(Assembly& assembly) {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_size;
   std::vector<std::size_t> number(assembly.shapes.size());
   std::vector<std::shared_ptr<const TriangleMesh>> shapes;
+  std::vector<bool> used(assembly.shapes.size(), false);
+  for (const AssemblyPart& part : assembly.parts) used[part.shape] = true;
   for (std::size_t i = 0; i < assembly.shapes.size(); ++i) {
+    if (!used[i]) continue;
     const TriangleMesh& mesh = *assembly.shapes[i];
     std::vector<std::size_t>& alike = of_size[{mesh.vertices.size(), mesh.triangles.size()}];
     number[i] = shapes.size();
@@ -155,7 +158,7 @@ Assembly read_assembly(const std::string& path, const AssemblyOptions& options) 
                         : is_part_file(path) ? read_tree(path, options)
                                              : read_flat(path, options);
     if (options.split) split_parts(assembly);
-    share_equal_shapes(assembly);
+    share_shapes(assembly);
     center_far_shapes(assembly);
     name_parts(assembly);
     for (std::string& note : assembly.notes) note = printable(note);

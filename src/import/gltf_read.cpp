@@ -9,6 +9,7 @@
 #include "import/file_check.hpp"
 #include "import/gltf_data.hpp"
 #include "import/made_up_name.hpp"
+#include "import/note_texts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -64,6 +65,7 @@ class GltfReader {
         if (data_.nodes[i].parent == nullptr) add(data_.nodes[i], Matrix34::Identity(), groups);
     }
     tell_unread();
+    notes_.tell(file_.notes);
     return std::move(file_);
   }
 
@@ -107,7 +109,7 @@ class GltfReader {
     for (const Matrix34& instance : instances_of(node)) {
       part.X = product(own, instance);
       if (part.X.leftCols<3>().isZero(0))
-        file_.notes.push_back('"' + part.name + "\" is scaled to nothing: left out");  // a way to hide a node
+        notes_.add(note_texts::kScaledAway, '"' + part.name + '"');
       else
         file_.parts.push_back(part);
       if (file_.parts.size() > kMaxParts) throw Error(path_ + ": more than a million parts");
@@ -202,6 +204,7 @@ class GltfReader {
   std::map<const cgltf_mesh*, std::vector<std::size_t>> faces_;  // of each primitive
   std::set<const cgltf_node*> shown_;                            // of those with meshes
   std::size_t off_weights_ = 0;                                  // vertices whose weights do not add up to one
+  ImportNotes notes_;
   PartFile file_;
 };
 

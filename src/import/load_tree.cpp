@@ -1,6 +1,7 @@
 #include <Eigen/SVD>
 #include <map>
 
+#include "import/note_texts.hpp"
 #include "import/part_file.hpp"
 #include "import/read_parts.hpp"
 #include "import/usable.hpp"
@@ -43,6 +44,7 @@ class TreeReader {
     assembly_.up = file_.up;
     assembly_.notes = std::move(file_.notes);
     for (const PartFile::Placed& part : file_.parts) add(part);
+    notes_.tell(assembly_.notes);
     return std::move(assembly_);
   }
 
@@ -69,7 +71,7 @@ class TreeReader {
     }
     const TriangleMesh& from = file_.meshes[placed.mesh];
     if (from.triangles.empty()) {
-      assembly_.notes.push_back("\"" + placed.name + "\" has no triangles: left out");
+      notes_.add(note_texts::kEmptyMesh, '"' + placed.name + '"');
       return false;
     }
     TriangleMesh mesh;
@@ -92,6 +94,7 @@ class TreeReader {
   PartFile file_;
   const AssemblyOptions& options_;
   std::vector<std::vector<Known>> known_;  // of each mesh of the file
+  ImportNotes notes_;
   Assembly assembly_;
   std::size_t done_ = 0;
 };

@@ -1,12 +1,11 @@
 #include "import/mating_notes.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "import/note_texts.hpp"
 
 namespace tegotae {
 namespace {
-
-constexpr std::size_t kMaxLines = 5;  // and one that says how many more there are
 
 const char* names_of(FaceKind kind) {
   switch (kind) {
@@ -30,20 +29,12 @@ void MatingNotes::add(const AssemblyPart& a, const AssemblyPart& b, FaceKind kin
   pair.kinds.insert(kind);
 }
 
-void MatingNotes::tell(double chord, std::vector<std::string>& notes) const {
-  char advice[160];
-  std::snprintf(advice, sizeof advice,
-                ": facets reach up to %.3g um into the clearance; for a fit with less play take a smaller --chord",
-                1e6 * chord);
-  std::size_t lines = 0;
+void MatingNotes::tell(double chord, ImportNotes& notes) const {
   for (const auto& [shapes, pair] : pairs_) {
-    if (++lines > kMaxLines) break;
     std::string kinds;
     for (const FaceKind kind : pair.kinds) kinds += (kinds.empty() ? "" : " and ") + std::string(names_of(kind));
-    notes.push_back(pair.names + " may mate in " + kinds + advice);
+    notes.add(note_texts::kMayMate, pair.names + " in " + kinds, chord);
   }
-  if (pairs_.size() > kMaxLines)
-    notes.push_back(std::to_string(pairs_.size() - kMaxLines) + " more pairs of parts may mate in such faces");
 }
 
 }  // namespace tegotae

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "import/import_notes.hpp"
 #include "import/round_faces.hpp"
 
 namespace tegotae {
@@ -16,9 +16,8 @@ namespace tegotae {
 class MatingNotes {
  public:
   void add(const AssemblyPart& a, const AssemblyPart& b, FaceKind kind);
-  /// Adds a line for each pair of shapes (instances mate alike), at most six lines, with what to do about a fit with
-  /// less play than `chord` (m).
-  void tell(double chord, std::vector<std::string>& notes) const;
+  /// Says it of each pair of shapes (instances mate alike), whose facets keep within `chord` (m).
+  void tell(double chord, ImportNotes& notes) const;
 
  private:
   struct Pair {

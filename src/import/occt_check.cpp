@@ -3,26 +3,21 @@
 #include <Interface_Check.hxx>
 #include <Interface_CheckIterator.hxx>
 #include <Interface_EntityIterator.hxx>
-#include <Interface_Graph.hxx>
+#include <Interface_ReportEntity.hxx>
 #include <STEPConstruct_ExternRefs.hxx>
 #include <StepBasic_Product.hxx>
 #include <StepBasic_ProductDefinition.hxx>
 #include <StepBasic_ProductDefinitionFormation.hxx>
-#include <StepBasic_ProductDefinitionRelationship.hxx>
 #include <StepData_StepModel.hxx>
-#include <StepGeom_CartesianPoint.hxx>
-#include <StepGeom_CartesianTransformationOperator3d.hxx>
-#include <StepGeom_Direction.hxx>
-#include <StepRepr_ConstructiveGeometryRepresentation.hxx>
-#include <StepRepr_ConstructiveGeometryRepresentationRelationship.hxx>
-#include <StepRepr_MappedItem.hxx>
+#include <StepData_UndefinedEntity.hxx>
+#include <StepGeom_BoundedSurface.hxx>
+#include <StepRepr_HArray1OfRepresentationItem.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_ProductDefinitionShape.hxx>
 #include <StepRepr_PropertyDefinition.hxx>
-#include <StepRepr_RepresentationRelationshipWithTransformation.hxx>
-#include <StepRepr_Transformation.hxx>
 #include <StepShape_Block.hxx>
 #include <StepShape_BooleanResult.hxx>
+#include <StepShape_ConnectedFaceSet.hxx>
 #include <StepShape_ContextDependentShapeRepresentation.hxx>
 #include <StepShape_CsgSolid.hxx>
 #include <StepShape_HalfSpaceSolid.hxx>
@@ -39,15 +34,15 @@
 #include <XSControl_TransferReader.hxx>
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
 #include <filesystem>
-#include <gp_Vec.hxx>
 #include <map>
 #include <set>
 #include <vector>
 
 #include "import/load_files.hpp"
+#include "import/occt_entities.hpp"
+#include "import/occt_places.hpp"
+#include "import/occt_reach.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -82,108 +77,6 @@ bool is_beside_color(const std::string& type) {
          std::any_of(kOthers.begin(), kOthers.end(), [&](auto o) { return has(type, o); });
 }
 
-/// The direction as a unit vector; `fallback` without one. A zero vector stands for none that can be.
-gp_Vec vector_of(const Handle(StepGeom_Direction) & direction, const gp_Vec& fallback) {
-  if (direction.IsNull() || direction->NbDirectionRatios() < 3) return fallback;
-  const gp_Vec v(direction->DirectionRatiosValue(1), direction->DirectionRatiosValue(2),
-                 direction->DirectionRatiosValue(3));
-  return v.Magnitude() > 0 ? v.Normalized() : gp_Vec();
-}
-
-/// `v` without its share along the unit vectors `x` and `y`, as a unit vector; zero when nothing is left.
-gp_Vec beside(const gp_Vec& v, const gp_Vec& x, const gp_Vec& y) {
-  const gp_Vec rest = v - x * v.Dot(x) - y * v.Dot(y);
-  return rest.Magnitude() > 1e-9 ? rest.Normalized() : gp_Vec();
-}
-
-/// What an operator does besides turning and shifting, or does to axes that it leaves out; empty when OpenCASCADE reads
-/// it as ISO 10303-42 (base_axis) means it. OpenCASCADE makes every frame right-handed.
-std::string not_rigid(const StepGeom_CartesianTransformationOperator3d& map) {
-  if (map.HasScale() && std::abs(map.Scale() - 1) > 1e-9) return "scales";
-  const gp_Vec ex(1, 0, 0), ey(0, 1, 0), ez(0, 0, 1);
-  const gp_Vec z = vector_of(map.Axis3(), ez);
-  const gp_Vec x = beside(vector_of(map.Axis1(), std::abs(z.X()) < 1 ? ex : ey), z, gp_Vec());
-  const gp_Vec y = beside(vector_of(map.Axis2(), ey), z, x);
-  if (z.Magnitude() == 0 || x.Magnitude() == 0 || y.Magnitude() == 0) return "has axes that span no space for";
-  if (x.Crossed(y).Dot(z) < 0) return "mirrors";
-  const gp_Vec first = vector_of(map.Axis1(), ex);
-  const gp_Vec read_z = map.HasAxis3() ? z : first.Crossed(vector_of(map.Axis2(), ey));
-  if (read_z.Magnitude() < 1e-9 || (read_z.Normalized() - z).Magnitude() > 1e-9 ||
-      (beside(first, z, gp_Vec()) - x).Magnitude() > 1e-9)
-    return "leaves out axes that place";
-  return "";
-}
-
-/// The operator that places something by `entity`; null when it is none of these.
-Handle(StepGeom_CartesianTransformationOperator3d) operator_of(const Entity& entity) {
-  using Operator = StepGeom_CartesianTransformationOperator3d;
-  const auto item = Handle(StepRepr_MappedItem)::DownCast(entity);
-  if (!item.IsNull()) return Handle(Operator)::DownCast(item->MappingTarget());
-  const auto relation = Handle(StepRepr_RepresentationRelationshipWithTransformation)::DownCast(entity);
-  if (!relation.IsNull()) return Handle(Operator)::DownCast(relation->TransformationOperator().Value());
-  return {};
-}
-
-void require_rigid(const std::string& path, const Handle(StepData_StepModel) & model) {
-  for (int i = 1; i <= model->NbEntities(); ++i) {
-    const auto map = operator_of(model->Value(i));
-    const std::string fault = map.IsNull() ? "" : not_rigid(*map);
-    if (!fault.empty())
-      throw Error(path + ": the CARTESIAN_TRANSFORMATION_OPERATOR_3D #" + std::to_string(model->IdentLabel(map)) + " " +
-                  fault + " a part, which is not read: export such parts as shapes of their own");
-  }
-}
-
-/// Construction lines and planes beside a shape, and what ties them to it: no part of the shape (ISO 10303-42).
-bool is_supplement(const Entity& entity) {
-  return entity->IsKind(STANDARD_TYPE(StepRepr_ConstructiveGeometryRepresentation)) ||
-         entity->IsKind(STANDARD_TYPE(StepRepr_ConstructiveGeometryRepresentationRelationship));
-}
-
-/// Whether shapes or places may be made of `entity`: what they are made of is reached from here.
-bool leads_to_shape(const Entity& entity) {
-  if (is_supplement(entity)) return false;
-  return entity->IsKind(STANDARD_TYPE(StepBasic_ProductDefinition)) ||
-         entity->IsKind(STANDARD_TYPE(StepBasic_ProductDefinitionRelationship)) ||
-         entity->IsKind(STANDARD_TYPE(StepRepr_ProductDefinitionShape)) ||
-         entity->IsKind(STANDARD_TYPE(StepShape_ShapeRepresentation)) ||
-         entity->IsKind(STANDARD_TYPE(StepShape_ShapeDefinitionRepresentation)) ||
-         entity->IsKind(STANDARD_TYPE(StepShape_ContextDependentShapeRepresentation)) ||
-         entity->IsKind(STANDARD_TYPE(StepRepr_RepresentationRelationship)) ||
-         entity->IsKind(STANDARD_TYPE(StepRepr_MappedItem));
-}
-
-/// Of each entity of the model, by its number from 1 on, whether a shape or place may be made of it.
-std::vector<bool> of_shape(const Handle(StepData_StepModel) & model, const Interface_Graph& graph) {
-  std::vector<bool> reached(static_cast<std::size_t>(model->NbEntities()) + 1, false);
-  std::vector<int> open;
-  const auto reach = [&](int i) {
-    if (i <= 0 || reached[static_cast<std::size_t>(i)]) return;
-    reached[static_cast<std::size_t>(i)] = true;
-    open.push_back(i);
-  };
-  for (int i = 1; i <= model->NbEntities(); ++i)
-    if (leads_to_shape(model->Value(i))) reach(i);
-  while (!open.empty()) {
-    const int at = open.back();
-    open.pop_back();
-    for (Interface_EntityIterator used = graph.Shareds(model->Value(at)); used.More(); used.Next())
-      if (!used.Value().IsNull()) reach(model->Number(used.Value()));
-  }
-  return reached;
-}
-
-/// `RIGHT_CIRCULAR_CYLINDER` of "StepShape_RightCircularCylinder".
-std::string step_name(const std::string& type) {
-  std::string name;
-  for (std::size_t i = type.find('_') + 1; i < type.size(); ++i) {
-    const auto c = static_cast<unsigned char>(type[i]);
-    if (std::isupper(c) != 0 && !name.empty()) name += '_';
-    name += static_cast<char>(std::toupper(c));
-  }
-  return name;
-}
-
 /// A shape by operations on solids: OpenCASCADE knows its name and makes nothing of it.
 bool is_constructive(const Entity& entity) {
   return entity->IsKind(STANDARD_TYPE(StepShape_CsgSolid)) || entity->IsKind(STANDARD_TYPE(StepShape_BooleanResult)) ||
@@ -194,14 +87,17 @@ bool is_constructive(const Entity& entity) {
          entity->IsKind(STANDARD_TYPE(StepShape_RightAngularWedge));
 }
 
+/// A solid, or where `bare` a surface that is no part of one: something that can be touched should become of it.
+bool is_touchable(const Entity& entity, bool bare) {
+  return is_constructive(entity) || entity->IsKind(STANDARD_TYPE(StepShape_SolidModel)) ||
+         (bare && (entity->IsKind(STANDARD_TYPE(StepShape_ConnectedFaceSet)) ||
+                   entity->IsKind(STANDARD_TYPE(StepGeom_BoundedSurface))));
+}
+
 std::string product_name(const StepBasic_ProductDefinition& definition) {
   const Handle(StepBasic_ProductDefinitionFormation) version = definition.Formation();
   if (version.IsNull() || version->OfProduct().IsNull() || version->OfProduct()->Name().IsNull()) return "";
   return version->OfProduct()->Name()->ToCString();
-}
-
-std::string named(const Handle(StepData_StepModel) & model, const Entity& entity) {
-  return "#" + std::to_string(model->IdentLabel(entity)) + " is a " + step_name(entity->DynamicType()->Name());
 }
 
 /// Faults of the file as a whole. A reference to nothing is also a fault of the entity that has it; that there is
@@ -210,6 +106,57 @@ void require_readable(const std::string& path, const Handle(Interface_Check) & w
   for (int i = 1; i <= whole->NbFails(); ++i)
     if (!begins(whole->CFail(i), "Unresolved Reference") && !has(whole->CFail(i), "DATA NOT AVAILABLE"))
       throw Error(path + ": damaged: OpenCASCADE cannot read its entities: " + whole->CFail(i));
+}
+
+/// The entities of kinds that OpenCASCADE does not know which the file names in `entity`, found to be faulty.
+std::vector<Entity> unknown_in(const Handle(StepData_StepModel) & model, const Entity& entity) {
+  std::vector<Entity> unknown;
+  const Handle(Interface_ReportEntity) report = model->ReportEntity(model->Number(entity));
+  if (report.IsNull()) return unknown;
+  const auto content = Handle(StepData_UndefinedEntity)::DownCast(report->Content());
+  if (content.IsNull()) return unknown;
+  Interface_EntityIterator used;
+  content->FillShared(used);
+  for (used.Start(); used.More(); used.Next())
+    if (!used.Value().IsNull() && used.Value()->IsKind(STANDARD_TYPE(StepData_UndefinedEntity)))
+      unknown.push_back(used.Value());
+  return unknown;
+}
+
+/// Whether an entity of unknown kinds is a leader line, a symbol or a text of a drawing: of these one kind is
+/// STYLED_ITEM.
+bool is_drawn(const Entity& entity) {
+  for (auto kind = Handle(StepData_UndefinedEntity)::DownCast(entity); !kind.IsNull(); kind = kind->Next())
+    if (std::string(kind->StepType()) == "STYLED_ITEM") return true;
+  return false;
+}
+
+/// Takes items of kinds that OpenCASCADE does not know out of a representation, if nothing else is wrong with it.
+bool leave_out_unknown(const Handle(StepData_StepModel) & model, const Entity& entity,
+                       std::vector<std::string>& unread) {
+  const auto shape = Handle(StepShape_ShapeRepresentation)::DownCast(entity);
+  if (shape.IsNull() || shape->ContextOfItems().IsNull()) return false;
+  const std::vector<Entity> unknown = unknown_in(model, entity);
+  std::vector<Handle(StepRepr_RepresentationItem)> known;
+  for (int i = 1; i <= shape->NbItems(); ++i)
+    if (!shape->ItemsValue(i).IsNull()) known.push_back(shape->ItemsValue(i));
+  if (unknown.empty() || static_cast<std::size_t>(shape->NbItems()) != known.size() + unknown.size()) return false;
+  Handle(StepRepr_HArray1OfRepresentationItem) items;
+  if (!known.empty()) items = new StepRepr_HArray1OfRepresentationItem(1, static_cast<int>(known.size()));
+  for (std::size_t i = 0; i < known.size(); ++i) items->SetValue(static_cast<int>(i) + 1, known[i]);
+  shape->SetItems(items);
+  for (const Entity& one : unknown)
+    if (!is_drawn(one)) unread.push_back(named(model, one));
+  return true;
+}
+
+[[noreturn]] void refuse_damaged(const std::string& path, const Handle(StepData_StepModel) & model,
+                                 const Entity& entity) {
+  const std::vector<Entity> unknown = unknown_in(model, entity);
+  if (is_constructive(entity)) throw Error(path + ": " + named(model, entity) + ", which is not read");
+  if (!unknown.empty()) throw Error(path + ": " + named(model, unknown.front()) + ", which is not read");
+  throw Error(path + ": damaged: OpenCASCADE finds impossible entities: wrong or missing references (#" +
+              std::to_string(model->IdentLabel(entity)) + ")");
 }
 
 }  // namespace
@@ -232,34 +179,30 @@ std::vector<std::string> named_files(const std::string& path, const Handle(XSCon
   return missing;
 }
 
-bool check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session) {
-  bool has_colors = true;
+CheckedEntities check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session) {
+  CheckedEntities out;
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
   // Of entities that do not fit together OpenCASCADE makes null handles, which its own transfer then follows.
   Interface_CheckIterator checks = session->ModelCheckList(true);
   for (checks.Start(); checks.More(); checks.Next())
     if (checks.Number() <= 0) require_readable(path, checks.Value());
   if (model->NbEntities() == 0) throw Error(path + ": no entities in its data");
-  const std::vector<bool> matters = of_shape(model, session->Graph());
+  out.of_shape = of_shape(session);
   for (checks.Start(); checks.More(); checks.Next()) {
     if (checks.Number() <= 0 || !checks.Value()->HasFailed()) continue;
     const Entity entity = model->Value(checks.Number());
     const std::string type = entity->DynamicType()->Name();
-    const bool beside = is_supplement(entity) || (is_beside_shape(type) && !leads_to_shape(entity));
-    if (beside || !matters[static_cast<std::size_t>(checks.Number())]) {
-      has_colors = has_colors && is_beside_color(type);
-    } else if (is_constructive(entity)) {
-      throw Error(path + ": " + named(model, entity) + ", which is not read");
-    } else {
-      throw Error(path + ": damaged: OpenCASCADE finds impossible entities: wrong or missing references (#" +
-                  std::to_string(model->IdentLabel(entity)) + ")");
-    }
+    if (!out.of_shape[static_cast<std::size_t>(checks.Number())] || (is_beside_shape(type) && !is_shape_item(entity)))
+      out.has_colors = out.has_colors && is_beside_color(type);
+    else if (!leave_out_unknown(model, entity, out.unread))
+      refuse_damaged(path, model, entity);
   }
-  require_rigid(path, model);
-  return has_colors;
+  require_places(path, model, out.of_shape);
+  return out;
 }
 
-std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & session) {
+std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & session,
+                                       const std::vector<bool>& reached) {
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
   const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
   std::vector<std::string> unread;
@@ -268,8 +211,9 @@ std::vector<std::string> unread_solids(const Handle(XSControl_WorkSession) & ses
     if (shape.IsNull()) continue;
     for (int k = 1; k <= shape->NbItems(); ++k) {
       const Entity item = shape->ItemsValue(k);
-      const bool solid = !item.IsNull() && (is_constructive(item) || item->IsKind(STANDARD_TYPE(StepShape_SolidModel)));
-      if (solid && TransferBRep::ShapeResult(process, item).IsNull()) unread.push_back(named(model, item));
+      const bool bare = reached[static_cast<std::size_t>(i)];
+      if (!item.IsNull() && is_touchable(item, bare) && TransferBRep::ShapeResult(process, item).IsNull())
+        unread.push_back(named(model, item));
     }
   }
   return unread;
@@ -300,8 +244,8 @@ std::vector<std::string> shared_shapes(const Handle(XSControl_WorkSession) & ses
       names += (names.empty() ? "\"" : ", \"") + product_name(*product) + '"';
     const auto is_placed = [&](const Handle(Definition) & product) { return placed.count(product.get()) > 0; };
     const auto alone = std::count_if(group.begin(), group.end(), [&](const auto& p) { return !is_placed(p); });
-    notes.push_back("the products " + names + " have one shape (#" + std::to_string(shape) + "), which is read " +
-                    (alone == 0 ? "at each place: its parts may be called after one of them"
+    notes.push_back(names + " of #" + std::to_string(shape) + ", which is read " +
+                    (alone == 0                                           ? "at each place, called after one of them"
                      : alone == static_cast<std::ptrdiff_t>(group.size()) ? "once, not for each"
                                                                           : "only where an assembly places it"));
   }
@@ -316,14 +260,13 @@ std::vector<std::string> unplaced(const Handle(XSControl_WorkSession) & session)
     if (!shown.IsNull() && !shown->RepresentedProductRelation().IsNull())
       placed.insert(shown->RepresentedProductRelation()->Definition().Value().get());
   }
-  std::vector<std::string> notes;
+  std::vector<std::string> instances;
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
     if (!use.IsNull() && placed.count(use.get()) == 0)
-      notes.push_back("the instance #" + std::to_string(model->IdentLabel(use)) +
-                      " has no place of its own: it is read only where the shape of its assembly has it");
+      instances.push_back("#" + std::to_string(model->IdentLabel(use)));
   }
-  return notes;
+  return instances;
 }
 
 }  // namespace tegotae

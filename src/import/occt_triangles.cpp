@@ -70,8 +70,17 @@ double TransferredTriangles::area_in(const TopoDS_Shape& shape) {
   return area;
 }
 
+bool TransferredTriangles::are_in(const TopoDS_Shape& shape) const {
+  const auto found = shapes_.find(shape.TShape().get());
+  if (found != shapes_.end()) return !found->second.mesh.triangles.empty();
+  if (shape.ShapeType() == TopAbs_COMPOUND)
+    for (TopoDS_Iterator i(shape); i.More(); i.Next())
+      if (are_in(i.Value())) return true;
+  return false;
+}
+
 bool TransferredTriangles::any_in(const TopoDS_Shape& shape) const {
-  if (shapes_.count(shape.TShape().get()) > 0) return true;
+  if (stands_for_some(shape)) return true;
   if (shape.ShapeType() == TopAbs_COMPOUND)
     for (TopoDS_Iterator i(shape); i.More(); i.Next())
       if (any_in(i.Value())) return true;

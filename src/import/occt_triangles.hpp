@@ -23,8 +23,12 @@ class TransferredTriangles {
   TriangleMesh in(const TopoDS_Shape& shape);
   /// Of the same, m^2.
   double area_in(const TopoDS_Shape& shape);
+  /// Whether there are triangles in `shape`.
+  bool are_in(const TopoDS_Shape& shape) const;
   /// Whether a tessellated shape belongs to `shape`, read or not.
   bool any_in(const TopoDS_Shape& shape) const;
+  /// Whether `shape` is points in the place of a tessellated shape.
+  bool stands_for_some(const TopoDS_Shape& shape) const { return shapes_.count(shape.TShape().get()) > 0; }
   /// The entities with triangles that were in no shape.
   std::vector<std::uint64_t> unused() const;
 

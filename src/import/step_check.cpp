@@ -10,6 +10,8 @@
 #include "import/file_check.hpp"
 #include "import/read_parts.hpp"
 #include "import/step_entities.hpp"
+#include "import/step_lists.hpp"
+#include "import/utf8.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -56,7 +58,8 @@ bool is_step(const std::string& path) {
 std::string check_step(const std::string& path) {
   std::string bytes = read_bytes(path);
   require_single_bytes(path, bytes);
-  bytes = plain_step(path, std::move(bytes));
+  // Names in Latin-1, which older programs write, are no reason to lose letters.
+  bytes = plain_step(path, to_utf8(bytes));
   const std::string_view all(bytes);
   const std::size_t begin = all.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) throw Error(path + ": empty file");
@@ -69,6 +72,7 @@ std::string check_step(const std::string& path) {
   if (std::none_of(schemas.begin(), schemas.end(), known_schema))
     throw Error(path + ": unknown STEP schema " + schemas.front() +
                 " (known: AP203, AP214, AP242); export one of these");
+  require_lists(path, bytes);
   bytes.erase(end + 16, semicolon - end - 16);  // OpenCASCADE wants the two together
   return bytes;
 }

@@ -10,8 +10,6 @@
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TDF_LabelSequence.hxx>
-#include <TDF_Tool.hxx>
-#include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
@@ -21,15 +19,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <gp_Quaternion.hxx>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
+#include "import/note_texts.hpp"
 #include "import/occt_check.hpp"
+#include "import/occt_content.hpp"
 #include "import/occt_faces.hpp"
+#include "import/occt_names.hpp"
+#include "import/occt_notes.hpp"
 #include "import/occt_shape.hpp"
 #include "import/occt_triangles.hpp"
 #include "import/part_file.hpp"
@@ -49,16 +53,6 @@ Pose pose_of(const TopLoc_Location& location) {
   X.q = Quat(q.W(), q.X(), q.Y(), q.Z()).normalized();
   X.p = meters(t.TranslationPart());
   return X;
-}
-
-std::string name_of(const TDF_Label& label) {
-  Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return "";
-  const TCollection_ExtendedString& text = name->Get();
-  std::string bytes(static_cast<std::size_t>(text.LengthOfCString()) + 1, '\0');
-  Standard_PCharacter at = bytes.data();
-  bytes.resize(static_cast<std::size_t>(text.ToUTF8CString(at)));
-  return bytes;
 }
 
 /// Keeps OpenCASCADE from printing for as long as it lives.
@@ -86,8 +80,13 @@ double rounding_margin(const std::vector<Vec3>& exact, const std::vector<Vec3>& 
   return std::ldexp(largest, -23);
 }
 
-// Facets of a part that nothing mates with in its file are so many times smaller than the part: 50 um for 200 mm.
-constexpr double kChordsAcross = 4000;
+// Facets of a part that nothing mates with in its file are so many times smaller than the part: 50 um for 200 mm; those
+// of its cylinders and cones, of which a mate may be in another file, 5 um for 200 mm.
+constexpr double kChordsAcross = 4000, kFineChordsAcross = 40000;
+
+std::string in_quotes(const std::string& name) {
+  return '"' + name + '"';
+}
 
 class StepReader {
  public:
@@ -105,8 +104,12 @@ class StepReader {
     open();
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    std::vector<std::string> groups;
-    for (const TDF_Label& root : roots) add(root, root, TopLoc_Location(), groups, std::nullopt);
+    for (const TDF_Label& root : roots) {
+      if (contents_.of(root).faces)
+        add(root, root, TopLoc_Location(), {}, std::nullopt);
+      else
+        leave_out(root, name_of(root), "");
+    }
     pair_faces();
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       if (options_.progress) options_.progress(("tessellating " + described(leaves_[i])).c_str(), i, leaves_.size());
@@ -114,6 +117,7 @@ class StepReader {
     }
     tell_unread();
     drop_empty();
+    notes_.tell(assembly_.notes);
     return std::move(assembly_);
   }
 
@@ -125,8 +129,7 @@ class StepReader {
     std::vector<CadFace> cad;
     std::vector<bool> fine;
     std::optional<Color> color;
-    bool tessellated = false;
-    double coarse = 0;  // m, chord of the faces that are not fine
+    double chord = 0, coarse = 0;  // m, of the faces that are fine, and of the others
   };
 
   void open() {
@@ -147,23 +150,35 @@ class StepReader {
     if (mentions_triangles(bytes_)) plain = take_triangles(path_, bytes_);
     unread_ = plain.unread;
     std::istringstream text(plain.text.empty() ? bytes_ : plain.text);
-    if (reader.ChangeReader().ReadStream(path_.c_str(), text) != IFSelect_RetDone)
+    // Of a relative path with a folder OpenCASCADE looks for the other files of parts in a wrong one.
+    const std::string whole = std::filesystem::absolute(path_).string();
+    if (reader.ChangeReader().ReadStream(whole.c_str(), text) != IFSelect_RetDone)
       throw Error(path_ + ": damaged: not a readable STEP file");
     const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
     face_names_.emplace(session);
-    const bool has_colors = check_entities(path_, session);
-    reader.SetColorMode(has_colors);
-    if (!has_colors) assembly_.notes.push_back("colors are not read: their entities are damaged");
-    for (const std::string& file : named_files(path_, session))
-      assembly_.notes.push_back("the file \"" + file + "\" that it names is missing: its part is left out");
+    const CheckedEntities checked = check_entities(path_, session);
+    unread_.insert(unread_.end(), checked.unread.begin(), checked.unread.end());
+    reader.SetColorMode(checked.has_colors);
+    if (!checked.has_colors) notes_.add(note_texts::kNoColors, "the file");
+    for (const std::string& file : named_files(path_, session)) notes_.add(note_texts::kMissingFile, in_quotes(file));
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
+    tell_of(session, checked.of_shape, plain.shapes);
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
-    for (const std::string& solid : unread_solids(session)) unread_.push_back(solid);
+    for (const std::string& solid : unread_solids(session, checked.of_shape)) unread_.push_back(solid);
     unplaced_ = unplaced(session);
-    for (const std::string& note : shared_shapes(session)) assembly_.notes.push_back(note);
+    for (const std::string& shared : shared_shapes(session)) notes_.add(note_texts::kSharedShape, shared);
     check_named_files(reader);
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
+  }
+
+  void tell_of(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& of_shape,
+               const std::vector<StepTriangles>& shapes) {
+    std::set<std::uint64_t> tessellated;
+    for (const StepTriangles& shape : shapes) tessellated.insert(shape.id);
+    curves_ = bare_curves(session, of_shape);
+    for (const std::string& body : hidden_bodies(session, tessellated)) notes_.add(note_texts::kHidden, body);
+    for (const std::string& shape : without_unit(session, of_shape)) notes_.add(note_texts::kNoUnit, shape);
   }
 
   /// Other files are read with this one, and looked through after that only.
@@ -171,41 +186,92 @@ class StepReader {
     NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator file(
         reader.ExternFiles());
     for (; file.More(); file.Next())
-      if (file.Value()->GetLoadStatus() == IFSelect_RetDone)
-        check_entities(path_ + ": " + file.Key().ToCString(), file.Value()->GetWS());
+      if (file.Value()->GetLoadStatus() == IFSelect_RetDone) check_named_file(file.Key().ToCString(), *file.Value());
   }
 
-  /// `use` is the instance, `what` the product it shows (the same for a root).
-  void add(const TDF_Label& use, const TDF_Label& what, const TopLoc_Location& where, std::vector<std::string>& groups,
+  void check_named_file(const std::string& name, const STEPCAFControl_ExternFile& file) {
+    const CheckedEntities checked = check_entities(path_ + ": " + name, file.GetWS());
+    for (const std::string& item : checked.unread) unread_.push_back(name + ": " + item);
+    for (const std::string& solid : unread_solids(file.GetWS(), checked.of_shape))
+      unread_.push_back(name + ": " + solid);
+  }
+
+  /// `use` is the instance, `what` the product it shows (the same for a root), which has faces; `groups` are the
+  /// products that it is in.
+  void add(const TDF_Label& use, const TDF_Label& what, const TopLoc_Location& where, std::vector<std::string> groups,
            std::optional<Color> color) {
     if (const auto own = color_of(use)) color = own;
-    std::string name = name_of(use);
-    if (name.rfind("=>", 0) == 0 || is_made_up(name, {"nauo"})) name = name_of(what);
+    const std::string name = name_of_use(use, what);
     if (!XCAFDoc_ShapeTool::IsAssembly(what)) {
       add_leaf(what, name, where, groups, color);
       return;
     }
-    groups.push_back(name);
     TDF_LabelSequence components;
     XCAFDoc_ShapeTool::GetComponents(what, components);
+    std::vector<std::pair<TDF_Label, TDF_Label>> filled;  // instance, product
     for (const TDF_Label& component : components) {
       TDF_Label product;
-      if (XCAFDoc_ShapeTool::GetReferredShape(component, product))
-        add(component, product, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
+      if (!XCAFDoc_ShapeTool::GetReferredShape(component, product)) continue;
+      if (contents_.of(product).faces)
+        filled.emplace_back(component, product);
+      else
+        leave_out(product, name_of_use(component, product), name);
     }
-    groups.pop_back();
+    // A product of one nameless solid is that solid.
+    const bool is_part = filled.size() == 1 && !XCAFDoc_ShapeTool::IsAssembly(filled[0].second) &&
+                         is_default_name(name_of_use(filled[0].first, filled[0].second)) && !is_default_name(name);
+    if (is_part) {
+      const auto& [component, product] = filled[0];
+      if (const auto own = color_of(component)) color = own;
+      add_leaf(product, name, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
+      return;
+    }
+    groups.push_back(name);
+    for (const auto& [component, product] : filled)
+      add(component, product, where * XCAFDoc_ShapeTool::GetLocation(component), groups, color);
   }
 
-  void add_leaf(const TDF_Label& what, const std::string& name, const TopLoc_Location& where,
+  /// The instance's name, or the product's where it has none.
+  static std::string name_of_use(const TDF_Label& use, const TDF_Label& what) {
+    const std::string name = name_of(use);
+    return is_default_name(name) || is_made_up(name, {"nauo"}) ? name_of(what) : name;
+  }
+
+  /// What is without faces becomes no part. `what`, called `name`, is a component of the product `of`, if of any.
+  void leave_out(const TDF_Label& what, const std::string& name, const std::string& of) {
+    const Content content = contents_.of(what);
+    // Triangles were told by their number, or are curves of a drawing; instances are told once.
+    if (content.taken || !left_out_.insert(entry_of(what)).second) return;
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(what, components);
+    if (of.empty() || !is_default_name(name))
+      notes_.add(note_texts::kNoFaces, in_quotes(name));
+    else if (content.lines && components.IsEmpty())
+      notes_.add(note_texts::kLines, in_quotes(of));
+    else
+      for (const TDF_Label& component : components) {
+        TDF_Label product;
+        if (XCAFDoc_ShapeTool::GetReferredShape(component, product))
+          leave_out(product, name_of_use(component, product), of);
+      }
+  }
+
+  void add_leaf(const TDF_Label& what, std::string name, const TopLoc_Location& where,
                 const std::vector<std::string>& groups, std::optional<Color> color) {
     TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(what);
-    if (shape.IsNull()) return;
     const TopLoc_Location own = shape.Location();
     shape.Location(TopLoc_Location());
-    TCollection_AsciiString entry;
-    TDF_Tool::Entry(what, entry);
-    const auto [known, fresh] = leaf_of_.emplace(entry.ToCString(), leaves_.size());
-    if (fresh) leaves_.push_back({shape, name_of(what), faces_of(shape), {}, {}, color_of_product(what, shape)});
+    if (is_default_name(name)) {
+      const auto product = std::find_if_not(groups.rbegin(), groups.rend(), is_default_name);
+      name = product != groups.rend() ? *product : std::filesystem::path(path_).stem().string();
+    }
+    const auto [known, fresh] = leaf_of_.emplace(entry_of(what), leaves_.size());
+    if (fresh) {
+      const std::string self = name_of(what);
+      leaves_.push_back(
+          {shape, is_default_name(self) ? name : self, faces_of(shape), {}, {}, color_of_product(what, shape)});
+      if (contents_.of(what).lines) notes_.add(note_texts::kLines, in_quotes(leaves_.back().name));
+    }
     AssemblyPart part;
     part.name = name;
     part.path = groups;
@@ -244,7 +310,8 @@ class StepReader {
   }
 
   /// Finds the faces that get the fine tessellation: those that mate. Of a part alone in its file nobody knows what it
-  /// will meet: fits are round as a rule, and facets of cylinders and cones are cheap.
+  /// will meet: fits are round as a rule, and facets of cylinders and cones are cheap, if they grow with the part.
+  /// Pieces that are split may mate with each other.
   void pair_faces() {
     std::vector<std::vector<CadFace>> faces;
     const bool alone = assembly_.parts.size() == 1;
@@ -252,7 +319,10 @@ class StepReader {
       for (const TopoDS_Face& face : leaf.faces) leaf.cad.push_back(describe(face));
       for (const CadFace& face : leaf.cad)
         leaf.fine.push_back(alone && (face.kind == FaceKind::cylinder || face.kind == FaceKind::cone));
+      leaf.chord = options_.chord;
       leaf.coarse = std::max(options_.chord, options_.coarse_chord);
+      if (alone && !options_.split)
+        leaf.chord = std::clamp(size_of(leaf) / kFineChordsAcross, options_.chord, leaf.coarse);
       if (alone) leaf.coarse = std::clamp(size_of(leaf) / kChordsAcross, options_.chord, leaf.coarse);
       faces.push_back(leaf.cad);
     }
@@ -263,7 +333,7 @@ class StepReader {
       leaves_[b.shape].fine[pair.face_b] = true;
       mating.add(a, b, leaves_[a.shape].cad[pair.face_a].kind);
     }
-    mating.tell(options_.chord, assembly_.notes);
+    mating.tell(options_.chord, notes_);
   }
 
   /// Name and size: facets by the million come from a unit that is not the part's.
@@ -285,65 +355,58 @@ class StepReader {
     Leaf& leaf = leaves_[i];
     // Fine faces first: what is finer than asked for is kept, and its edges with it.
     for (std::size_t f = 0; f < leaf.faces.size(); ++f)
-      if (leaf.fine[f]) tessellate(leaf.faces[f], options_.chord);
+      if (leaf.fine[f]) tessellate(leaf.faces[f], leaf.chord);
     tessellate(leaf.shape, leaf.coarse);
     std::vector<std::size_t> missing;
     TessellatedShape shape = joined(leaf.faces, missing);
-    const std::string self = '"' + leaf.name + '"';
-    if (!missing.empty())
-      assembly_.notes.push_back(self + ": no triangles could be made of " +
-                                face_names_->text(missing, leaf.faces, leaf.cad) +
-                                ": the part has a hole there; export it anew, or as a mesh");
+    const std::string self = in_quotes(leaf.name);
+    const auto at = [&](const std::vector<std::size_t>& which) {
+      return self + " at " + face_names_->text(which, leaf.faces, leaf.cad);
+    };
+    if (!missing.empty()) notes_.add(note_texts::kNoTriangles, at(missing));
     const std::vector<std::size_t> open = faces_with_free_edges(shape);
     const TriangleMesh plain = triangles_.in(leaf.shape);
-    leaf.tessellated = triangles_.any_in(leaf.shape);
-    if (!shape.mesh.triangles.empty())
-      note(self, keep_clearance(shape, leaf.cad, rounding_margin(shape.mesh.vertices, plain.vertices)));
+    const double margin = rounding_margin(shape.mesh.vertices, plain.vertices);
+    if (!shape.mesh.triangles.empty()) note(self, keep_clearance(shape, leaf.cad, margin), margin);
     append(plain, Matrix34::Identity(), 1, shape.mesh);
     if (!shape.mesh.triangles.empty()) {
       shape.mesh.name = leaf.name;
       if (!open.empty())
-        assembly_.notes.push_back(self + ": not closed at " + face_names_->text(open, leaf.faces, leaf.cad) +
-                                  ": its inside is not known; if it is to be a solid, sew it in the CAD program");
+        notes_.add(note_texts::kNotClosed, at(open));
       else if (!report(shape.mesh).closed)
-        assembly_.notes.push_back(self + ": its triangles are not closed: its inside is not known");
+        notes_.add(note_texts::kTrianglesNotClosed, self);
     }
     assembly_.shapes.push_back(std::make_shared<const TriangleMesh>(std::move(shape.mesh)));
     leaf.shape.Nullify();
   }
 
-  void note(const std::string& self, const ClearanceReport& kept) {
-    const auto micrometers = [](double m) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.3g um", 1e6 * m);
-      return std::string(text);
-    };
-    if (kept.into_clearance > 0)
-      assembly_.notes.push_back(self + ": facets of a cylinder reach " + micrometers(kept.into_clearance) +
-                                " into a clearance");
-    if (kept.bent > 1e-9)
-      assembly_.notes.push_back(self + ": a plane that runs into a hole tangentially is bent by " +
-                                micrometers(kept.bent));
-    if (kept.turned > 0)
-      assembly_.notes.push_back(self + ": " + std::to_string(kept.turned) + " facets beside holes were turned over");
+  /// Of a few rounding steps of the file nothing is told: no chord helps against them.
+  void note(const std::string& self, const ClearanceReport& kept, double margin) {
+    const double told = std::max(1e-8, 4 * margin);
+    if (kept.into_clearance > told) notes_.add(note_texts::kReachesIn, self, kept.into_clearance);
+    if (kept.bent > told) notes_.add(note_texts::kBent, self, kept.bent);
+    if (kept.turned > 0) notes_.add(note_texts::kTurned, self);
   }
 
   void tell_unread() {
-    for (const std::string& what : unplaced_) assembly_.notes.push_back(what);
-    for (const std::string& what : unread_) assembly_.notes.push_back(what + ", which is not read: left out");
-    for (const std::uint64_t id : triangles_.unused())
-      assembly_.notes.push_back("the triangles of #" + std::to_string(id) + " are of no product: left out");
+    for (const std::string& what : unplaced_) notes_.add(note_texts::kUnplaced, what);
+    for (const std::string& what : unread_) notes_.add(note_texts::kUnread, what);
+    for (const std::uint64_t id : triangles_.unused()) notes_.add(note_texts::kNoProduct, '#' + std::to_string(id));
   }
 
+  /// Parts of which no triangles could be made, which was told.
   void drop_empty() {
     auto& parts = assembly_.parts;
     const auto empty = [&](const AssemblyPart& part) { return assembly_.shapes[part.shape]->triangles.empty(); };
-    for (const AssemblyPart& part : parts)
-      if (empty(part) && !leaves_[part.shape].tessellated)
-        assembly_.notes.push_back('"' + part.name + "\" has no faces: left out");
     parts.erase(std::remove_if(parts.begin(), parts.end(), empty), parts.end());
-    if (parts.empty() && !unplaced_.empty()) throw Error(path_ + ": " + unplaced_.front());
+    if (parts.empty() && !unplaced_.empty())
+      throw Error(path_ + ": " + note_texts::kUnplaced.one + unplaced_.front() + " has no place: nothing can be read");
     if (parts.empty() && !unread_.empty()) throw Error(path_ + ": " + unread_.front() + ", which is not read");
+    if (parts.empty() && !triangles_.unused().empty())
+      throw Error(path_ + ": the triangles of #" + std::to_string(triangles_.unused().front()) +
+                  " are of no product: nothing else can be read");
+    if (parts.empty() && !curves_.empty())
+      throw Error(path_ + ": " + curves_.front() + ": curves without faces are no part");
   }
 
   const std::string &path_, &bytes_;
@@ -353,10 +416,14 @@ class StepReader {
   Handle(XCAFDoc_ColorTool) colors_;
   std::vector<Leaf> leaves_;
   std::map<std::string, std::size_t> leaf_of_;
+  std::set<std::string> left_out_;  // products
   TransferredTriangles triangles_;
+  ProductContents contents_{triangles_};
   std::optional<FaceNames> face_names_;  // since the file is open
-  std::vector<std::string> unplaced_;    // instances, a note each
+  std::vector<std::string> unplaced_;    // instances, each "#17"
   std::vector<std::string> unread_;      // shapes, each "#17 is a ..."
+  std::vector<std::string> curves_;      // the same, without faces
+  ImportNotes notes_;
   Assembly assembly_;
 };
 

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "import/file_check.hpp"
+#include "import/note_texts.hpp"
 #include "import/utf8.hpp"
 #include "import/zip_archive.hpp"
 #include "tegotae/core/error.hpp"
@@ -56,6 +57,7 @@ class ThreeMfReader {
     std::vector<std::string> groups;
     for (const pugi::xml_node& item : build.children())
       if (is(item.name(), "item")) add(item, start, scaled(transform_of(item)), groups, 0);
+    notes_.tell(file_.notes);
     return std::move(file_);
   }
 
@@ -172,11 +174,11 @@ class ThreeMfReader {
     std::string name = attribute(object, "name");
     if (name.empty()) name = "object " + id;
     if (type == "support" || type == "solidsupport") {
-      file_.notes.push_back('"' + name + "\" is a support of the print: left out");
+      notes_.add(note_texts::kSupport, '"' + name + '"');
       return;
     }
     if (type == "other") {
-      file_.notes.push_back('"' + name + "\" is of the type other, which is nothing to be made: left out");
+      notes_.add(note_texts::kOther, '"' + name + '"');
       return;
     }
     if (depth > kDeepest) damaged("its components are nested more than " + std::to_string(kDeepest) + " deep");
@@ -216,10 +218,8 @@ class ThreeMfReader {
       }
       out.triangles.push_back(corners);
     }
-    if (child(mesh, "beamlattice")) file_.notes.push_back('"' + name + "\" has a beam lattice, which is not read");
-    if (attribute(object, "meshresolution") == "lowres")
-      file_.notes.push_back('"' + name +
-                            "\" is printed from slices, which are not read: its mesh is a coarse stand-in");
+    if (child(mesh, "beamlattice")) notes_.add(note_texts::kLattice, '"' + name + '"');
+    if (attribute(object, "meshresolution") == "lowres") notes_.add(note_texts::kSlices, '"' + name + '"');
     return out;
   }
 
@@ -258,6 +258,7 @@ class ThreeMfReader {
   std::map<std::pair<std::string, std::string>, pugi::xml_node> objects_;  // by model and id
   double units_ = 1;                                                       // of PartFile::unit in one unit of the file
   std::size_t placed_ = 0;                                                 // parts and groups
+  ImportNotes notes_;
   PartFile file_;
 };
 

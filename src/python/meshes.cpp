@@ -268,8 +268,8 @@ unit : str, optional
 split : bool
     Every connected piece of a surface is a part.
 chord, coarse_chord : float
-    m: how far a facet of a STEP file may be from a face with a counterpart nearby, and from any other curved face (less
-    of a small part that is alone in its file).
+    m: how far a facet of a STEP file may be from a face with a counterpart nearby, and from any other curved face (a
+    part alone in its file is between the two, by its size).
 
 Returns
 -------

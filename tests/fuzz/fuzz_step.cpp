@@ -1,6 +1,7 @@
 // STEP files with tessellated shapes: what is taken out of the text, and the text that is left for OpenCASCADE, which
-// is not run here.
+// is not run here. Before that, lists that are empty.
 #include "fuzz/fuzz.hpp"
+#include "import/step_lists.hpp"
 #include "import/step_triangles.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -21,12 +22,17 @@ std::vector<Seed> seeds() {
                       "#4=TESSELLATED_WIRE('',(),$);\n"
                       "#9=(REPRESENTATION('',(#3,#4),#8)SHAPE_REPRESENTATION()TESSELLATED_SHAPE_REPRESENTATION());\n" +
                       end},
-      {"face", begin + points + plain + "#9=SHAPE_REPRESENTATION('',(#2,#2,$,LABEL('x')),\"0F\");\n" + end}};
+      {"face", begin + points + plain + "#9=SHAPE_REPRESENTATION('',(#2,#2,$,LABEL('x')),\"0F\");\n" + end},
+      {"empty", begin + "#5=EDGE_LOOP('()',( ));\n#6=STYLED_ITEM('',(),#5);\n" + end},
+      {"knots",
+       begin + "#7=(BOUNDED_CURVE()B_SPLINE_CURVE(1,(#1),.UNSPECIFIED.,.F.,.F.)CURVE()RATIONAL_B_SPLINE_CURVE(()));\n" +
+           end}};
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string path = "input.step", bytes(reinterpret_cast<const char*>(data), size);
   try {
+    require_lists(path, bytes);
     const PlainStep plain = take_triangles(path, bytes);
     std::size_t triangles = 0;
     for (const StepTriangles& shape : plain.shapes) {

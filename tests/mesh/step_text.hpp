@@ -16,10 +16,10 @@ class StepText {
     set_unit(".MILLI.");
   }
 
-  /// Of the representations that follow: ".MILLI." or "$" of meters.
-  void set_unit(const std::string& prefix) {
+  /// Of the representations that follow: ".MILLI." or "$" of meters; angles are in radians or in the unit `angle`.
+  void set_unit(const std::string& prefix, int angle = 0) {
     const int length = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(" + prefix + ",.METRE.))");
-    const int angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
+    if (angle == 0) angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
     const int solid_angle = add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
     context_ = add("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((" + ref(length) + "," +
                    ref(angle) + "," + ref(solid_angle) + "))REPRESENTATION_CONTEXT('c','3D'))");

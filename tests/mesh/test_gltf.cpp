@@ -144,7 +144,7 @@ TEST_CASE("glTF: nodes of other scenes, and those scaled to nothing, are told an
   doc.j["scenes"].push_back({{"nodes", {2}}});
   const Assembly a = read(doc.save(folder));
   REQUIRE(a.parts.size() == 1);
-  CHECK(has_note(a, "\"hidden\" is scaled to nothing"));
+  CHECK(has_note(a, "\"hidden\": scaled to nothing"));
   CHECK(has_note(a, "not in the scene that is read: nodes with meshes, 1"));
 }
 

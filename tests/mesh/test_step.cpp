@@ -10,6 +10,7 @@
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "mesh/step_assembly.hpp"
+#include "mesh/step_products.hpp"
 #include "tegotae/import/load.hpp"
 #include "tegotae/import/write.hpp"
 
@@ -181,7 +182,7 @@ TEST_CASE("faces that mate are tessellated finer than others", "[step]") {
   CHECK(finer.facets > 2 * window.facets);
 }
 
-TEST_CASE("facets of a part alone in its file follow its size, but for cylinders", "[step]") {
+TEST_CASE("facets of a part alone in its file follow its size", "[step]") {
   const TempFolder folder;
   // mm: edge, and how far the facets of its cavity, a sphere, may be from it: edge sqrt(3) / 4000, 5 to 50 um.
   for (const auto& [size, chord] : {std::pair(5.0, 5e-3), std::pair(60.0, 26e-3), std::pair(400.0, 50e-3)}) {
@@ -203,11 +204,49 @@ TEST_CASE("facets of a part alone in its file follow its size, but for cylinders
     if (size > 50) CHECK(deepest > 0.3 * chord);  // the facets of a small one are bound by their angle
     const Radii hole = radii(mesh, 0, 49 * size / 1000, 51 * size / 1000);
     CHECK(hole.nearest >= 0.05e-3 * size - 1e-15);
-    CHECK(hole.farthest <= 0.05e-3 * size + 5e-6 + 1e-8);
+    // A tenth of the sphere's chord, from 5 um on.
+    const double fine = std::max(5e-6, 1e-3 * size * std::sqrt(3) / 40000);
+    CHECK(hole.farthest <= 0.05e-3 * size + fine + 1e-8);
     // The sphere's area by that of an equilateral facet whose middle is `chord` deep, threefold.
     const double facet = 3 * std::sqrt(3) / 4 * 2 * radius * chord;
     CHECK(static_cast<double>(mesh.triangles.size()) < 3 * 4 * M_PI * radius * radius / facet + 2000);
   }
+}
+
+TEST_CASE("cylinders and cones of a large part alone in its file have no more facets than those of a small one",
+          "[step]") {
+  const TempFolder folder;
+  const auto read = [&](double size, double coarse_chord) {
+    write_step_beam(folder / "beam.step", size);
+    AssemblyOptions options;
+    options.coarse_chord = coarse_chord;
+    const Assembly a = read_assembly(folder / "beam.step", options);
+    REQUIRE(a.shapes.size() == 1);
+    CHECK(a.notes.empty());
+    CHECK(report(*a.shapes[0]).closed);
+    return a.shapes[0];
+  };
+  // Farthest corner of the first bore (hole) and nearest facet of the first boss (shaft), m from their walls.
+  const auto errors = [](const TriangleMesh& mesh, double size) {
+    const double bore = 7.5e-3 * size, boss = 15e-3 * size;
+    const Radii in = radii(mesh, 25e-3 * size, 0.98 * bore, 1.02 * bore);
+    const Radii out = radii(mesh, 75e-3 * size, 0.98 * boss, 1.02 * boss);
+    CHECK(in.nearest >= 1e-3 * bore - 1e-15);
+    CHECK(out.farthest <= 1e-3 * boss + 1e-15);
+    return std::pair(in.farthest - 1e-3 * bore, 1e-3 * boss - out.nearest);
+  };
+  // Diagonals: 199.7 mm, the largest that has 5 um; 1004 mm, for which 25.1 um are as much.
+  const auto small = read(199, 50e-6), large = read(1000, 50e-6), fine = read(1000, 5e-6);
+  const double noise = 2e-8;
+  const auto [small_bore, small_boss] = errors(*small, 199);
+  CHECK(std::max(small_bore, small_boss) <= 5e-6 + noise);
+  const auto [large_bore, large_boss] = errors(*large, 1000);
+  CHECK(std::max(large_bore, large_boss) <= 25.1e-6 + noise);
+  CHECK(std::min(large_bore, large_boss) > 10e-6);
+  const auto [fine_bore, fine_boss] = errors(*fine, 1000);
+  CHECK(std::max(fine_bore, fine_boss) <= 5e-6 + noise);
+  CHECK(static_cast<double>(large->triangles.size()) < 1.05 * static_cast<double>(small->triangles.size()));
+  CHECK(fine->triangles.size() > 2 * large->triangles.size());
 }
 
 TEST_CASE("a solid of a STEP file that is not closed is told with the face", "[step]") {
@@ -216,9 +255,9 @@ TEST_CASE("a solid of a STEP file that is not closed is told with the face", "[s
   const Assembly a = read_assembly(folder / "open.step");
   REQUIRE(a.notes.size() == 1);
   INFO(a.notes[0]);
-  CHECK(a.notes[0].find("not closed at face #") != std::string::npos);
+  CHECK(a.notes[0].find("\" at face #") != std::string::npos);
   CHECK(a.notes[0].find("(a plane around (") != std::string::npos);
-  CHECK(a.notes[0].find(" and 3 more:") != std::string::npos);  // the four sides, not the bottom
+  CHECK(a.notes[0].find(" and 3 more: not closed") != std::string::npos);  // the four sides, not the bottom
   // The number is that of an entity of the file which is a face.
   const std::string number = a.notes[0].substr(a.notes[0].find('#'), a.notes[0].find(" (a") - a.notes[0].find('#'));
   const std::string text = read_text(folder / "open.step");

@@ -3,33 +3,12 @@
 #include <array>
 #include <filesystem>
 
-#include "apps/run_program.hpp"
-#include "mesh/assembly_checks.hpp"
-#include "mesh/step_text.hpp"
+#include "mesh/step_blocks.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
-
-Assembly read(const StepText& step) {
-  const TempFolder folder;
-  folder.write("a.step", step.text());
-  return read_assembly(folder / "a.step");
-}
-
-std::string refusal(const StepText& step) {
-  return test::refusal([&] { read(step); });
-}
-
-void check_block(const Assembly& a, std::size_t part, double x_mm = 0) {
-  check_box(box_of(a, part), {1e-3 * x_mm, 0, 0}, {0.04 + 1e-3 * x_mm, 0.03, 0.01});
-  CHECK(report(*a.shapes[a.parts[part].shape]).inverted_shells == 0);
-}
-
-std::string r(int id) {
-  return StepText::ref(id);
-}
 
 /// A block, placed by a MAPPED_ITEM or by a relationship of representations.
 StepText placed(bool mapped, double x_axis, double scale) {
@@ -82,12 +61,6 @@ StepText block_with(const std::string& more) {
   return s;
 }
 
-Assembly read_step_text(const std::string& text) {
-  const TempFolder folder;
-  folder.write("a.step", text);
-  return read_assembly(folder / "a.step");
-}
-
 /// A block placed by a mapped item whose target is an operator; each axis is none, or a direction along x, y or z.
 StepText turned(const std::array<std::array<double, 3>, 3>& axes) {
   StepText s;
@@ -138,6 +111,9 @@ TEST_CASE("STEP: how something is drawn refuses no file", "[step]") {
     const Assembly a = read(styled(style));
     REQUIRE(a.parts.size() == 1);
     check_block(a, 0);
+    // Points and curves have no color that a part could have.
+    const std::string text = style;
+    CHECK(has_note(a, "colors") == (text.find("SURFACE") == 0 || text.find("FILL") == 0));
   }
 }
 
@@ -188,7 +164,7 @@ TEST_CASE("STEP: solids by operations and instances without a place are told, ne
   both.shape(plate, {both.origin(), both.block(), pin});
   const Assembly a = read(both);
   check_block(a, 0);
-  CHECK(has_note(a, r(pin) + " is a BLOCK, which is not read: left out"));
+  CHECK(has_note(a, r(pin) + " is a BLOCK: not read, so left out"));
 
   StepText alone;
   const int sphere = alone.add("SPHERE('',5.," + r(alone.point(0, 0, 0)) + ")");
@@ -207,7 +183,7 @@ TEST_CASE("STEP: solids by operations and instances without a place are told, ne
   const int use = loose.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','loose',''," + r(top) + "," + r(part) + ",$)");
   const Assembly b = read(loose);
   REQUIRE(b.parts.size() == 1);
-  CHECK(has_note(b, "the instance " + r(use) + " has no place"));
+  CHECK(has_note(b, "the instance " + r(use) + ": without a place"));
 }
 
 TEST_CASE("STEP: marks, comments, sections and schemas around the entities", "[step]") {
@@ -265,10 +241,26 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   const std::size_t child = both.parts[0].name == "child" ? 0 : 1;
   check_block(both, child, 100);
   check_block(both, 1 - child);
+  // The folder that is named from here counts, not the one that the program runs in.
+  const std::string from_here = std::filesystem::relative(folder / "a.step").string();
+  for (const std::string& relative : {from_here, "./" + from_here}) {
+    INFO(relative);
+    CHECK(read_assembly(relative).parts.size() == 2);
+  }
+  // What is left out of it is told like what is left out of this one.
+  StepText child_text;
+  const int pin = child_text.add("BLOCK(''," + r(child_text.origin()) + ",400.,3.,3.)");
+  const int hose = child_text.add("SWEPT_DISK_SOLID(''," + r(pin) + ",2.,$,0.,1.)");
+  child_text.shape(child_text.product("child"), {child_text.origin(), child_text.block(), pin, hose});
+  folder.write("child.stp", child_text.text());
+  const Assembly less = read_assembly(folder / "a.step");
+  CHECK(less.parts.size() == 2);
+  CHECK(has_note(less, "child.stp: " + r(pin) + " is a BLOCK"));
+  CHECK(has_note(less, "child.stp: " + r(hose) + " is a SWEPT_DISK_SOLID"));
   folder.write("a.step", naming("other.stp"));
   const Assembly one = read_assembly(folder / "a.step");
   CHECK(one.parts.size() == 1);
-  CHECK(has_note(one, "the file \"other.stp\" that it names is missing"));
+  CHECK(has_note(one, "the file \"other.stp\": named in this one and missing"));
   folder.write("a.step", naming(elsewhere / "child.stp"));
   CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("no regular file in its folder or below"));
   const std::string up = "../" + std::filesystem::path(elsewhere / "child.stp").parent_path().filename().string();
@@ -311,7 +303,7 @@ TEST_CASE("STEP: products that have one shape between them are named", "[step]")
   shown_by(flat, right, shape);
   const Assembly once = read(flat);
   CHECK(once.parts.size() == 1);
-  CHECK(has_note(once, "\"left\", \"right\" have one shape (" + r(shape) + "), which is read once"));
+  CHECK(has_note(once, "the products \"left\", \"right\" of " + r(shape) + ", which is read once"));
 
   // One of them in an assembly, then both.
   StepText s;

@@ -214,7 +214,11 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
       {"CUBIC_BEZIER_TRIANGULATED_FACE", "CUBIC_BEZIER_TRIANGULATED_FACE(''," + r(points) + ",4,(),$,(),())"},
       {"REPOSITIONED_TESSELLATED_ITEM", "(GEOMETRIC_REPRESENTATION_ITEM()REPOSITIONED_TESSELLATED_ITEM(" +
                                             r(s.origin()) + ")REPRESENTATION_ITEM('')TESSELLATED_GEOMETRIC_SET((" +
-                                            r(points) + "))TESSELLATED_ITEM())"}};
+                                            r(points) + "))TESSELLATED_ITEM())"},
+      {"TESSELLATED_ITEM of several kinds",
+       "(GEOMETRIC_REPRESENTATION_ITEM()REPRESENTATION_ITEM('')TESSELLATED_ANNOTATION_OCCURRENCE()"
+       "TESSELLATED_GEOMETRIC_SET((" +
+           r(points) + "))TESSELLATED_ITEM())"}};
   for (const auto& [kind, text] : others) {
     INFO(kind);
     StepText one = s;
@@ -223,21 +227,37 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
     one.shape(one.product("plate"), {one.origin(), one.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
     const Assembly a = read_text_of(with(one, item).text());
     REQUIRE(a.parts.size() == 1);
-    CHECK(has_note(a, r(item) + " is a " + kind + ", which is not read"));
+    CHECK(has_note(a, r(item) + " is a " + kind + ": not read, so left out"));
   }
-  StepText lines = s;
-  const int tip = solid(lines);
-  lines.shape(lines.product("tip"), {lines.add("TESSELLATED_CURVE_SET(''," + r(points) + ",((1,2,3)))"), tip}, kShown);
-  const Assembly a = read_text_of(lines.text());
-  REQUIRE(a.parts.size() == 1);
-  CHECK(a.notes.empty());
-  check_tip(a);
+  for (const char* line :
+       {"TESSELLATED_CURVE_SET('',POINTS,((1,2,3)))", "TESSELLATED_POINT_SET('',POINTS,(1,2,3))",
+        "TESSELLATED_EDGE('',POINTS,$,(1,2,3))", "TESSELLATED_CONNECTING_EDGE('',POINTS,$,(1,2,3),$,$,.T.,(1),(1),(1))",
+        "TESSELLATED_WIRE('',(),$)", "TESSELLATED_VERTEX('',POINTS,$,1)"}) {
+    INFO(line);
+    StepText lines = s;
+    const int tip = solid(lines);
+    std::string text = line;
+    if (const auto at = text.find("POINTS"); at != std::string::npos) text.replace(at, 6, r(points));
+    lines.shape(lines.product("tip"), {lines.add(text), tip}, kShown);
+    const Assembly a = read_text_of(lines.text());
+    REQUIRE(a.parts.size() == 1);
+    CHECK(a.notes.empty());
+    check_tip(a);
+  }
   // Named by no product at all.
   StepText lost = s;
   lost.shape(lost.product("plate"), {lost.origin(), lost.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
   const int item = solid(lost);
   lost.representation({item}, kShown);
-  CHECK(has_note(read_text_of(lost.text()), "the triangles of " + r(item) + " are of no product"));
+  CHECK(has_note(read_text_of(lost.text()), "the triangles of " + r(item) + ": of no product"));
+  // Alone, and named by a property, which is not the shape.
+  StepText alone = s;
+  const int product = alone.product("plate"), bare = solid(alone);
+  alone.shape(product, {alone.origin()});
+  const int shown = alone.representation({bare}, kShown);
+  const int property = alone.add("PROPERTY_DEFINITION('tessellated',''," + r(product) + ")");
+  alone.add("PROPERTY_DEFINITION_REPRESENTATION(" + r(property) + "," + r(shown) + ")");
+  CHECK_THAT(refusal_of(alone.text()), Catch::Contains("the triangles of " + r(bare) + " are of no product"));
 }
 
 TEST_CASE("STEP: texts and comments with signs of the language in them change nothing", "[step]") {

@@ -39,7 +39,7 @@ struct AssemblyOptions {
   /// file more than 20 m across is refused, because it is most often in mm.
   std::optional<std::string> unit;
   double chord = 5e-6;          ///< m: largest distance of a facet from its face, for mating faces of a STEP file
-  double coarse_chord = 50e-6;  ///< m: the same for other curved faces; less in a small part that is alone in its file
+  double coarse_chord = 50e-6;  ///< m: the same for other curved faces; a part alone in its file has less, by its size
   bool split = false;           ///< makes a part of every connected component of a surface
   /// Called now and then with the present step, and with how much of how much of it is done (of 0: not known).
   std::function<void(const char* what, std::size_t done, std::size_t total)> progress;

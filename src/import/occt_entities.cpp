@@ -1,0 +1,34 @@
+#include "import/occt_entities.hpp"
+
+#include <StepData_UndefinedEntity.hxx>
+#include <cctype>
+
+namespace tegotae {
+
+std::string step_name(const Handle(Standard_Transient) & entity) {
+  std::string name;
+  auto unknown = Handle(StepData_UndefinedEntity)::DownCast(entity);
+  if (!unknown.IsNull()) {
+    for (; !unknown.IsNull(); unknown = unknown->Next())
+      name += (name.empty() ? "" : "+") + std::string(unknown->StepType());
+    return name;
+  }
+  const std::string type = entity->DynamicType()->Name();  // "StepShape_RightCircularCylinder"
+  for (std::size_t i = type.find('_') + 1; i < type.size(); ++i) {
+    const auto c = static_cast<unsigned char>(type[i]);
+    // Axis2Placement3d is AXIS2_PLACEMENT_3D.
+    const bool dimension = std::isdigit(c) != 0 && type.compare(i + 1, 1, "d") == 0;
+    const bool starts_word = std::isupper(c) != 0 || dimension;
+    if (starts_word && !name.empty()) name += '_';
+    name += static_cast<char>(std::toupper(c));
+  }
+  return name;
+}
+
+std::string named(const Handle(StepData_StepModel) & model, const Handle(Standard_Transient) & entity) {
+  const std::string name = step_name(entity);
+  const bool vowel = std::string("AEIOU").find(name.front()) != std::string::npos;
+  return "#" + std::to_string(model->IdentLabel(entity)) + (vowel ? " is an " : " is a ") + name;
+}
+
+}  // namespace tegotae

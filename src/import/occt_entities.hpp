@@ -1,0 +1,14 @@
+#pragma once
+
+#include <StepData_StepModel.hxx>
+#include <string>
+
+namespace tegotae {
+
+/// What the file calls an entity of this kind: RIGHT_CIRCULAR_CYLINDER. One of several kinds: A+B.
+std::string step_name(const Handle(Standard_Transient) & entity);
+
+/// "#17 is a BLOCK".
+std::string named(const Handle(StepData_StepModel) & model, const Handle(Standard_Transient) & entity);
+
+}  // namespace tegotae

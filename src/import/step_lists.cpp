@@ -1,0 +1,118 @@
+#include "import/step_lists.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "import/check_text.hpp"
+#include "import/step_entities.hpp"
+
+namespace tegotae {
+namespace {
+
+// In order. All lists of these are [1:?] or longer.
+constexpr std::array<std::string_view, 51> kFilled = {"ANGULARITY_TOLERANCE",
+                                                      "APPLIED_APPROVAL_ASSIGNMENT",
+                                                      "APPLIED_DATE_AND_TIME_ASSIGNMENT",
+                                                      "APPLIED_DATE_ASSIGNMENT",
+                                                      "APPLIED_ORGANIZATION_ASSIGNMENT",
+                                                      "APPLIED_PERSON_AND_ORGANIZATION_ASSIGNMENT",
+                                                      "AUTO_DESIGN_APPROVAL_ASSIGNMENT",
+                                                      "AUTO_DESIGN_GROUP_ASSIGNMENT",
+                                                      "B_SPLINE_CURVE",
+                                                      "B_SPLINE_CURVE_WITH_KNOTS",
+                                                      "B_SPLINE_SURFACE",
+                                                      "B_SPLINE_SURFACE_WITH_KNOTS",
+                                                      "CAMERA_MODEL_D3_MULTI_CLIPPING_INTERSECTION",
+                                                      "CAMERA_MODEL_D3_MULTI_CLIPPING_UNION",
+                                                      "CARTESIAN_POINT",
+                                                      "CC_DESIGN_APPROVAL",
+                                                      "CIRCULAR_RUNOUT_TOLERANCE",
+                                                      "COAXIALITY_TOLERANCE",
+                                                      "COMPOSITE_TEXT",
+                                                      "COMPOSITE_TEXT_WITH_EXTENT",
+                                                      "CONCENTRICITY_TOLERANCE",
+                                                      "CONNECTED_EDGE_SET",
+                                                      "CONNECTED_FACE_SUB_SET",
+                                                      "CONTEXT_DEPENDENT_INVISIBILITY",
+                                                      "CURVE_BOUNDED_SURFACE",
+                                                      "DATA_ENVIRONMENT",
+                                                      "DERIVED_UNIT",
+                                                      "DIRECTION",
+                                                      "EDGE_BASED_WIREFRAME_MODEL",
+                                                      "EDGE_LOOP",
+                                                      "FACE_BASED_SURFACE_MODEL",
+                                                      "GEOMETRIC_TOLERANCE_WITH_DATUM_REFERENCE",
+                                                      "INTERSECTION_CURVE",
+                                                      "INVISIBILITY",
+                                                      "MEASURE_QUALIFICATION",
+                                                      "PARALLELISM_TOLERANCE",
+                                                      "PERPENDICULARITY_TOLERANCE",
+                                                      "POLY_LOOP",
+                                                      "QUALIFIED_REPRESENTATION_ITEM",
+                                                      "RATIONAL_B_SPLINE_CURVE",
+                                                      "RATIONAL_B_SPLINE_SURFACE",
+                                                      "SEAM_CURVE",
+                                                      "SHELL_BASED_SURFACE_MODEL",
+                                                      "SUBFACE",
+                                                      "SURFACE_CURVE",
+                                                      "SURFACE_STYLE_PARAMETER_LINE",
+                                                      "SYMMETRY_TOLERANCE",
+                                                      "TESSELLATED_GEOMETRIC_SET",
+                                                      "TEXT_STYLE_WITH_BOX_CHARACTERISTICS",
+                                                      "TOTAL_RUNOUT_TOLERANCE",
+                                                      "TRIMMED_CURVE"};
+
+bool is_in_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Whether `text` has a list `()`. What follows a name, as in LENGTH_UNIT(), and what `text` begins with is none.
+bool has_empty_list(std::string_view text) {
+  char last = 'A';       // the last sign that is no blank
+  bool of_name = false;  // whether the parenthesis that was opened last follows a name
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_one_of(c, kBlank)) continue;
+    if (c == '\'' || c == '"') {
+      i = text.find(c, i + 1);
+      if (i == text.npos) return false;
+    }
+    if (c == ')' && last == '(' && !of_name) return true;
+    if (c == '(') of_name = is_in_name(last);
+    last = c;
+  }
+  return false;
+}
+
+void require_filled(const std::string& path, std::uint64_t id, std::string_view kind, std::string_view values) {
+  if (!std::binary_search(kFilled.begin(), kFilled.end(), kind) || !has_empty_list(values)) return;
+  const bool vowel = is_one_of(kind.front(), "AEIOU");
+  refuse(path, "damaged: #" + std::to_string(id) + " is " + (vowel ? "an " : "a ") + std::string(kind) +
+                   " with an empty list");
+}
+
+}  // namespace
+
+void require_lists(const std::string& path, std::string_view bytes) {
+  if (!has_empty_list(bytes)) return;
+  for (const StepStatement& s : step_statements(path, bytes)) {
+    if (s.id == 0 || !has_empty_list(s.value)) continue;
+    StepCursor at(path, s.id, s.value);
+    const std::string_view kind = at.word();
+    if (!kind.empty()) {
+      require_filled(path, s.id, kind, at.rest());
+      continue;
+    }
+    at.expect('(');
+    while (!at.take(')')) {
+      const std::string_view part = at.word();
+      if (part.empty()) at.damaged("has no kind");
+      const std::string_view values = at.rest();
+      at.list([&] { at.skip(); });
+      require_filled(path, s.id, part, values.substr(0, values.size() - at.rest().size()));
+    }
+  }
+}
+
+}  // namespace tegotae
