@@ -1,7 +1,8 @@
 #include "import/mating_notes.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "core/number_text.hpp"
 
 namespace tegotae {
 namespace {
@@ -31,10 +32,8 @@ void MatingNotes::add(const AssemblyPart& a, const AssemblyPart& b, FaceKind kin
 }
 
 void MatingNotes::tell(double chord, std::vector<std::string>& notes) const {
-  char advice[160];
-  std::snprintf(advice, sizeof advice,
-                ": facets reach up to %.3g um into the clearance; for a fit with less play take a smaller --chord",
-                1e6 * chord);
+  const std::string advice = ": facets reach up to " + number_text(1e6 * chord, 3) +
+                             " um into the clearance; for a fit with less play take a smaller --chord";
   std::size_t lines = 0;
   for (const auto& [shapes, pair] : pairs_) {
     if (++lines > kMaxLines) break;

@@ -20,12 +20,12 @@
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gp_Quaternion.hxx>
 #include <map>
 #include <optional>
 #include <sstream>
 
+#include "core/number_text.hpp"
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
 #include "import/occt_check.hpp"
@@ -268,9 +268,7 @@ class StepReader {
 
   /// Name and size: facets by the million come from a unit that is not the part's.
   static std::string described(const Leaf& leaf) {
-    char size[32];
-    std::snprintf(size, sizeof size, "%.3g m", size_of(leaf));
-    return '"' + printable(leaf.name) + "\" (" + size + " across)";
+    return '"' + printable(leaf.name) + "\" (" + number_text(size_of(leaf), 3) + " m across)";
   }
 
   /// m, diagonal of the box around its faces.
@@ -313,11 +311,7 @@ class StepReader {
   }
 
   void note(const std::string& self, const ClearanceReport& kept) {
-    const auto micrometers = [](double m) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.3g um", 1e6 * m);
-      return std::string(text);
-    };
+    const auto micrometers = [](double m) { return number_text(1e6 * m, 3) + " um"; };
     if (kept.into_clearance > 0)
       assembly_.notes.push_back(self + ": facets of a cylinder reach " + micrometers(kept.into_clearance) +
                                 " into a clearance");
