@@ -25,11 +25,12 @@ using namespace tegotae::apps;
 
 namespace {
 
-/// All of them can take long.
-void add_progress(CLI::App& command) {
-  const auto commands = command.get_subcommands([](CLI::App*) { return true; });
-  for (CLI::App* c : commands) add_progress(*c);
-  if (commands.empty()) add_progress_option(command);
+/// All of them can take long, and one that has commands of its own may run without them too.
+void add_progress(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    add_progress_option(*command);
+    add_progress(*command);
+  }
 }
 
 }  // namespace
