@@ -5,6 +5,7 @@
 #include "bench/bench.hpp"
 #include "bench/scenes.hpp"
 #include "cli/check.hpp"
+#include "cli/dropped_file.hpp"
 #include "cli/import.hpp"
 #include "cli/run_command.hpp"
 #include "cli/view_command.hpp"
@@ -112,7 +113,9 @@ int main(int argc, char** argv) {
 
   add_progress(app);
 
-  return guarded_main(app, argc, argv, [&] {
+  app.footer("tegotae FILE is tegotae view FILE.");
+  std::vector<char*> words = with_view(app, argc, argv);
+  return guarded_main(app, static_cast<int>(words.size()) - 1, words.data(), [&] {
     set_hierarchy_cache(default_cache_folder());
     const MeshLoader load = [trusted](const std::string& mesh, double unit) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
