@@ -3,6 +3,8 @@
 #include "bench/results.hpp"
 #include "shared/format.hpp"
 
+#include "core/number_text.hpp"
+
 namespace tegotae::bench {
 namespace {
 
@@ -25,7 +27,7 @@ using apps::format;
 
 std::string number(double x) {
   if (!std::isfinite(x)) return "–";
-  return format(std::abs(x) < 10 ? "%.2g" : "%.0f", x);
+  return std::abs(x) < 10 ? number_text(x, 2) : fixed_text(x, 0);
 }
 
 std::string count(std::size_t n) {

@@ -10,7 +10,7 @@
 #include "cli/scene_writer.hpp"
 #include "cli/watched_child.hpp"
 #include "core/name_list.hpp"
-#include "shared/format.hpp"
+#include "core/number_text.hpp"
 #include "shared/length_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -33,11 +33,6 @@ std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + ' ' + (n == 1 ? one : many);
 }
 
-/// As people write it.
-std::string number(double x) {
-  return format(x < 1e4 ? "%.4g" : "%.0f", x);
-}
-
 /// What was made, and what to do with it. The size shows a wrong unit at once.
 std::string result_text(const Assembly& assembly, const std::string& scene, bool hold_one) {
   std::size_t triangles = 0;
@@ -50,8 +45,8 @@ std::string result_text(const Assembly& assembly, const std::string& scene, bool
   const Vec3 mm = 1e3 * box.sizes();
   std::string text = scene + ": " + counted(assembly.parts.size(), "part", "parts") + ", " +
                      counted(assembly.shapes.size(), "mesh", "meshes") + ", " +
-                     counted(triangles, "triangle", "triangles") + ", " + number(mm.x()) + " x " + number(mm.y()) +
-                     " x " + number(mm.z()) + " mm\n";
+                     counted(triangles, "triangle", "triangles") + ", " + number_text(mm.x(), 4) + " x " +
+                     number_text(mm.y(), 4) + " x " + number_text(mm.z(), 4) + " mm\n";
   text += "look at it and take parts with `tegotae view " + scene + "`\n";
   if (assembly.parts.size() > 1) text += "take it apart: `tegotae plan " + scene + " --all`\n";
   if (hold_one)

@@ -5,6 +5,7 @@
 #include "bench/bench.hpp"
 #include "bench/scenes.hpp"
 #include "cli/check.hpp"
+#include "cli/dropped_file.hpp"
 #include "cli/import.hpp"
 #include "cli/run_command.hpp"
 #include "cli/view_command.hpp"
@@ -25,11 +26,12 @@ using namespace tegotae::apps;
 
 namespace {
 
-/// All of them can take long.
-void add_progress(CLI::App& command) {
-  const auto commands = command.get_subcommands([](CLI::App*) { return true; });
-  for (CLI::App* c : commands) add_progress(*c);
-  if (commands.empty()) add_progress_option(command);
+/// All of them can take long, and one that has commands of its own may run without them too.
+void add_progress(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    add_progress_option(*command);
+    add_progress(*command);
+  }
 }
 
 }  // namespace
@@ -111,7 +113,9 @@ int main(int argc, char** argv) {
 
   add_progress(app);
 
-  return guarded_main(app, argc, argv, [&] {
+  app.footer("tegotae FILE is tegotae view FILE.");
+  std::vector<char*> words = with_view(app, argc, argv);
+  return guarded_main(app, static_cast<int>(words.size()) - 1, words.data(), [&] {
     set_hierarchy_cache(default_cache_folder());
     const MeshLoader load = [trusted](const std::string& mesh, double unit) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);

@@ -31,7 +31,12 @@ void hold_smallest(SceneFile& file, bool quiet) {
   auto& parts = file.scene.parts;
   const auto is_held = [](const Part& p) { return p.held; };
   if (std::any_of(parts.begin(), parts.end(), is_held)) return;
-  const std::string name = smallest_part(file.scene);
+  std::string name;
+  {
+    StatusLine status(!quiet);
+    status.say("looking for the smallest part");
+    name = smallest_part(file.scene);
+  }
   for (Part& part : parts) part.held = part.name == name;
   const auto held = std::find_if(parts.begin(), parts.end(), is_held);
   file.script = StylusScript({{0, held->pose}});
@@ -48,6 +53,7 @@ void add_unit_option(CLI::App& app, ImportOptions& options) {
 }
 
 int with_scene(const OpenOptions& options, const MeshLoader& load, const std::function<int(SceneFile)>& then) {
+  require_file(options.file);
   const bool of_parts = is_file_of_parts(options.file);
   std::optional<TemporaryFolder> folder;
   std::string path = options.file;
@@ -62,7 +68,7 @@ int with_scene(const OpenOptions& options, const MeshLoader& load, const std::fu
     path = (folder->path() / "scene.toml").string();
   }
   const SceneOptions how{options.hold, options.held_needed && !of_parts, {}, load};
-  SceneFile file = options.quiet ? load_scene(path, how) : load_with_progress(path, how);
+  SceneFile file = load_with_progress(path, how, !options.quiet);
   print_notes(file.scene);
   if (of_parts && options.held_needed) hold_smallest(file, options.quiet);
   // Parts of an assembly as people have them overlap here and there; what is told at the start names them.

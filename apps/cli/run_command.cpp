@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iostream>
 
+#include "core/number_text.hpp"
 #include "import/file_check.hpp"
 #include "session/run_length.hpp"
-#include "shared/format.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::apps {
@@ -42,8 +42,8 @@ void note_length(const RunCommand& options, const SceneFile& file) {
   if (length <= kLongScript || length > kMaxRunSeconds || options.run.seconds > 0 || !options.run.device.empty() ||
       options.run.view)
     return;
-  std::cerr << format("tegotae: note: the script lasts %.6g s (%.3g hours); --seconds S ends the run before\n", length,
-                      length / 3600);
+  std::cerr << "tegotae: note: the script lasts " << number_text(length, 6) << " s (" << number_text(length / 3600, 3)
+            << " hours); --seconds S ends the run before\n";
 }
 
 }  // namespace
@@ -67,6 +67,7 @@ CLI::App* add_run(CLI::App& app, RunCommand& options) {
 }
 
 int run_scene(const RunCommand& options, const MeshLoader& load) {
+  require_file(options.open.file);
   if (is_file_of_parts(options.open.file)) check_parts(options);
   OpenOptions open = options.open;
   open.quiet = options.run.json;

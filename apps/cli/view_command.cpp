@@ -5,6 +5,7 @@
 
 #include "import/file_check.hpp"
 #include "review/review_command.hpp"
+#include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::apps {
@@ -71,7 +72,13 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
 }
 
 int show_recording(const ReplayOptions& options) {
-  const std::string bundle = view::replay_bundle(options.recording, options.scene, options.html, options.frames);
+  std::string bundle;
+  {
+    StatusLine status;
+    bundle = view::replay_bundle(
+        options.recording, options.scene, options.html, options.frames,
+        [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); });
+  }
   if (options.html.empty())
     view::serve_replay(
         bundle, [&] { return review::recording_report(options.recording, options.scene); }, page_address(options.page),

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <iostream>
 
-#include "shared/format.hpp"
+#include "core/number_text.hpp"
 #include "shared/process.hpp"
 #include "shared/run_options.hpp"
 #include "tegotae/core/clock.hpp"
@@ -96,7 +96,7 @@ int watched_child(const std::string& file, double seconds, const std::string& hi
   }
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   if (late)
-    throw Error(file + ": not read: " + (at.empty() ? "" : at + " ") + "took more than " + format("%g", seconds) +
+    throw Error(file + ": not read: " + (at.empty() ? "" : at + " ") + "took more than " + number_text(seconds, 6) +
                 " s; " + hint);
   const int signal = WTERMSIG(status);
   if (signal == SIGINT || signal == SIGTERM) return kRunFailed;

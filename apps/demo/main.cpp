@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/number_text.hpp"
 #include "models/shapes.hpp"
 #include "peg_in_hole/peg_script.hpp"
 #include "tegotae/core/error.hpp"
@@ -46,8 +47,9 @@ void show(const Rig& rig, double start, Seen& seen) {
   seen.contacts = std::max(seen.contacts, rig.contacts().size());
   seen.force = std::max(seen.force, rig.pen().wrench.force.norm());
   if (rig.steps() % 500 != 0) return;
-  std::printf("  %4.1f s  peg %5.1f mm down, %2zu contacts, %5.2f N %s\n", rig.time(),
-              1e3 * (start - rig.part().p.z() - kStartHeight), rig.contacts().size(), rig.pen().wrench.force.norm(),
+  std::printf("  %4.1f s  peg %5s mm down, %2zu contacts, %5.2f N %s\n", rig.time(),
+              fixed_text(1e3 * (start - rig.part().p.z() - kStartHeight), 1).c_str(), rig.contacts().size(),
+              rig.pen().wrench.force.norm(),
               std::string(static_cast<std::size_t>(10 * rig.pen().wrench.force.norm()), '#').c_str());
   std::fflush(stdout);
 }
@@ -58,8 +60,8 @@ bool run(double ratio) {
   SimulatedDevice pen({}, demo.script);
   Rig rig(demo.scene, pen);
   const double start = rig.part().p.z();
-  std::printf("A peg of %.4g mm into a hole of %.4g mm, in real time\n", 1e3 * ratio * kHoleDiameter,
-              1e3 * kHoleDiameter);
+  std::printf("A peg of %s mm into a hole of %s mm, in real time\n",
+              number_text(1e3 * ratio * kHoleDiameter, 4).c_str(), number_text(1e3 * kHoleDiameter, 4).c_str());
   Seen seen;
   rig.start();
   rig.run(demo.script.end() + kSettleTime, [&](const Rig& r) { show(r, start, seen); });

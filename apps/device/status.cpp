@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "shared/format.hpp"
 #include "shared/guarded_main.hpp"
 #include "shared/latency_json.hpp"
@@ -71,8 +72,9 @@ std::string text(const Status& s) {
                      : s.heartbeat_age > kAliveSeconds ? format("the servo is silent for %.1f s", s.heartbeat_age)
                                                        : state_text(pen)) +
                     "\n";
-  out += format("  %-12s %s, senses %u and renders %u degrees of freedom, at most %.3g N, %.3g mN m\n", "device",
-                pen.name, pen.motion_freedom, pen.force_freedom, pen.force_limit, 1e3 * pen.torque_limit);
+  out += format("  %-12s %s, senses %u and renders %u degrees of freedom, at most %s N, %s mN m\n", "device", pen.name,
+                pen.motion_freedom, pen.force_freedom, number_text(pen.force_limit, 3).c_str(),
+                number_text(1e3 * pen.torque_limit, 3).c_str());
   out += format("  %-12s %llu, up %.1f s\n", "process", static_cast<unsigned long long>(s.pid), s.uptime);
   out += format("  %-12s %s\n", "application", s.application ? "attached" : "none");
   out += statistics_text(s.statistics);
@@ -120,8 +122,9 @@ std::string state_text(const tegotae_shm_device& pen) {
 }
 
 std::string statistics_text(const tegotae_shm_statistics& s) {
-  return format("  %-12s %.1f of %g Hz, %llu ticks, %llu missed\n", "servo", s.rate_hz, s.set_rate_hz,
-                static_cast<unsigned long long>(s.ticks), static_cast<unsigned long long>(s.missed)) +
+  return format("  %-12s %.1f of %s Hz, %llu ticks, %llu missed\n", "servo", s.rate_hz,
+                number_text(s.set_rate_hz, 6).c_str(), static_cast<unsigned long long>(s.ticks),
+                static_cast<unsigned long long>(s.missed)) +
          row("late", s.late_us) + row("compute", s.compute_us);
 }
 

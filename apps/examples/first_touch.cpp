@@ -3,7 +3,7 @@
 
 using namespace tegotae;
 
-int main() {
+int main() try {
   Scene scene;
   scene.add_fixed("hole", load_mesh("models/hole_20.obj", unit_length("mm")));
   scene.add_held("peg", load_mesh("models/peg_0.94.obj", unit_length("mm")), {Quat::Identity(), Vec3(0, 0, 0.03)});
@@ -18,4 +18,6 @@ int main() {
     std::printf("%3.0f ms: %2zu contacts, %5.2f N up\n", 1e3 * r.time(), r.contacts().size(), r.pen().wrench.force.z());
   });
   rig.stop();
+} catch (const Error& e) {
+  return std::fprintf(stderr, "first_touch: %s\n", e.what()), 2;
 }

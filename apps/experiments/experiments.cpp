@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "core/number_text.hpp"
 #include "experiments/experiment_list.hpp"
 #include "experiments/trial.hpp"
 #include "shared/run_options.hpp"
@@ -31,8 +32,8 @@ bool tell(const std::string& name, const Outcome& outcome, double seconds) {
   bool all = true;
   std::printf("%s (%.0f s)\n", name.c_str(), seconds);
   for (const Claim& c : outcome.claims) {
-    std::printf("  %-5s %s: %.4g %s (%s)\n", c.holds ? "holds" : "FAILS", c.name.c_str(), c.value, c.unit.c_str(),
-                c.target.c_str());
+    std::printf("  %-5s %s: %s %s (%s)\n", c.holds ? "holds" : "FAILS", c.name.c_str(), number_text(c.value, 4).c_str(),
+                c.unit.c_str(), c.target.c_str());
     all = all && c.holds;
   }
   std::fflush(stdout);

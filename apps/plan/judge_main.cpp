@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/number_text.hpp"
 #include "core/output_file.hpp"
 #include "plan/judge.hpp"
 #include "plan/planner.hpp"
@@ -43,7 +44,7 @@ std::string first_cell(const JudgedScene& scene) {
 std::string row(const JudgedScene& scene, const JudgedFigures& f, int seeds) {
   const PlannerFigures &a = f.ours, &b = f.baseline;
   return first_cell(scene) + format("| %d of %d", a.found, seeds) + " | " + median(a.cpu) + " | " +
-         median(a.whole_cpu) + " | " + (a.found == 0 ? "–" : format("%.3g", 1e6 * a.clearance)) + " | " + bad(a) +
+         median(a.whole_cpu) + " | " + (a.found == 0 ? "–" : number_text(1e6 * a.clearance, 3)) + " | " + bad(a) +
          format(" | %d of %d", b.found, seeds) + " | " + median(b.cpu) + " | " + bad(b) + " |\n";
 }
 
@@ -86,9 +87,9 @@ bool wanted(const Options& o, const JudgedScene& scene) {
 
 /// The command that makes the complete table, as the file shows it.
 std::string command(const Options& o) {
-  return format("Command: `plan_judge --seeds %d --seconds %g", o.judge.seeds, o.judge.seconds) +
-         (o.parts.empty() ? "" : " --parts " + o.parts) + " --markdown " + o.markdown +
-         "` (with `--scene NAME` a row of it)\n\n";
+  return "Command: `plan_judge --seeds " + std::to_string(o.judge.seeds) + " --seconds " +
+         number_text(o.judge.seconds, 6) + (o.parts.empty() ? "" : " --parts " + o.parts) + " --markdown " +
+         o.markdown + "` (with `--scene NAME` a row of it)\n\n";
 }
 
 /// Rows of a run of all scenes replace the table, those of some their rows in it.

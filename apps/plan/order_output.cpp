@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/number_text.hpp"
 #include "core/output_file.hpp"
 #include "loop/scene_parts.hpp"
 #include "plan/plan_output.hpp"
@@ -207,7 +208,7 @@ std::string order_text(const Scene& scene, const Disassembly& order) {
     text += format("%zu. ", i + 1) + names(scene, r.parts, " + ") +
             (motions == 0 ? std::string(": is out where it stands")
                           : format(": %zu motion%s", motions, motions == 1 ? "" : "s")) +
-            format(", proved to leave %.3g um\n", 1e6 * r.plan.clearance);
+            ", proved to leave " + number_text(1e6 * r.plan.clearance, 3) + " um\n";
   }
   text += left_text(scene, order) + (order.interrupted ? " (interrupted)" : "") + "\n";
   for (const Blocked& b : order.blocked) {

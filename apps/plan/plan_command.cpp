@@ -88,6 +88,7 @@ int run_all(const PlanCommand& o) {
     options.progress = [&](const std::vector<std::size_t>& parts, std::size_t left) {
       status.say(apps::format("%zu parts left, trying ", left) + file.scene.parts[parts.front()].name);
     };
+    status.say("building hierarchies");
     order = take_apart(file.scene, options);
     write_order(file, order, o.folder);
   }
@@ -136,6 +137,7 @@ int run_plan(const PlanCommand& o) {
   std::filesystem::create_directories(o.folder);
   {
     apps::StatusLine status;
+    status.say("building hierarchies");
     r.plan = plan_path(r.file.scene, plan_options(o, r.file.scene, status));
     finish(r, o.band, status);
   }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "loop/scene_parts.hpp"
 #include "plan/plan_output.hpp"
 #include "shared/format.hpp"
@@ -23,28 +24,29 @@ std::int64_t stops(const Plan& plan) {
 
 /// What is certified, in words.
 std::string certificate(const PlanReport& r) {
-  std::string text = format("every motion of it is proved to leave %.3g um", 1e6 * r.plan.clearance);
+  std::string text = "every motion of it is proved to leave " + number_text(1e6 * r.plan.clearance, 3) + " um";
   for (const InitialContact& pair : r.plan.start.pairs) {
     const std::string name = '"' + r.file.scene.parts[pair.part].name + '"';
     if (pair.state == InitialContactState::filtered) text += "; " + name + ", in which it starts, was not looked at";
     if (pair.state == InitialContactState::shrunk)
-      text += "; to a copy of " + name +
-              format(" that is smaller by %.3g um, for it starts in contact", 1e6 * pair.inward_offset);
+      text += "; to a copy of " + name + " that is smaller by " + number_text(1e6 * pair.inward_offset, 3) +
+              " um, for it starts in contact";
   }
   return text;
 }
 
 std::string found_text(const PlanReport& r) {
   std::string text =
-      format("\"%s\" %s: %.4g mm and %.3g degrees, in %zu motion%s\n  ", held_part(r.file.scene).name.c_str(),
-             r.to_goal ? "goes to its goal" : "comes out", 1e3 * r.way, kDegrees * r.turn, r.plan.path.size() - 1,
-             r.plan.path.size() == 2 ? "" : "s") +
+      format("\"%s\" %s: %s mm and %s degrees, in %zu motion%s\n  ", held_part(r.file.scene).name.c_str(),
+             r.to_goal ? "goes to its goal" : "comes out", number_text(1e3 * r.way, 4).c_str(),
+             number_text(kDegrees * r.turn, 3).c_str(), r.plan.path.size() - 1, r.plan.path.size() == 2 ? "" : "s") +
       certificate(r) + "\n";
   for (std::size_t i = 0; i < std::min(kMaxListed, r.tightest.size()); ++i) {
     const review::PartClearance& c = r.tightest[i];
-    text += format("  nearest to \"%s\": %.4g mm at %.2f s, at %.6g %.6g %.6g mm\n",
-                   r.file.scene.parts[c.part].name.c_str(), 1e3 * c.distance, c.t, 1e3 * c.place_W.x(),
-                   1e3 * c.place_W.y(), 1e3 * c.place_W.z());
+    text += format("  nearest to \"%s\": %s mm at %.2f s, at", r.file.scene.parts[c.part].name.c_str(),
+                   number_text(1e3 * c.distance, 4).c_str(), c.t);
+    for (const double m : c.place_W) text += " " + number_text(1e3 * m, 6);
+    text += " mm\n";
   }
   if (r.band)
     for (const std::string& line : review::band_text(*r.band, r.tightest, r.file.scene)) text += "  " + line + "\n";
@@ -56,8 +58,8 @@ std::string not_found_text(const PlanReport& r) {
       format("no way %s was found for \"%s\" in %.1f s (%lld iterations)%s; that is no proof that there is none\n",
              r.to_goal ? "to the goal" : "out", held_part(r.file.scene).name.c_str(), r.plan.seconds,
              static_cast<long long>(r.plan.iterations), r.plan.interrupted ? ", interrupted" : "");
-  text += format("  it came %.4g mm from its start at most, and turned by up to %.3g degrees\n", 1e3 * r.plan.way,
-                 kDegrees * r.plan.turn);
+  text += "  it came " + number_text(1e3 * r.plan.way, 4) + " mm from its start at most, and turned by up to " +
+          number_text(kDegrees * r.plan.turn, 3) + " degrees\n";
   const double all = static_cast<double>(stops(r.plan));
   for (std::size_t i = 0; i < std::min(kMaxListed, r.plan.in_the_way.size()); ++i) {
     const PartInTheWay& p = r.plan.in_the_way[i];

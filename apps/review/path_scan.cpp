@@ -5,6 +5,7 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "core/parallel_for.hpp"
+#include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
 #include "view/follower.hpp"
 
@@ -114,6 +115,9 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
   scan.reach = std::max(reach, kReachShare * bounding_sphere(*held_part(scene).mesh).radius);
   const std::vector<std::size_t> numbers = looked_at(rows.size(), kMaxRows);
   scan.every = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
+  const MeshStructures made(scene.parts, scene.contact.narrowphase, [&](std::size_t done, std::size_t total) {
+    if (progress) progress("building hierarchies", done, total);
+  });
   view::Follower follower(scene, file, rows.front().x);
   scan.center = follower.loop().center();
   scan.coupling = follower.loop().coupling();

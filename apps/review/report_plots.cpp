@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "session/run_goal.hpp"
 #include "shared/format.hpp"
 
@@ -131,7 +132,7 @@ json load_plot(const Review& r, const Buckets& buckets, const json& times, bool 
     if (value <= kMaxAbove * most)
       series.push_back(level(name, times, unit * value));
     else
-      title += apps::format(", %s %.3g %s", name, unit * value, torque ? "mN·m" : "N");
+      title += apps::format(", %s %s %s", name, number_text(unit * value, 3).c_str(), torque ? "mN·m" : "N");
   };
   add_limit("peak limit", limit);
   if (!torque && l.continuous > 0) add_limit("continuous", l.continuous);

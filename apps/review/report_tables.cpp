@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "shared/format.hpp"
 
 namespace tegotae::review {
@@ -119,11 +120,11 @@ json loads(const Review& r) {
   json t = table("Force and torque", "Without limits: what the coupling's springs ask for.",
                  {"", "largest", "at (s)", "without limits", "limit"});
   t["rows"].push_back({"force", format("%.2f N", l.force), seconds(l.force_at), format("%.2f N", l.asked_force),
-                       format("%.3g N", l.limit_force)});
+                       number_text(l.limit_force, 3) + " N"});
   t["rows"].push_back({"torque", format("%.1f mN·m", 1e3 * l.torque), seconds(l.torque_at),
-                       format("%.1f mN·m", 1e3 * l.asked_torque), format("%.3g mN·m", 1e3 * l.limit_torque)});
+                       format("%.1f mN·m", 1e3 * l.asked_torque), number_text(1e3 * l.limit_torque, 3) + " mN·m"});
   t["rows"].push_back({format("RMS of the force over %.0f s", l.thermal_time), format("%.2f N", l.running_rms), "", "",
-                       l.continuous > 0 ? format("%.3g N", l.continuous) : "none"});
+                       l.continuous > 0 ? number_text(l.continuous, 3) + " N" : "none"});
   return t;
 }
 

@@ -75,6 +75,7 @@ int run_review(const ReviewOptions& o) {
   const Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
     status.show(what, done, total);
   };
+  status.say("reading the recording");
   Recording recording = read_recording(o.recording);
   SceneOptions how;
   how.progress = [&](std::size_t done, std::size_t total) { progress("reading mesh files", done, total); };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/number_text.hpp"
 #include "shared/format.hpp"
 
 namespace tegotae::review {
@@ -130,13 +131,14 @@ class Judge {
     const Loads& l = f_.loads;
     const bool within = l.asked_force <= l.limit_force && l.asked_torque <= l.limit_torque;
     const std::string text =
-        format("At most %.2f N (limit %.2g N) and %.0f mN·m (limit %.3g mN·m); without limits %.2f N and %.0f mN·m.",
-               l.force, l.limit_force, 1e3 * l.torque, 1e3 * l.limit_torque, l.asked_force, 1e3 * l.asked_torque);
+        format("At most %.2f N (limit %s N) and %.0f mN·m (limit %s mN·m); without limits %.2f N and %.0f mN·m.",
+               l.force, number_text(l.limit_force, 2).c_str(), 1e3 * l.torque,
+               number_text(1e3 * l.limit_torque, 3).c_str(), l.asked_force, 1e3 * l.asked_torque);
     add(within ? Evidence::Kind::good : Evidence::Kind::bad, text);
     if (l.continuous > 0)
       add(l.running_rms <= 0.999 * l.continuous ? Evidence::Kind::good : Evidence::Kind::bad,
-          format("Running RMS over %.0f s at most %.2f N; the motors sustain %.2g N.", l.thermal_time, l.running_rms,
-                 l.continuous));
+          format("Running RMS over %.0f s at most %.2f N; the motors sustain %s N.", l.thermal_time, l.running_rms,
+                 number_text(l.continuous, 2).c_str()));
   }
 
   void tell_contacts() {
@@ -168,8 +170,8 @@ class Judge {
 
 std::string length_text(double meters) {
   const double size = std::abs(meters);
-  if (size < 1e-4) return format("%.3g µm", 1e6 * meters);
-  return size < 1 ? format("%.3g mm", 1e3 * meters) : format("%.3g m", meters);
+  if (size < 1e-4) return number_text(1e6 * meters, 3) + " µm";
+  return size < 1 ? number_text(1e3 * meters, 3) + " mm" : number_text(meters, 3) + " m";
 }
 
 std::string seconds_text(double seconds) {

@@ -1,15 +1,12 @@
 #include "shared/blocked_text.hpp"
 
-#include <cmath>
-
-#include "shared/format.hpp"
+#include "core/number_text.hpp"
 
 namespace tegotae::apps {
 
 std::string place_text(const Vec3& p) {
-  // Rounded first, so that there is no "-0.00".
-  const auto mm = [](double m) { return 0.01 * std::round(1e5 * m) + 0.0; };
-  return format("(%.2f, %.2f, %.2f) mm", mm(p.x()), mm(p.y()), mm(p.z()));
+  const auto mm = [](double m) { return fixed_text(1e3 * m, 2); };
+  return "(" + mm(p.x()) + ", " + mm(p.y()) + ", " + mm(p.z()) + ") mm";
 }
 
 std::string blocked_text(const std::string& part, const Vec3& place_W) {

@@ -38,8 +38,13 @@ std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::P
   return "there is no command " + given + ", but " + list;
 }
 
-int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+void add_version(CLI::App& app) {
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) add_version(*command);
+}
+
+int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  add_version(app);
   try {
     app.parse(argc, argv);
     return body();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/number_text.hpp"
 #include "shared/format.hpp"
 #include "shared/status_line.hpp"
 
@@ -19,10 +20,9 @@ constexpr std::chrono::milliseconds kPeriod(100);
 ProgressLine::ProgressLine(const RunProgress& progress, bool show)
     : progress_(progress), terminal_(show && isatty(STDOUT_FILENO) != 0) {
   if (!terminal_ && !progress_in_pipes()) return;
-  const auto period = terminal_ ? std::chrono::milliseconds(kPeriod) : std::chrono::milliseconds(kPipePeriod);
-  thread_ = std::thread([this, period] {
+  thread_ = std::thread([this] {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!wake_.wait_for(lock, period, [this] { return ended_; })) print();
+    while (!wake_.wait_for(lock, kPeriod, [this] { return ended_; })) print();
     if (terminal_) std::fputs("\r\033[K", stdout);
     std::fflush(stdout);
   });
@@ -39,6 +39,8 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::print() const {
+  if (progress_.duration.load() == 0) return;  // what is built before the run has words of its own
+  if (!terminal_ && !pipe_line_is_due()) return;
   FILE* const to = terminal_ ? stdout : stderr;
   std::fprintf(to, terminal_ ? "\r\033[K%s" : "%s\n", text().c_str());
   std::fflush(to);
@@ -50,10 +52,13 @@ std::string ProgressLine::text() const {
   const double duration = progress_.duration.load();
   std::string text = format("%5.1f ", progress_.t.load());
   if (std::isfinite(duration)) text += format("/ %.1f ", duration);
-  text += format("s   depth %6.1f mm   %3d contacts   %5.2f N", 1e3 * progress_.depth.load(), progress_.contacts.load(),
-                 progress_.force.load());
+  text += format("s   depth %6s mm   %3d contacts   %5.2f N", fixed_text(1e3 * progress_.depth.load(), 1).c_str(),
+                 progress_.contacts.load(), progress_.force.load());
   const LagReason lag = progress_.lag_reason.load();
-  if (lag != LagReason::none && lag != LagReason::contact) text += std::string("   held back: ") + to_string(lag);
+  if (lag == LagReason::time)
+    text += "   held back: the tick ended first";
+  else if (lag != LagReason::none && lag != LagReason::contact)
+    text += std::string("   held back: ") + to_string(lag);
   if (progress_.held.load()) text += "   held fast in its fit";
   if (!progress_.device.load()) text += "   no device, waiting";
   return text;

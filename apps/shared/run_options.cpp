@@ -10,6 +10,7 @@
 #include "shared/open_browser.hpp"
 #include "shared/progress_line.hpp"
 #include "shared/start_text.hpp"
+#include "shared/status_line.hpp"
 #include "shared/summary.hpp"
 #include "tegotae/core/version.hpp"
 #include "view/server.hpp"
@@ -83,7 +84,13 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   std::atomic<bool>& interrupted = catch_interrupts();
   settings.stop = settings.stop_check = &interrupted;
   settings.check_all = options.check_all;
+  std::optional<StatusLine> building;  // until the first tick; then the progress line tells
+  settings.on_build = [&](const std::string& what, std::size_t done, std::size_t total) {
+    if (!building) building.emplace(!options.json);
+    building->show(what, done, total);
+  };
   settings.on_start = [&](const RunStart& start) {
+    building.reset();
     const std::string text = start_text(start.parts, file.scene);
     if (!text.empty()) std::cerr << "At the start the held part is\n" << text << std::flush;
     if (!options.json && !start.stability.empty())
@@ -95,13 +102,16 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
 
   std::optional<RunSummary> run;
   {
+    if (options.view) settings.on_build("preparing the page", 0, 0);
     ProgressLine line(progress, !options.json && !options.view);
-    run = options.view
-              ? view::run_viewed(
-                    file, settings, page_address(options.page), interrupted,
-                    [&](const view::Server& server) { return announce_page(server, options.page, options.json); },
-                    options.review)
-              : run_session(file, settings);
+    run = options.view ? view::run_viewed(
+                             file, settings, page_address(options.page), interrupted,
+                             [&](const view::Server& server) {
+                               building.reset();
+                               return announce_page(server, options.page, options.json);
+                             },
+                             options.review)
+                       : run_session(file, settings);
   }
   if (!run) return kDone;  // the page was open and held no part
   const RunSummary& summary = *run;

@@ -1,5 +1,6 @@
 #include "shared/summary.hpp"
 
+#include "core/number_text.hpp"
 #include "shared/blocked_text.hpp"
 #include "shared/format.hpp"
 #include "shared/latency_json.hpp"
@@ -26,16 +27,22 @@ std::string force_off_lines(const ServoStatistics& servo) {
   return text;
 }
 
-/// Why the part lagged, and how often. Contact is what a run is for.
-std::string lag_lines(const LagSummary& lag) {
+/// Why the part lagged, and how often. Contact is what a run is for. Virtual time ends no tick: there a part may still
+/// be on its way when the tick's motions are made, as one that has slipped off an edge.
+std::string lag_lines(const LagSummary& lag, bool virtual_time) {
   std::string text;
   const auto line = [&text](LagReason reason, std::int64_t ticks, const char* what) {
     if (ticks > 0)
-      text += format("  %-12s %lld ticks for %s: %s\n", "held back", static_cast<long long>(ticks), to_string(reason),
-                     what);
+      text += format("  %-12s %lld %s for %s: %s\n", "held back", static_cast<long long>(ticks),
+                     ticks == 1 ? "tick" : "ticks", to_string(reason), what);
   };
   const auto ticks = [&lag](LagReason reason) { return lag.ticks[static_cast<std::size_t>(reason)]; };
-  line(LagReason::time, ticks(LagReason::time), "the tick ended before the part was there");
+  const std::int64_t short_of_time = ticks(LagReason::time);
+  if (virtual_time && short_of_time > 0)
+    text += format("  %-12s %lld %s: the motions of one ended before the part was there, and the next went on\n",
+                   "held back", static_cast<long long>(short_of_time), short_of_time == 1 ? "tick" : "ticks");
+  else
+    line(LagReason::time, short_of_time, "the tick ended before the part was there");
   line(LagReason::capacity, ticks(LagReason::capacity), "no motion could be proved free");
   line(LagReason::suspended, ticks(LagReason::suspended), "the loop did not follow the pen");
   if (lag.unexplained > 0)
@@ -93,9 +100,9 @@ std::string summary_text(const RunSummary& s, const RunOptions& options, const S
                               : options.seconds > 0     ? "cut short"
                                                         : "FAILED: " + blocked_text(blocker.part, blocker.place_W);
   std::string text = goal + ": " + verdict + "\n";
-  text += format("  %-12s %.1f mm\n", "depth", 1e3 * s.depth_m);
+  text += format("  %-12s ", "depth") + fixed_text(1e3 * s.depth_m, 1) + " mm\n";
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);
-  text += lag_lines(s.lag);
+  text += lag_lines(s.lag, options.fast);
   text += format(
       "  %-12s %lld of %lld poses checked%s\n", "intersecting", static_cast<long long>(s.penetrating),
       static_cast<long long>(s.checked),

@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "core/output_file.hpp"
 #include "loop/scene_parts.hpp"
 #include "review/verdict.hpp"
@@ -158,7 +159,7 @@ Json case_row(const Source& s, const Result& r) {
   for (const Json& cell :
        {Json(r.who), Json(r.route), Json(format("%.2f", 1e3 * r.offset)), Json(format("%.1f", r.tilt * kDegrees)),
         Json({{"text", r.reached ? "reached" : "not reached"}, {"class", r.reached ? "holds" : "fails"}}),
-        Json(format("%.2f", r.time)), Json(format("%.2f", 1e3 * r.depth)), Json(format("%.2f", r.force)),
+        Json(format("%.2f", r.time)), Json(fixed_text(1e3 * r.depth, 2)), Json(format("%.2f", r.force)),
         Json(review::length_text(r.clearance)), Json(format("%.2f", r.stuck)), Json(r.reached ? "–" : r.why)})
     row.push_back(cell);
   if (!s.tries()) row.push_back("tegotae study case " + s.study.path + " " + number);
@@ -231,8 +232,8 @@ Json report(const Source& s) {
   return {
       {"title",
        s.tries() ? "Tries with " + held_part(s.tasks.file(make_case(s.study, 0)).scene).name : "Study " + name},
-      {"subtitle",
-       name + format(", seed %llu, %g s each", static_cast<unsigned long long>(s.study.seed), s.study.seconds)},
+      {"subtitle", name + format(", seed %llu, %s s each", static_cast<unsigned long long>(s.study.seed),
+                                 number_text(s.study.seconds, 6).c_str())},
       {"intro", headline(s.results, s.word()) +
                     "\nEach one is a modeled operator at a simulated pen, led astray and tilted at random; what is "
                     "in the way when the time is over is who was touched most in the last half second. " +

@@ -9,6 +9,7 @@
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
 #include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "study/case_scene.hpp"
 #include "study/driver.hpp"
 #include "study/merge.hpp"
@@ -130,7 +131,12 @@ int run_one(const Opened& s, int number, const std::string& folder) {
     recordings.push_back(to + "/recording.mcap");
     return recordings.back();
   };
-  const std::optional<Result> result = run_case(s.study, *s.tasks, c, apps::catch_interrupts(), record_to);
+  std::optional<Result> result;
+  {
+    apps::StatusLine status;
+    status.say(format("running case %d", number));
+    result = run_case(s.study, *s.tasks, c, apps::catch_interrupts(), record_to);
+  }
   if (!result) {
     std::cout << "interrupted" << std::endl;
     return apps::kRunFailed;
@@ -140,7 +146,14 @@ int run_one(const Opened& s, int number, const std::string& folder) {
   for (const std::string& recording : recordings)
     std::cout << "tegotae replay " << recording << "\ntegotae review " << recording << "\n";
   const std::string page = folder + "/" + fs::path(replay_page(number)).filename().string();
-  view::write_replay(view::replay_bundle(recordings.back(), {}, page), page);
+  {
+    apps::StatusLine status;
+    view::write_replay(view::replay_bundle(recordings.back(), {}, page, view::kMaxFrames,
+                                           [&](const char* what, std::size_t done, std::size_t total) {
+                                             status.show(what, done, total);
+                                           }),
+                       page);
+  }
   std::cout << "replay: " << page << std::endl;
   return apps::kDone;
 }

@@ -7,6 +7,7 @@
 #include "shared/format.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
+#include "shared/status_line.hpp"
 #include "study/outcome.hpp"
 #include "study/report.hpp"
 #include "study/shard.hpp"
@@ -55,7 +56,11 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
 int run_tries(const TryOptions& o) {
   const Study study = study_of(o);
   const std::unique_ptr<Tasks> tasks = load_tasks(study);
-  tasks->of(make_case(study, 0));  // what is wrong with it, before anything is written
+  {
+    apps::StatusLine status;
+    status.say("preparing the tries");
+    tasks->of(make_case(study, 0));  // what is wrong with it, before anything is written
+  }
   std::vector<std::string> outputs;
   for (const char* name : {"/tries.csv", "/summary.json", "/report.html", "/best.csv", "/best.csv.info.json"})
     outputs.push_back(o.out + name);
@@ -71,7 +76,12 @@ int run_tries(const TryOptions& o) {
   const std::string recording = o.out + "/best.csv";
   const Result* best = best_case(results);
   const RecordTo record_to = [&](SceneFile&, std::size_t) { return recording; };
-  if (interrupted || !run_case(study, *tasks, make_case(study, best->number), interrupted, record_to)) {
+  const auto record_best = [&] {
+    apps::StatusLine status;
+    status.say("recording the best try");
+    return run_case(study, *tasks, make_case(study, best->number), interrupted, record_to).has_value();
+  };
+  if (interrupted || !record_best()) {
     std::cout << "interrupted; the same command continues from here" << std::endl;
     return apps::kRunFailed;
   }

@@ -11,6 +11,7 @@
 
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
+#include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
@@ -95,14 +96,23 @@ std::vector<std::string> scene_changes(const RecordingInfo& info) {
 }
 
 std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html,
-                          std::size_t max_frames) {
+                          std::size_t max_frames,
+                          const std::function<void(const char* what, std::size_t done, std::size_t total)>& progress) {
+  const auto tell = [&](const char* what, std::size_t done, std::size_t total) {
+    if (progress) progress(what, done, total);
+  };
+  tell("reading the recording", 0, 0);
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
-  SceneFile file = load_recorded_scene(path, recording.info, scene);
+  SceneOptions how;
+  how.progress = [&](std::size_t done, std::size_t total) { tell("reading mesh files", done, total); };
+  SceneFile file = load_recorded_scene(path, recording.info, scene, how);
   std::vector<std::string> inputs = file.files;
   inputs.insert(inputs.end(), {path, recording_info_path(path)});
   refuse_to_replace(html, inputs);
+  const MeshStructures made(file.scene.parts, file.scene.contact.narrowphase,
+                            [&](std::size_t done, std::size_t total) { tell("building hierarchies", done, total); });
   Follower follower(file.scene, path, rows.front().x);
   const FrameMaker maker;
   const std::size_t every = (rows.size() + max_frames - 1) / max_frames;
@@ -110,6 +120,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   std::vector<std::uint32_t> pair_begin, force_begin;
   Frame frame;
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    tell("finding contacts, row", i, rows.size());
     follower.step(rows[i]);
     if (i % every != 0 && i + 1 < rows.size()) continue;
     fill(rows[i], follower, maker, frame);
@@ -122,6 +133,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   if (2 * follower.strayed() > rows.size())
     throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(follower.strayed()) + " of " + std::to_string(rows.size()) + " rows");
+  tell("making the page", 0, 0);
   Bundle bundle;
   held_part(file.scene).pose = rows.front().x;
   add_scene(bundle, file.scene, follower.loop().center());

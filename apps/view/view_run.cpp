@@ -51,6 +51,7 @@ std::optional<RunSummary> run_viewed(SceneFile& file, RunSettings settings, cons
       last = run_session(file, settings);
     } catch (const std::exception& e) {
       if (!live.refused(e.what())) throw;
+      if (settings.on_build) settings.on_build("", 0, 0);  // nothing is built any more
       continue;
     }
     if (!live.again()) break;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "core/number_text.hpp"
 
 namespace tegotae {
 
@@ -23,9 +24,7 @@ constexpr double kMinFullTurn = 0.05;
 
 std::string limit_text(std::optional<double> limit, const char* unit) {
   if (!limit) return "limit not known";
-  char text[64];
-  std::snprintf(text, sizeof text, "limit %.3g %s", *limit, unit);
-  return text;
+  return "limit " + number_text(*limit, 3) + " " + unit;
 }
 
 }  // namespace
@@ -48,11 +47,10 @@ double torsional_stiffness_bound(std::optional<double> limit, double torque) noe
 }
 
 std::string StabilityReport::text() const {
-  char text[128];
-  std::snprintf(text, sizeof text, "stiffness %.4g N/m", coupling.stiffness);
-  std::string line = std::string(text) + " (" + limit_text(stiffness_limit, "N/m") + ")";
-  std::snprintf(text, sizeof text, ", %.4g N·m/rad", coupling.torsional_stiffness);
-  line += std::string(text) + " (" + limit_text(torsional_stiffness_limit, "N·m/rad") + ")";
+  std::string line =
+      "stiffness " + number_text(coupling.stiffness, 4) + " N/m (" + limit_text(stiffness_limit, "N/m") + ")";
+  line += ", " + number_text(coupling.torsional_stiffness, 4) + " N·m/rad (" +
+          limit_text(torsional_stiffness_limit, "N·m/rad") + ")";
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const bool above = coupling.stiffness > stiffness_limit.value_or(kNone) ||
                      coupling.torsional_stiffness > torsional_stiffness_limit.value_or(kNone);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
+#include "core/number_text.hpp"
 #include "import/file_check.hpp"
 #include "import/part_file.hpp"
 #include "import/read_parts.hpp"
@@ -140,8 +140,7 @@ void require_plausible(const std::string& path, const Assembly& assembly, const 
   if (options.unit || says_its_unit(path)) return;
   const double size = diagonal(assembly);
   if (size <= kPlausible) return;
-  char number[32];
-  std::snprintf(number, sizeof number, size < 1e4 ? "%.4g" : "%.0f", size);
+  const std::string number = number_text(size, 4);
   throw Error(path + ": " + number + " m across if its lengths are in m; give their unit: --unit mm makes it " +
               number + " mm, --unit m keeps it");
 }

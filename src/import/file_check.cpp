@@ -19,9 +19,9 @@
 namespace tegotae {
 std::string read_bytes(const std::string& path) {
   std::error_code status;
-  if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
-    refuse(path, "is not a regular file");  // a device or pipe might have no end
-  }
+  if (!std::filesystem::exists(path, status)) refuse(path, "no such file");
+  // A device or pipe might have no end.
+  if (!std::filesystem::is_regular_file(path, status)) refuse(path, "is not a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
   // By its length, and then what a file without one has.
@@ -32,6 +32,12 @@ std::string read_bytes(const std::string& path) {
   bytes.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   if (file.bad()) refuse(path, "cannot be read to its end");
   return bytes;
+}
+
+void require_file(const std::string& path) {
+  std::error_code status;
+  if (!std::filesystem::exists(path, status)) refuse(path, "no such file");
+  if (!std::filesystem::is_regular_file(path, status)) refuse(path, "not a file");
 }
 
 std::string lower_extension(const std::string& path) {

@@ -22,9 +22,15 @@ std::string read_mesh_bytes(const std::string& path);
 /// All bytes of the regular file `path`. Throws Error with the file and the reason.
 std::string read_bytes(const std::string& path);
 
+/// Throws Error when `path` is not there, or is a folder, a pipe or a device.
+void require_file(const std::string& path);
+
 /// The extension of `path` with its dot, in small letters.
 std::string lower_extension(const std::string& path);
 /// Whether a file holds parts and is no scene, by the end of its name.
 bool is_file_of_parts(const std::string& path);
+/// The kinds of file that are read, for messages.
+inline constexpr const char* kKindsOfFile =
+    "scenes (.toml), parts (.step, .stp, .gltf, .glb, .3mf, .stl, .obj, .ply, .off) and recordings (.csv, .mcap)";
 
 }  // namespace tegotae

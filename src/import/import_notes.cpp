@@ -1,7 +1,8 @@
 #include "import/import_notes.hpp"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "core/number_text.hpp"
 
 namespace tegotae {
 namespace {
@@ -20,9 +21,7 @@ std::string list(const std::vector<std::string>& things) {
 std::string with_value(std::string text, double m) {
   const std::size_t at = text.find("%s");
   if (at == std::string::npos) return text;
-  char value[32];
-  std::snprintf(value, sizeof value, "%.3g um", 1e6 * m);
-  return text.replace(at, 2, value);
+  return text.replace(at, 2, number_text(1e6 * m, 3) + " um");
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 #include <XSControl_TransferReader.hxx>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
+
+#include "core/number_text.hpp"
 
 namespace tegotae {
 namespace {
@@ -33,10 +34,8 @@ const char* kind_of(FaceKind kind) {
 std::string place_of(const CadFace& face) {
   if (face.box.isEmpty()) return "";
   const Vec3 at = face.box.center();
-  const auto mm = [](double m) { return std::round(1e5 * m) / 100 + 0.0; };
-  char text[96];
-  std::snprintf(text, sizeof text, " around (%.6g, %.6g, %.6g) mm", mm(at.x()), mm(at.y()), mm(at.z()));
-  return text;
+  const auto mm = [](double m) { return number_text(std::round(1e5 * m) / 100, 6); };
+  return " around (" + mm(at.x()) + ", " + mm(at.y()) + ", " + mm(at.z()) + ") mm";
 }
 
 }  // namespace

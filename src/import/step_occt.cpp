@@ -18,7 +18,6 @@
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <gp_Quaternion.hxx>
 #include <map>
@@ -26,6 +25,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/number_text.hpp"
 #include "import/made_up_name.hpp"
 #include "import/mating_notes.hpp"
 #include "import/note_texts.hpp"
@@ -338,9 +338,7 @@ class StepReader {
 
   /// Name and size: facets by the million come from a unit that is not the part's.
   static std::string described(const Leaf& leaf) {
-    char size[32];
-    std::snprintf(size, sizeof size, "%.3g m", size_of(leaf));
-    return '"' + printable(leaf.name) + "\" (" + size + " across)";
+    return '"' + printable(leaf.name) + "\" (" + number_text(size_of(leaf), 3) + " m across)";
   }
 
   /// m, diagonal of the box around its faces.

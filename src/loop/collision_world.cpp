@@ -5,11 +5,10 @@
 #include <limits>
 #include <map>
 
-#include "core/parallel_for.hpp"
 #include "loop/initial_separation.hpp"
+#include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
 #include "narrowphase/fcl_motion_check.hpp"
-#include "narrowphase/patch_cache.hpp"
 #include "narrowphase/patch_motion_check.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -23,32 +22,6 @@ constexpr double kReachShare = 0.02;
 constexpr double kMaxShift = 3;
 // Of the tick's budget, what a look at a pair that was not free at the start may take.
 constexpr double kPollShare = 0.25;
-
-/// What a scene's meshes are turned into, each of them once, on all processors.
-struct MeshStructures {
-  std::map<const TriangleMesh*, std::shared_ptr<const Surface>> surfaces;
-  std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees;
-
-  MeshStructures(const std::vector<Part>& parts, bool with_trees) {
-    std::vector<std::shared_ptr<const TriangleMesh>> meshes;
-    for (const Part& p : parts)
-      if (surfaces.emplace(p.mesh.get(), nullptr).second) meshes.push_back(p.mesh);
-    // The longest jobs first.
-    std::stable_sort(meshes.begin(), meshes.end(),
-                     [](const auto& p, const auto& q) { return p->triangles.size() > q->triangles.size(); });
-    for (const auto& mesh : meshes)
-      if (with_trees) trees[mesh.get()];
-    const auto n = static_cast<int>(meshes.size());
-    const auto make = [&](int i) {
-      const auto& mesh = meshes[static_cast<std::size_t>(i % n)];
-      if (with_trees && i < n)
-        trees.at(mesh.get()) = cached_patch_tree(mesh);
-      else
-        surfaces.at(mesh.get()) = cached_surface(mesh);
-    };
-    parallel_for(with_trees ? 2 * n : n, 0, make, {});
-  }
-};
 
 /// Meshes and poses of the fixed parts, and of what stands in for some of them.
 struct FixedParts {
@@ -83,7 +56,7 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   const SceneParts parts(scene);
   box_ = bounding_box(*parts.held->mesh);
   // Held here so that whoever needs a hierarchy while the scene is built finds it made.
-  MeshStructures made(scene.parts, settings.narrowphase != NarrowPhase::fcl);
+  MeshStructures made(scene.parts, settings.narrowphase);
   start = InitialContacts(scene, settings);
   FixedParts fixed{{}, {}, {}, made.surfaces};
   for (std::size_t i = 0; i < parts.fixed.size(); ++i) {

@@ -1,8 +1,8 @@
 #include "loop/held_weight.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/number_text.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -43,14 +43,11 @@ std::optional<double> weight_bound(double continuous_force) {
 std::string weight_text(const Scene& scene, const HapticLoop& loop) {
   const HeldWeight& w = loop.weight();
   if (!scene.weight.on) return {};
-  char text[160];
-  if (w.share < 1)
-    std::snprintf(text, sizeof text,
-                  "%.3g N of the %.3g N that %.3g kg weigh (%.3g of it: half of what the device can sustain)",
-                  w.force.norm(), w.force.norm() / w.share, w.mass, w.share);
-  else
-    std::snprintf(text, sizeof text, "%.3g N (%.3g kg)", w.force.norm(), w.mass);
-  return text;
+  const auto text = [](double x) { return number_text(x, 3); };
+  const std::string force = text(w.force.norm()) + " N", mass = text(w.mass) + " kg";
+  if (w.share >= 1) return force + " (" + mass + ")";
+  return force + " of the " + text(w.force.norm() / w.share) + " N that " + mass + " weigh (" + text(w.share) +
+         " of it: half of what the device can sustain)";
 }
 
 }  // namespace tegotae

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.hpp"
 #include "loop/inward_offset.hpp"
 #include "loop/scene_parts.hpp"
 #include "narrowphase/patch_cache.hpp"
@@ -23,9 +23,7 @@ constexpr double kMarginShare = 0.5;
 constexpr double kMore = 1.25, kMaxTolerances = 2;
 
 std::string length(double m) {
-  char text[32];
-  std::snprintf(text, sizeof text, m < 1e-3 ? "%.3g um" : "%.4g mm", m * (m < 1e-3 ? 1e6 : 1e3));
-  return text;
+  return m < 1e-3 ? number_text(1e6 * m, 3) + " um" : number_text(1e3 * m, 4) + " mm";
 }
 
 /// What a pair has of kGapFloor that must not be lost: its gap in part, its depth in full.
@@ -67,8 +65,9 @@ void InitialContacts::filter_or_refuse(const Scene& scene, InitialContact& pair,
   const Part& held = held_part(scene);
   const Clash& c = pair.clash;
   if (!ignore_) {
-    char place[96];
-    std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) m", c.place_W.x(), c.place_W.y(), c.place_W.z());
+    const Vec3& p = c.place_W;
+    const std::string place =
+        "(" + number_text(p.x(), 6) + ", " + number_text(p.y(), 6) + ", " + number_text(p.z(), 6) + ") m";
     throw Error(ErrorKind::overlap,
                 "parts \"" + held.name + "\" and \"" + other.name + "\" intersect at the start, " +
                     (c.triangle_pairs == 0 ? "one inside the other, " : "") +

@@ -25,7 +25,8 @@ std::string contents(const std::string& path) {
   }
   const int error = file == nullptr || std::ferror(file) != 0 ? errno : 0;  // a folder opens, and fails when it is read
   if (file != nullptr) std::fclose(file);
-  if (error != 0) throw Error(path + ": cannot read the recording: " + std::strerror(error));
+  if (error != 0)
+    throw Error(path + ": cannot read the recording: " + (error == ENOENT ? "no such file" : std::strerror(error)));
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/wide_text.hpp"
+#include "import/file_check.hpp"
 #include "scene_file/toml_levels.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -24,6 +25,14 @@ std::string at(const std::string& file, const toml::source_region& where) {
 
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+}
+
+/// Text has no zeros, and of other characters that are none next to nothing.
+bool is_binary(const std::string& text) {
+  constexpr std::ptrdiff_t kFew = 20;  // one in so many is too many
+  const auto odd = [](char c) { return is_control(c) && c != '\t' && c != '\n' && c != '\r'; };
+  return text.find('\0') != std::string::npos ||
+         kFew * std::count_if(text.begin(), text.end(), odd) > static_cast<std::ptrdiff_t>(text.size());
 }
 
 /// Keys and values may hold line breaks and worse; a message is one line.
@@ -51,8 +60,7 @@ std::string shown(double value) {
 }  // namespace
 
 std::string read_file(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw Error(ErrorKind::file, path + ": no such file", {path, 0, {}, {}});
-  if (!std::filesystem::is_regular_file(path)) throw Error(ErrorKind::file, path + ": not a file", {path, 0, {}, {}});
+  require_file(path);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   if (in) text << in.rdbuf();
@@ -63,6 +71,12 @@ std::string read_file(const std::string& path) {
 toml::table parse_toml(const std::string& text, const std::string& path) {
   if (const char* encoding = wide_encoding(text))
     throw Error(ErrorKind::file, path + ": its text is in " + encoding + ", and TOML is UTF-8: save it as that",
+                {path, 0, {}, {}});
+  if (is_binary(text))
+    throw Error(ErrorKind::file,
+                path +
+                    ": not a scene or study file: it is binary, and they are text (TOML); by their endings are read " +
+                    kKindsOfFile,
                 {path, 0, {}, {}});
   check_toml_levels(text, path);
   try {

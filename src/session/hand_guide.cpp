@@ -1,7 +1,6 @@
 #include "session/hand_guide.hpp"
 
-#include <cstdio>
-
+#include "core/number_text.hpp"
 #include "session/guide_pull.hpp"
 #include "tegotae/device/script.hpp"
 
@@ -14,14 +13,11 @@ std::optional<PathGuide> make_guide(const SceneFile& file, const RunSettings& se
 
 std::string guide_text(PathGuide guide, const Pose& X) {
   guide.pull(X, 0);
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "%.3g N and %.3g mN·m at most, along %.4g mm of path; none farther than %.3g mm from it", guide.force(),
-                1e3 * guide.torque(), 1e3 * guide.length(), 1e3 * PathGuide::kReach);
-  std::string out = text;
-  if (guide.distance() < PathGuide::kReach) return out;
-  std::snprintf(text, sizeof text, " (it is %.3g mm off there now)", 1e3 * guide.distance());
-  return out + text;
+  const std::string text = number_text(guide.force(), 3) + " N and " + number_text(1e3 * guide.torque(), 3) +
+                           " mN·m at most, along " + number_text(1e3 * guide.length(), 4) +
+                           " mm of path; none farther than " + number_text(1e3 * PathGuide::kReach, 3) + " mm from it";
+  if (guide.distance() < PathGuide::kReach) return text;
+  return text + " (it is " + number_text(1e3 * guide.distance(), 3) + " mm off there now)";
 }
 
 }  // namespace tegotae

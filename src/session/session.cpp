@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
+#include "core/number_text.hpp"
 #include "loop/held_weight.hpp"
+#include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
 #include "servo/loop_priority.hpp"
 #include "session/fit_watch.hpp"
@@ -30,8 +31,14 @@ namespace {
 constexpr std::int64_t kPeriodNs = 1'000'000;  // of the servo, and at most of the contact loop
 constexpr double kPeriod = 1e-9 * kPeriodNs;
 
-HapticLoop make_loop(const SceneFile& file, bool real_time) try {
-  return HapticLoop(in_its_time(file.scene, real_time));
+HapticLoop make_loop(const SceneFile& file, const RunSettings& settings) try {
+  std::optional<MeshStructures> made;  // first, and with words; the loop then finds them
+  if (settings.on_build) {
+    made.emplace(file.scene.parts, file.scene.contact.narrowphase,
+                 [&](std::size_t done, std::size_t total) { settings.on_build("building hierarchies", done, total); });
+    settings.on_build("looking for contacts at the start", 0, 0);
+  }
+  return HapticLoop(in_its_time(file.scene, settings.real_time));
 } catch (const Error& e) {
   ErrorPlace place = e.place();
   place.file = file.path;
@@ -73,10 +80,9 @@ double duration(const SceneFile& file, const RunSettings& settings) {
   if (!settings.device.empty()) return std::numeric_limits<double>::infinity();
   const double length = file.script.end() - file.script.begin();
   if (length > kMaxRunSeconds) {
-    std::ostringstream text;
-    text << "the stylus script lasts " << length << " s, more than the " << kMaxRunSeconds
-         << " s of the longest run: are its times in s? A run of so many seconds as are given ends before";
-    throw Error(text.str());
+    throw Error("the stylus script lasts " + number_text(length, 6) + " s, more than the " +
+                number_text(kMaxRunSeconds, 6) +
+                " s of the longest run: are its times in s? A run of so many seconds as are given ends before");
   }
   return length + kSettleTime;
 }
@@ -86,7 +92,7 @@ class Session {
   Session(const SceneFile& file, const RunSettings& settings)
       : file_(for_device(file, settings)),
         settings_(settings),
-        loop_(make_loop(file_, settings.real_time)),
+        loop_(make_loop(file_, settings)),
         device_(make_device(file_, settings, loop_)),
         pen_(make_pen(device_.get(), file_, settings, loop_)),
         guide_(make_guide(file_, settings, loop_)),

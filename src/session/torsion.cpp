@@ -1,7 +1,6 @@
 #include "session/torsion.hpp"
 
-#include <cstdio>
-
+#include "core/number_text.hpp"
 #include "loop/held_weight.hpp"
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/transport/channel.hpp"
@@ -12,10 +11,8 @@ namespace {
 
 constexpr const char* kDeviceScheme = "shm:";
 
-std::string format(const char* pattern, double a, double b = 0, double c = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, a, b, c);
-  return text;
+std::string stiffness_text(double stiffness) {
+  return number_text(stiffness, 3) + " N·m/rad";
 }
 
 }  // namespace
@@ -33,13 +30,14 @@ Scene bounded_by(Scene scene, const std::string& device) {
 
 std::string torsion_text(const Scene& scene, const HapticLoop& loop) {
   const double chosen = loop.coupling().torsional_stiffness;
-  if (!scene.max_torsional_stiffness) return format("%.3g N·m/rad, as set", chosen);
+  if (!scene.max_torsional_stiffness) return stiffness_text(chosen) + ", as set";
   const double radius = loop.radius_of_gyration() / scene.scale;
   const double fitting = loop.coupling().stiffness * radius * radius;
-  const std::string rule = format("stiffness x (radius of gyration, %.3g mm)^2 = %.3g N·m/rad", 1e3 * radius, fitting);
-  if (chosen > fitting) return format("%.3g N·m/rad, the minimum; ", chosen) + rule;
-  if (chosen < fitting) return format("%.3g N·m/rad, the maximum for this device; ", chosen) + rule;
-  return format("%.3g N·m/rad; ", chosen) + rule;
+  const std::string rule =
+      "stiffness x (radius of gyration, " + number_text(1e3 * radius, 3) + " mm)^2 = " + stiffness_text(fitting);
+  if (chosen > fitting) return stiffness_text(chosen) + ", the minimum; " + rule;
+  if (chosen < fitting) return stiffness_text(chosen) + ", the maximum for this device; " + rule;
+  return stiffness_text(chosen) + "; " + rule;
 }
 
 }  // namespace tegotae

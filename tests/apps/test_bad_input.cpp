@@ -114,6 +114,45 @@ TEST_CASE("scenes that cannot be run are refused", "[bad_input]") {
                 {"README.md:", "not valid TOML", "is this a scene file?"});
 }
 
+TEST_CASE("a file that is not there is named so by every command that takes one", "[bad_input]") {
+  const TempFolder folder;
+  const std::string out = folder / "out";
+  for (const std::string file : {"none.step", "none.obj", "none.glb", "none.toml", "none"}) {
+    const std::string path = folder / file;
+    for (const std::string& command :
+         {"run " + path, "run --fast " + path, "run --view " + path, "view " + path, "check " + path,
+          "import " + path + " -o " + out, "try " + path, "plan " + path, "plan --all " + path, "study " + path}) {
+      INFO(command);
+      check_refused(run_program("tegotae", command), {file, "no such file"});
+    }
+  }
+  for (const std::string command : {"replay ", "review ", "view "})
+    check_refused(run_program("tegotae", command + (folder / "none.csv")), {"none.csv", "no such file"});
+  // Where a command is wanted, what is named like a file is taken for one that is to be looked at.
+  for (const std::string file : {"none.step", "none.toml", "none.csv", "none"})
+    check_refused(run_program("tegotae", folder / file), {file, "no such file"});
+  check_refused(run_program("tegotae", "gone.step"), {"gone.step: no such file"});
+  CHECK(run_program("tegotae", "--help").out.find("tegotae FILE is tegotae view FILE") != std::string::npos);
+}
+
+TEST_CASE("a file of no known kind is refused with the kinds that are read", "[bad_input]") {
+  const TempFolder folder;
+  std::string bytes;
+  for (int i = 0; i < 4096; ++i) bytes += static_cast<char>((i * i * 37 + 11 * i) >> 3);
+  for (const std::string file : {"picture.bin", "picture.toml", "picture", "picture.jpg"}) {
+    folder.write(file, bytes);
+    const std::string path = folder / file;
+    for (const std::string& command :
+         {"run --fast " + path, "view " + path, path, "try " + path, "plan " + path, "study " + path})
+      check_refused(run_program("tegotae", command), {file, "binary", ".toml", ".step", ".3mf", ".mcap"});
+    for (const std::string& command : {"check " + path, "import " + path + " -o " + (folder / "out")})
+      check_refused(run_program("tegotae", command), {file, file == "picture.toml" ? "" : "stl, obj, ply"});
+  }
+  // Text is not binary, whatever letters it has.
+  folder.write("word.toml", "name = \"K\xc3\xb6rper \xe6\x89\x8b\"\n");
+  check_refused(run_program("tegotae", "run --fast " + (folder / "word.toml")), {"word.toml", "unknown key"});
+}
+
 TEST_CASE("scripts longer than any run are refused, long ones named, and --seconds ends both before", "[bad_input]") {
   const TempFolder folder;
   write_small_scene(folder);
@@ -158,8 +197,8 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
 }
 
 TEST_CASE("help and version are no errors", "[bad_input]") {
-  for (const std::string program :
-       {"demo", "tegotae", "tegotae-device", "peg_in_hole", "tegotae-models", "tegotae-load-mesh"}) {
+  for (const std::string program : {"demo", "tegotae", "tegotae-device", "peg_in_hole", "tegotae-models",
+                                    "tegotae-load-mesh", "families", "stress", "tegotae bench", "tegotae experiment"}) {
     for (const std::string flag : {"--help", "--version"}) {
       const Output o = run_program(program, flag);
       CHECK(o.code == 0);
@@ -168,4 +207,18 @@ TEST_CASE("help and version are no errors", "[bad_input]") {
     }
   }
   CHECK(run_program("tegotae", "run --help").out.find("--resolver") != std::string::npos);
+}
+
+TEST_CASE("no program ends in a crash for an argument that it does not know", "[bad_input]") {
+  const TempFolder folder;  // where none of the files is that examples look for
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder / "");
+  for (const std::string program : {"first_touch", "example_driver", "demo", "families", "stress", "tegotae-models"})
+    for (const std::string argument : {"--help", "--version", "--frobnicate", "a.step"}) {
+      INFO(program << " " << argument);
+      const Output o = run_program(program, argument);
+      CHECK(o.code <= 2);
+      CHECK(o.out + o.err != "");
+    }
+  std::filesystem::current_path(before);
 }

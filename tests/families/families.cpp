@@ -5,6 +5,7 @@
 
 #include "families/selection.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
   app.add_flag("--daily", daily, "The selection of every day");
   app.add_option("--seeds", seeds, "All families at so many seeds")->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "Only what fails, and the sum");
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   CLI11_PARSE(app, argc, argv);
   setlinebuf(stdout);
   if (p.family.empty() == (!daily && seeds == 0)) {

@@ -9,6 +9,7 @@
 
 #include "stress_run.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--budget", options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
   app.add_option("--record", options.record, "Folder for a scene file and a recording of each script");
+  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   CLI11_PARSE(app, argc, argv);
   setlinebuf(stdout);
   try {

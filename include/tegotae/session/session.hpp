@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -114,6 +115,9 @@ struct RunSettings {
   RunEdits* edits = nullptr;          ///< changes the scene during the run; null: the scene stays
   InputSource* hand = nullptr;        ///< moves the simulated pen instead of the script; null: the script does
   const InputGuide* guide = nullptr;  ///< leads the simulated hand away from the script
+  /// Called while the contact loop is built, which takes seconds for large meshes: with what is under way, and how many
+  /// of how many are done (0 of 0: not known). One call at a time, from several threads; empty: nobody is told.
+  std::function<void(const std::string& what, std::size_t done, std::size_t total)> on_build;
   std::function<void(const RunStart&)> on_start;  ///< called before the first tick
   const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording stays
   /// FCL checks the committed poses during the run, and afterwards for a quarter of the time that the run took, or two
