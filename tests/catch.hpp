@@ -5,6 +5,7 @@
 #include <catch2/catch_all.hpp>
 using Catch::Approx;
 namespace Catch {
+using Matchers::EndsWith;
 using Matchers::StartsWith;
 // v3 calls that a matcher of ranges.
 inline auto Contains(const std::string& part) {

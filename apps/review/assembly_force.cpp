@@ -52,7 +52,7 @@ struct Profile {
 void take_peak(const Tick& tick, double force, const Scene& scene, ForcePeak& peak) {
   if (!(force > peak.force)) return;
   peak = {force, tick.depth, tick.t, Vec3::Zero(), ""};
-  double most = 0;
+  double most = -1;
   for (int i = 0; i < tick.forces.count; ++i) {
     const ContactForce& c = tick.forces.items[static_cast<std::size_t>(i)];
     if (c.force <= most || c.part.index >= scene.parts.size()) continue;
@@ -201,10 +201,13 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
   std::vector<std::string> out;
   if (!f.known) return out;
   const auto peak = [](const char* what, const ForcePeak& p) {
-    return format("%s: at most %.2f N at %.2f mm, against %s", what, p.force, 1e3 * p.depth, p.part.c_str());
+    return format("%s: at most %.2f N at %.2f mm", what, p.force, 1e3 * p.depth) +
+           (p.part.empty() ? "" : ", against " + p.part);
   };
-  out.push_back(peak("insertion", f.insertion) + format("; %.2f N in the mean over the way", f.insertion_mean) +
-                (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string()));
+  out.push_back(f.insertion.force > 0
+                    ? peak("insertion", f.insertion) + format("; %.2f N in the mean over the way", f.insertion_mean) +
+                          (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string())
+                    : "insertion: no force seen");
   out.push_back(f.seating.force > 0 ? peak("seating (final)", f.seating) : "seating (final): no force seen");
   out.push_back(f.pull_out.force > 0
                     ? peak("pull-out", f.pull_out) + format("; %.2f N in the mean over the way", f.pull_out_mean)

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "loop/lag.hpp"
 #include "loop/scene_parts.hpp"
 #include "review/spans.hpp"
 #include "session/run_goal.hpp"
@@ -16,18 +17,22 @@ namespace {
 // Breaks that are no end of an episode, s: a part that slides over facets lets go for a tick now and then.
 constexpr double kJoin = 0.05;
 constexpr double kMinTwoSided = 5e-3;  // s
+// By so much a run's last row may be before its end, s: a tick or, in real time, a few.
+constexpr double kTicks = 5e-3;
 // A stall: slower than this over the window while the pen is ahead by so much, for so long.
 constexpr double kStallSpeed = 1e-3, kWindow = 0.05, kAhead = 0.5e-3, kMinStall = 0.2;
 
 class Finder {
  public:
-  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center)
+  Finder(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
+         const GoalRule& rule)
       : file_(file),
         rows_(rows),
         scan_(scan),
         center_(center),
         radius_(radius_about(*held_part(file.scene).mesh, center)),
-        goal_(file, center) {}
+        goal_(rule.tolerance ? RunGoal(file, center, *rule.tolerance) : RunGoal(file, center)),
+        rule_(rule) {}
 
   Findings all() const {
     Findings out;
@@ -37,8 +42,12 @@ class Finder {
       out.way += d.dp.norm();
       out.turn += d.dr.norm();
     }
-    if (has_goal()) out.goal = goal();
     out.start = find_start(file_.scene, rows_, scan_);
+    out.blocker = apps::find_blocker(file_.scene, start_at_the_end(out.start), last_ticks());
+    if (has_goal()) {
+      out.goal = goal();
+      out.exit = find_exit(file_.scene, center_, rows_.front().x, goal_.end(), rows_[out.goal->judged_row].x);
+    }
     out.clearances = clearances();
     out.contacts = contacts();
     out.two_sided = two_sided();
@@ -69,12 +78,38 @@ class Finder {
         scan_.rows.size(), [&](std::size_t i) { return row(i).t; }, holds, kJoin, least);
   }
 
+  /// The last row of each tick.
+  std::vector<apps::TickPoses> last_ticks() const {
+    std::vector<apps::TickPoses> out;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (i + 1 == rows_.size() || rows_[i + 1].tick != rows_[i].tick)
+        out.push_back({rows_[i].t, rows_[i].y, rows_[i].x});
+    return out;
+  }
+
+  static InitialContactReport start_at_the_end(const StartFindings& start) {
+    InitialContactReport out;
+    for (const StartFinding& f : start.pairs) {
+      out.pairs.push_back(f.pair);
+      if (std::isfinite(f.until)) out.pairs.back().state = InitialContactState::active;
+    }
+    return out;
+  }
+
   GoalFindings goal() const {
     GoalFindings out;
-    out.reached = goal_.reached(rows_.back().x);
+    const RecordFrame& last = rows_.back();
+    out.reached = goal_.reached(last.x) &&
+                  !held_up(size(displacement(last.x, last.y, center_)), lag_bound(radius_), last.lag_reason);
+    out.starts_there = goal_.reached(rows_.front().x);
+    out.by_end = rule_.judged_after.has_value();
+    out.cut = out.by_end && last.t + kTicks < *rule_.judged_after;
     const auto first = std::find_if(rows_.begin(), rows_.end(), [&](const auto& r) { return goal_.reached(r.x); });
     out.passed = first != rows_.end();
     if (out.passed) out.at = first->t;
+    const bool before = !out.reached && out.passed && !out.by_end;
+    out.judged_row = before ? static_cast<std::size_t>(first - rows_.begin()) : rows_.size() - 1;
+    out.there_depth = goal_.depth(rows_[out.judged_row].x);
     const Displacement missing = goal_.missing(rows_.back().x);
     out.missing = missing.dp.norm();
     out.missing_angle = missing.dr.norm();
@@ -225,6 +260,7 @@ class Finder {
   Vec3 center_;
   double radius_;
   RunGoal goal_;
+  GoalRule rule_;
 };
 
 }  // namespace
@@ -237,8 +273,9 @@ Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, co
           springs.torque.norm() > row.wrench.torque.norm() ? springs.torque : row.wrench.torque};
 }
 
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center) {
-  return Finder(file, rows, scan, center).all();
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
+              const GoalRule& rule) {
+  return Finder(file, rows, scan, center, rule).all();
 }
 
 }  // namespace tegotae::review

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "review/exit_findings.hpp"
 #include "review/path_scan.hpp"
 #include "review/start_findings.hpp"
+#include "shared/blocker.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::review {
@@ -61,15 +63,27 @@ struct Loads {
          thermal_time = 0;  ///< what holds; continuous 0: not limited
 };
 
+/// By what it is judged whether the part went to its goal.
+struct GoalRule {
+  std::optional<double> tolerance;  ///< m; empty: that of a run of the scene's script
+  /// From when on (s) the last pose alone counts, as for the run itself. Empty: a pose counts whenever it was.
+  std::optional<double> judged_after;
+};
+
 /// Where the part was to go.
 struct GoalFindings {
-  bool reached = false;       ///< at the end of the recording, as RunSummary::completed has it
-  bool passed = false;        ///< at some row
-  double at = 0;              ///< s: when it was reached first
-  double missing = 0;         ///< m: of the center of mass at the end
-  double missing_angle = 0;   ///< rad
-  double depth = 0, way = 0;  ///< m: gone along the straight way at the end, and its length
-  double tolerance = 0;       ///< m
+  bool reached = false;        ///< at the end of the recording, as RunSummary::completed has it
+  bool passed = false;         ///< at some row
+  bool starts_there = false;   ///< at the first row
+  bool by_end = false;         ///< GoalRule::judged_after is known, so `passed` does not count
+  bool cut = false;            ///< the recording ends before that
+  double at = 0;               ///< s: when it was reached first
+  double missing = 0;          ///< m: of the center of mass at the end
+  double missing_angle = 0;    ///< rad
+  double depth = 0, way = 0;   ///< m: gone along the straight way at the end, and its length
+  double there_depth = 0;      ///< m: the same as `depth` where the verdict is judged, see judged_row
+  std::size_t judged_row = 0;  ///< the last row, or where it was first at its goal if that counts
+  double tolerance = 0;        ///< m
 };
 
 /// What a recording says about an assembly.
@@ -78,6 +92,8 @@ struct Findings {
   double way = 0, turn = 0;  ///< that the center of mass went and the part turned, m, rad
   std::optional<GoalFindings> goal;
   StartFindings start;                    ///< what it touched or overlapped at the start, and poses that intersect
+  ExitFindings exit;                      ///< where it was out of the others, with a goal
+  apps::Blocker blocker;                  ///< who was in the way at the end
   std::vector<PartClearance> clearances;  ///< the closest first
   std::vector<ContactEpisode> contacts;
   std::vector<TwoSidedEpisode> two_sided;
@@ -90,6 +106,7 @@ struct Findings {
 Wrench asked_wrench(const RecordFrame& row, const CouplingSettings& coupling, const Vec3& center);
 
 /// `file`: the scene with the held part where the recording begins, and as script where it was to go.
-Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center);
+Findings find(const SceneFile& file, const std::vector<RecordFrame>& rows, const Scan& scan, const Vec3& center,
+              const GoalRule& rule = {});
 
 }  // namespace tegotae::review

@@ -7,6 +7,7 @@
 #include "core/parallel_for.hpp"
 #include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
+#include "session/fit_watch.hpp"
 #include "view/follower.hpp"
 
 namespace tegotae::review {
@@ -58,12 +59,15 @@ LedRow led_row(const view::Follower& follower) {
 }
 
 /// Leads a contact loop along all rows, which takes them one after the other.
-std::vector<LedRow> lead(view::Follower& follower, const std::vector<RecordFrame>& rows,
-                         const std::vector<ScannedRow>& scanned) {
+std::vector<LedRow> lead(view::Follower& follower, const Scene& scene, const std::vector<RecordFrame>& rows,
+                         const std::vector<ScannedRow>& scanned, HeldFast& held_fast) {
+  FitWatch watch(follower.loop(), scene);
   std::vector<LedRow> out;
   out.reserve(scanned.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     follower.step(rows[i]);
+    if (follower.loop().report().shrunk > 0)
+      watch.look(follower.loop(), rows[i].y, i > 0 ? rows[i].t - rows[i - 1].t : 0, held_fast);
     if (scanned[out.size()].row == i) out.push_back(led_row(follower));
   }
   return out;
@@ -130,7 +134,7 @@ Scan scan_path(const Scene& scene, const std::string& file, const std::vector<Re
   // One thread leads the loop, the others measure, and then all do.
   const auto job = [&](int k) {
     if (k == 0) {
-      led = lead(follower, rows, scan.rows);
+      led = lead(follower, scene, rows, scan.rows, scan.held_fast);
       return;
     }
     const std::size_t begin = static_cast<std::size_t>(k - 1) * kBlock;

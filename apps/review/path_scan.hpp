@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "review/clearance_probe.hpp"
+#include "shared/clearance_probe.hpp"
 #include "tegotae/loop/initial_contacts.hpp"
 #include "tegotae/loop/scene.hpp"
 #include "tegotae/record/recording.hpp"
+#include "tegotae/session/session.hpp"
 
 namespace tegotae::review {
+
+using apps::Clearance;
+using apps::ClearanceProbe;
 
 /// Tells how far something has come.
 using Progress = std::function<void(const char* what, std::size_t done, std::size_t total)>;
@@ -36,6 +40,7 @@ struct Scan {
   Vec3 center;                 ///< of mass of the held part, m, file frame
   CouplingSettings coupling;   ///< of the contact loop: what the held part was felt with
   InitialContactReport start;  ///< of the contact loop, before the first row
+  HeldFast held_fast;          ///< as RunSummary::held_fast
 };
 
 /// Looks at the poses of a recording: distances by the parts' triangles, contacts by a contact loop led along the

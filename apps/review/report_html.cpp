@@ -8,6 +8,7 @@
 #include "review/report_tables.hpp"
 #include "review/review.hpp"
 #include "review/surface_clearance.hpp"
+#include "review/verdict_json.hpp"
 #include "view/bundle.hpp"
 #include "web/page.hpp"
 
@@ -20,19 +21,6 @@ using nlohmann::json;
 constexpr std::size_t kMaxTriangles = 8000, kMaxColorPoses = 2000;
 constexpr std::size_t kMaxPoses = 3000;  // that the page's part goes through
 constexpr std::size_t kGhosts = 9;
-
-const char* word(Outcome outcome) {
-  return outcome == Outcome::goes ? "goes" : outcome == Outcome::does_not_go ? "does not go" : "open";
-}
-const char* word(Evidence::Kind kind) {
-  return kind == Evidence::Kind::good ? "good" : kind == Evidence::Kind::bad ? "bad" : "plain";
-}
-
-json verdict_json(const Verdict& v) {
-  json out = {{"outcome", word(v.outcome)}, {"headline", v.headline}, {"evidence", json::array()}};
-  for (const Evidence& e : v.evidence) out["evidence"].push_back({{"kind", word(e.kind)}, {"text", e.text}});
-  return out;
-}
 
 /// t and pose of rows, eight numbers each; and which of them are shown as ghosts: evenly along the way.
 void add_path(view::Bundle& bundle, const Review& r) {

@@ -131,9 +131,9 @@ json loads(const Review& r) {
 /// What the held part touched or overlapped at the start.
 json start(const Review& r) {
   json t = table("At the start",
-                 "Relieved: kept out of a copy of the part that is smaller by so much, until it had come free. "
+                 "Relieved: until they had come free, contact was felt so far inside the part's surface. "
                  "Suspended: not kept out until then.",
-                 {"part", "", "gap or depth", "relieved by", "until (s)", "where"});
+                 {"part", "", "gap or depth", "felt inside by", "until (s)", "where"});
   for (const StartFinding& f : r.findings.start.pairs) {
     const Clash& c = f.pair.clash;
     const bool relieved = f.pair.state == InitialContactState::shrunk,

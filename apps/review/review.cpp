@@ -1,6 +1,7 @@
 #include "review/review.hpp"
 
 #include <Eigen/Geometry>
+#include <charconv>
 #include <cmath>
 
 #include "broadphase/bounding_spheres.hpp"
@@ -48,6 +49,25 @@ std::optional<Pose> recorded_goal(const Review& r) {
   }
 }
 
+/// A number of a recording's info; empty: it says none.
+std::optional<double> recorded_number(const std::string& path, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0) || !std::isfinite(value))
+    throw Error(path + ": the goal that it names: " + text + " is no tolerance and no time");
+  return value;
+}
+
+/// What the run was judged by. Who asks about another goal wants to know whether it ever was there.
+GoalRule recorded_rule(const Review& r) {
+  const RecordingInfo& info = r.recording.info;
+  GoalRule rule{recorded_number(r.path, info.goal_tolerance), recorded_number(r.path, info.judged_after)};
+  // Until there was a tolerance, only tries named their goal.
+  if (!info.goal.empty() && info.goal_tolerance.empty()) rule.judged_after = 0;
+  return rule;
+}
+
 /// The recording may be a part of a run only.
 void tell_scene_changes(const RecordingInfo& info, Review& r) {
   if (r.verdict.outcome == Outcome::does_not_go && r.findings.start.intersecting == 0 && !info.continued_by.empty()) {
@@ -81,7 +101,7 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
     throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(r.scan.astray) + " of " + std::to_string(rows.size()) + " rows");
   if (progress) progress("asking for intersections", 0, 0);
-  r.findings = find(r.file, rows, r.scan, r.center);
+  r.findings = find(r.file, rows, r.scan, r.center, questions.goal ? GoalRule() : recorded_rule(r));
   const Pose& end = r.file.script.pose(r.file.script.end());
   const bool inwards = leads_inwards(r.file.scene, rows.front().x, end);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);

@@ -3,11 +3,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
+#include "review/verdict_json.hpp"
 #include "shared/length_option.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
@@ -31,6 +33,23 @@ ForceBand parse_band(const std::string& text) {
       !(band.high > band.low) || band.high > 10)
     throw Error("--mu: \"" + text + "\" is not LOW:HIGH, two coefficients from 0 to 10");
   return band;
+}
+
+/// The verdict and what else is said of forces and clearances.
+Verdict with_figures(const Review& r) {
+  Verdict v = r.verdict;
+  const auto add = [&v](const std::vector<std::string>& lines) {
+    for (const std::string& text : lines) v.evidence.push_back({Evidence::Kind::plain, text});
+  };
+  add(assembly_force_text(r.assembly));
+  if (r.band) add(band_text(*r.band, r.findings.clearances, r.file.scene));
+  return v;
+}
+
+void print(const Verdict& verdict, const std::string& report) {
+  std::cout << verdict.headline << "\n";
+  for (const Evidence& e : verdict.evidence) std::cout << "  " << e.text << "\n";
+  std::cout << "report: " << report << std::endl;
 }
 
 }  // namespace
@@ -62,6 +81,7 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& o) {
   review->add_option("--mu", o.mu, "Also with friction, for coefficients between these and the same pen")
       ->type_name("LOW:HIGH");
   add_band_option(*review, o.band);
+  review->add_flag("--json", o.json, "Print the verdict as one line of JSON");
   review->add_option("--gltf", o.gltf, "Also write the path as an animation, binary when it ends in .glb")
       ->type_name("FILE.gltf");
   review->add_option("--script", o.script, "Also write the pen's path as a stylus script, for run --script")
@@ -97,13 +117,11 @@ int run_review(const ReviewOptions& o) {
   if (!o.gltf.empty())
     write_file(o.gltf, path_gltf(r.file.scene, r.file.up, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
-  std::cout << r.verdict.headline << "\n";
-  for (const Evidence& e : r.verdict.evidence) std::cout << "  " << e.text << "\n";
-  for (const std::string& text : assembly_force_text(r.assembly)) std::cout << "  " << text << "\n";
-  if (r.band)
-    for (const std::string& text : band_text(*r.band, r.findings.clearances, r.file.scene))
-      std::cout << "  " << text << "\n";
-  std::cout << "report: " << out << std::endl;
+  const Verdict said = with_figures(r);
+  if (o.json)
+    std::cout << verdict_json(said).dump() << std::endl;
+  else
+    print(said, out);
   return r.verdict.outcome == Outcome::does_not_go ? apps::kRunFailed : apps::kDone;
 }
 

@@ -17,6 +17,7 @@ struct ReviewOptions {
   std::string forces;             ///< the force over depth; empty: none
   std::string mu;                 ///< "LOW:HIGH", see ForceBand; empty: none
   std::optional<ClearanceBand> band;
+  bool json = false;  ///< the verdict as one line of JSON
 };
 
 /// Adds `--band LOW HIGH`, two lengths with units; `band` is left alone unless it is given.

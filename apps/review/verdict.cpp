@@ -5,6 +5,7 @@
 
 #include "core/number_text.hpp"
 #include "shared/format.hpp"
+#include "shared/start_text.hpp"
 
 namespace tegotae::review {
 
@@ -24,10 +25,13 @@ class Judge {
       : f_(f), scene_(scene), inwards_(inwards), scan_(scan) {}
 
   Verdict verdict(const std::string& damage) {
-    decide();
+    const Headline h = headline(f_, scene_, inwards_);
+    v_.outcome = h.outcome;
+    v_.headline = h.text;
     if (f_.goal) tell_goal();
     tell_intersections();
     tell_start();
+    tell_held_fast();
     tell_clearance();
     tell_loads();
     tell_contacts();
@@ -41,42 +45,6 @@ class Judge {
   void bad(const std::string& text) { add(Evidence::Kind::bad, text); }
   void plain(const std::string& text) { add(Evidence::Kind::plain, text); }
 
-  void decide() {
-    const char* goes = inwards_ ? "goes in" : "comes out";
-    const char* go = inwards_ ? "go in" : "come out";
-    const auto deeper = std::find_if(f_.start.pairs.begin(), f_.start.pairs.end(), is_too_deep);
-    if (f_.start.intersecting > 0) {
-      v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(f_.start.intersecting) + " poses intersect other parts: impossible for a rigid part";
-    } else if (deeper != f_.start.pairs.end()) {
-      v_.outcome = Outcome::does_not_go;
-      v_.headline = std::to_string(deeper->deeper) + " poses reach deeper into " + name(*deeper) +
-                    " than at the start: impossible for a rigid part";
-    } else if (!f_.goal) {
-      v_.headline = "A way of " + length_text(f_.way) + " without a goal";
-    } else if (f_.goal->reached) {
-      v_.outcome = Outcome::goes;
-      v_.headline = std::string("It ") + goes;
-    } else if (f_.goal->passed) {
-      v_.outcome = Outcome::goes;
-      v_.headline = std::string("It ") + goes + ", and leaves again: it was there after " + seconds_text(f_.goal->at);
-    } else {
-      v_.outcome = Outcome::does_not_go;
-      v_.headline = std::string("It does not ") + go + blocked();
-    }
-  }
-
-  /// Who is in the way at the end.
-  std::string blocked() const {
-    const double end = scan_.rows.empty() ? 0 : f_.seconds;
-    const Stall* last = f_.stalls.empty() ? nullptr : &f_.stalls.back();
-    if (last && !last->parts.empty()) return ": " + apps::blocked_text(names_text(last->parts, scene_), last->place_W);
-    const auto touches_at_end = [&](const ContactEpisode& e) { return e.span.end >= end - 1e-9; };
-    const auto found = std::find_if(f_.contacts.begin(), f_.contacts.end(), touches_at_end);
-    if (found == f_.contacts.end()) return ": " + apps::blocked_text("", Vec3::Zero());
-    return ": " + apps::blocked_text(scene_.parts[found->part].name, found->place_W);
-  }
-
   void tell_goal() {
     const GoalFindings& g = *f_.goal;
     const std::string text =
@@ -84,10 +52,11 @@ class Judge {
                length_text(g.missing).c_str(), g.missing_angle / kDegree, length_text(g.tolerance).c_str(),
                length_text(g.depth).c_str(), length_text(g.way).c_str());
     add(g.reached ? Evidence::Kind::good : Evidence::Kind::bad, text);
+    if (g.passed && g.by_end && !g.reached && !g.starts_there)
+      bad("It was at its goal after " + seconds_text(g.at) + ", and did not stay.");
   }
 
   const std::string& name(const StartFinding& f) const { return scene_.parts[f.pair.part].name; }
-  static bool is_too_deep(const StartFinding& f) { return f.pair.state == InitialContactState::shrunk && f.deeper > 0; }
   static bool was_active(const StartFinding& f) { return f.pair.state == InitialContactState::active; }
 
   void tell_intersections() {
@@ -115,9 +84,14 @@ class Judge {
                    until.c_str(), name(f).c_str(), poses.c_str()));
       if (f.pair.state == InitialContactState::shrunk)
         add(f.deeper == 0 ? Evidence::Kind::plain : Evidence::Kind::bad,
-            "Touching at the start, and relieved by " + length_text(f.pair.inward_offset) + until + ": " + name(f) +
-                "; " + (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
+            "Touching at the start: " + name(f) + ";" + until + " " + apps::felt_text(f.pair.inward_offset) + "; " +
+                (f.deeper == 0 ? "no pose" : poses) + " reached deeper.");
     }
+  }
+
+  void tell_held_fast() {
+    for (const std::string& by : apps::held_fast_by(scan_.held_fast, scan_.start, scene_))
+      add(v_.outcome == Outcome::does_not_go ? Evidence::Kind::bad : Evidence::Kind::plain, "Held fast " + by + ".");
   }
 
   void tell_clearance() {
@@ -153,7 +127,7 @@ class Judge {
     const auto longest = std::max_element(f_.stalls.begin(), f_.stalls.end(), [](const Stall& a, const Stall& b) {
       return a.span.length() < b.span.length();
     });
-    const std::string by = longest->parts.empty() ? "" : " by " + names_text(longest->parts, scene_);
+    const std::string by = longest->parts.empty() ? "" : ", touching " + names_text(longest->parts, scene_);
     plain("Stalled " + times(f_.stalls.size()) +
           format(", longest for %.2f s after %.2f s", longest->span.length(), longest->span.begin) + by + " at " +
           place_text(longest->place_W) + ".");

@@ -4,11 +4,10 @@
 #include <vector>
 
 #include "review/findings.hpp"
+#include "review/headline.hpp"
 #include "shared/blocked_text.hpp"
 
 namespace tegotae::review {
-
-enum class Outcome { goes, does_not_go, open };
 
 /// A sentence of evidence; `good` and `bad` speak for and against, the others are neutral.
 struct Evidence {

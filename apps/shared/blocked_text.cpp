@@ -9,9 +9,9 @@ std::string place_text(const Vec3& p) {
   return "(" + mm(p.x()) + ", " + mm(p.y()) + ", " + mm(p.z()) + ") mm";
 }
 
-std::string blocked_text(const std::string& part, const Vec3& place_W) {
-  if (part.empty()) return "nothing blocked it at the end; the hand did not bring it there";
-  return "blocked by " + part + " at " + place_text(place_W);
+std::string blocked_text(const Blocker& blocker) {
+  if (blocker.part.empty()) return "nothing blocked it at the end; the hand did not bring it there";
+  return "blocked by " + blocker.part + " at " + place_text(blocker.place_W);
 }
 
 }  // namespace tegotae::apps

@@ -115,7 +115,8 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   }
   if (!run) return kDone;  // the page was open and held no part
   const RunSummary& summary = *run;
-  const Blocker blocker = watch.find(file.scene);  // none after a run with a page, which may have changed the scene
+  const Blocker blocker =
+      watch.find(file.scene, summary.start);  // none after a run with a page, which may have changed the scene
   if (options.json)
     std::cout << json_line(summary, file, blocker) << std::endl;
   else

@@ -34,13 +34,16 @@ std::string line(const InitialContact& pair, const Scene& scene) {
   if (pair.state == InitialContactState::filtered)
     return text + "; SUSPENDED: until they have come free, nothing keeps the two apart\n";
   if (pair.state == InitialContactState::shrunk)
-    return text + "; until they have come free, contact is felt " + length(pair.inward_offset) +
-           " inside its surface\n";
+    return text + "; until they have come free, " + felt_text(pair.inward_offset) + "\n";
   if (pair.freed > 0) return text + "; came free\n";
   return text + "\n";
 }
 
 }  // namespace
+
+std::string felt_text(double inward_offset) {
+  return "contact is felt " + length(inward_offset) + " inside its surface";
+}
 
 nlohmann::ordered_json start_json(const InitialContactReport& start, const Scene& scene) {
   nlohmann::ordered_json pairs = nlohmann::ordered_json::array(), suspended = nlohmann::ordered_json::array();
@@ -67,15 +70,21 @@ std::string start_text(const InitialContactReport& start, const Scene& scene) {
   return text;
 }
 
-std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
-  const HeldFast& h = summary.held_fast;
-  std::string text;
-  for (const InitialContact& pair : summary.start.pairs) {
+std::vector<std::string> held_fast_by(const HeldFast& h, const InitialContactReport& start, const Scene& scene) {
+  std::vector<std::string> out;
+  for (const InitialContact& pair : start.pairs) {
     if (std::find(h.parts.begin(), h.parts.end(), pair.part) == h.parts.end()) continue;
-    text += format("  %-12s ", "HELD FAST") + "by " + scene.parts[pair.part].name + ": went " + length(h.moved) +
-            " where its pen went " + length(h.pen) + "; the fit has no clearance, even with contact felt " +
-            length(pair.inward_offset) + " inside that part's surface\n";
+    out.push_back("by " + scene.parts[pair.part].name + ": went " + length(h.moved) + " where its pen went " +
+                  length(h.pen) + "; the fit has no clearance, even with contact felt " + length(pair.inward_offset) +
+                  " inside that part's surface");
   }
+  return out;
+}
+
+std::string held_fast_text(const RunSummary& summary, const Scene& scene) {
+  std::string text;
+  for (const std::string& by : held_fast_by(summary.held_fast, summary.start, scene))
+    text += format("  %-12s ", "HELD FAST") + by + "\n";
   return text;
 }
 

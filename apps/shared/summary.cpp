@@ -93,12 +93,13 @@ std::string json_line(const RunSummary& s, const SceneFile& file, const Blocker&
 std::string summary_text(const RunSummary& s, const RunOptions& options, const SceneFile& file, const std::string& goal,
                          const Blocker& blocker, bool interrupted) {
   const bool intersects = s.penetrating > 0 && file.scene.contact.resolver != ResolverKind::penalty;
-  const std::string verdict = intersects                ? "FAILED: poses intersect another part"
-                              : s.completed             ? "done"
-                              : !options.device.empty() ? "ended"
-                              : interrupted             ? "interrupted"
-                              : options.seconds > 0     ? "cut short"
-                                                        : "FAILED: " + blocked_text(blocker.part, blocker.place_W);
+  const bool led = !options.device.empty() || options.view;  // by a person, who ends where they like
+  const std::string verdict = intersects            ? "FAILED: poses intersect another part"
+                              : s.completed         ? "done"
+                              : led                 ? "ended"
+                              : interrupted         ? "interrupted"
+                              : options.seconds > 0 ? "cut short"
+                                                    : "FAILED: " + blocked_text(blocker);
   std::string text = goal + ": " + verdict + "\n";
   text += format("  %-12s ", "depth") + fixed_text(1e3 * s.depth_m, 1) + " mm\n";
   text += format("  %-12s at most %d at once\n", "contacts", s.contacts_max);

@@ -44,8 +44,11 @@ std::map<std::string, std::size_t> blockers(const std::vector<Result>& results) 
   return out;
 }
 
-std::string blocker_name(const std::string& part) {
-  return part.empty() ? "nothing at the end" : part;
+std::map<std::string, std::size_t> failures(const std::vector<Result>& results) {
+  std::map<std::string, std::size_t> out;
+  for (const Result& r : results)
+    if (!r.reached) ++out[r.blocked_by.empty() ? r.why : "blocked by " + r.blocked_by];
+  return out;
 }
 
 const Result* best_case(const std::vector<Result>& results) {
@@ -71,8 +74,7 @@ std::string headline(const std::vector<Result>& results, const char* word) {
 
 std::string summary_text(const std::vector<Result>& results, const char* word) {
   std::string text = headline(results, word) + "\n";
-  for (const auto& [part, n] : blockers(results))
-    text += format("  blocked %zu times by ", n) + blocker_name(part) + "\n";
+  for (const auto& [why, n] : failures(results)) text += format("  %zu failed: ", n) + why + "\n";
   return text;
 }
 

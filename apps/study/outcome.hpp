@@ -26,7 +26,8 @@ std::size_t reached(const std::vector<Result>& results);
 std::vector<double> times(const std::vector<Result>& results);
 /// How many unsuccessful cases each part blocked; an empty name: none did.
 std::map<std::string, std::size_t> blockers(const std::vector<Result>& results);
-std::string blocker_name(const std::string& part);
+/// How many cases failed for each reason, in words: the same, without the places.
+std::map<std::string, std::size_t> failures(const std::vector<Result>& results);
 
 /// The successful case that took the shortest time; without one the case that came farthest. Null when there is none.
 const Result* best_case(const std::vector<Result>& results);

@@ -132,9 +132,9 @@ Json group_table(const Source& s, const std::string& name, const std::map<std::s
   return t;
 }
 
-Json blocker_table(const Source& s) {
-  Json t = {{"head", {"blocked by", s.word()}}, {"rows", Json::array()}};
-  for (const auto& [part, n] : blockers(s.results)) t["rows"].push_back({blocker_name(part), n});
+Json failure_table(const Source& s) {
+  Json t = {{"head", {"failed", s.word()}}, {"rows", Json::array()}};
+  for (const auto& [why, n] : failures(s.results)) t["rows"].push_back({why, n});
   return t;
 }
 
@@ -225,7 +225,7 @@ Json report(const Source& s) {
       tables.push_back(group_table(s, axis.name, s.by_axis(axis)));
   tables.push_back(group_table(s, "operator", s.by_operator()));
   tables.push_back(group_table(s, "route", s.by_route()));
-  if (!blockers(s.results).empty()) tables.push_back(blocker_table(s));
+  if (!failures(s.results).empty()) tables.push_back(failure_table(s));
   const std::string more =
       s.results.size() > kMaxRows ? format("The first %zu; cases.csv has all.", kMaxRows) : std::string();
   const std::string name = std::filesystem::path(s.tries() ? s.study.scenes.front() : s.study.path).filename().string();

@@ -6,7 +6,7 @@
 #include "broadphase/bounding_spheres.hpp"
 #include "loop/scene_parts.hpp"
 #include "plan/exit.hpp"
-#include "review/clearance_probe.hpp"
+#include "shared/clearance_probe.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::study {
@@ -162,8 +162,8 @@ class RouteFinder {
   Vec3 center_, way_;
   const TriangleMesh& mesh_;
   double radius_;
-  review::ClearanceProbe probe_;
-  std::vector<review::Clearance> near_;
+  apps::ClearanceProbe probe_;
+  std::vector<apps::Clearance> near_;
   bool pulls_ = false;
 };
 

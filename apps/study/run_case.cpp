@@ -7,13 +7,15 @@
 
 #include "broadphase/bounding_spheres.hpp"
 #include "loop/inward_offset.hpp"
+#include "loop/lag.hpp"
 #include "loop/scene_parts.hpp"
 #include "mesh/surface.hpp"
-#include "review/clearance_probe.hpp"
 #include "review/verdict.hpp"
 #include "session/run_goal.hpp"
 #include "shared/blocked_text.hpp"
 #include "shared/blocker_watch.hpp"
+#include "shared/clearance_probe.hpp"
+#include "shared/format.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
@@ -86,10 +88,10 @@ class LeastClearance {
   double least() const { return least_; }
 
  private:
-  review::ClearanceProbe probe_;
+  apps::ClearanceProbe probe_;
   Vec3 center_;
   double radius_;
-  std::vector<review::Clearance> near_;
+  std::vector<apps::Clearance> near_;
   bool asked_ = false;
   Pose last_;
   double distance_ = 0, least_ = INFINITY;
@@ -104,20 +106,22 @@ class Watcher final : public RunObserver {
 
   void before_tick(double) override {}
   void after_tick(const TickView& tick) noexcept override {
-    const Pose& X = tick.loop.report().proxy.X;
+    const TickReport& report = tick.loop.report();
+    const Pose& X = report.proxy.X;
     hand_.see(tick.t, X);
     result_.stuck += hand_.stuck() ? 1e-3 : 0;
-    const bool there = goal_.reached(X);
+    const bool there = goal_.reached(X) && !held_up(report.lag, tick.loop.lag_bound(), report.lag_reason);
     if (!there) since_ = -1;
     if (there && since_ < 0) since_ = tick.t;
-    result_.reached = there && tick.t - since_ >= kSettleTime;
     result_.time = there ? since_ : tick.t;
-    if (result_.reached || stop_.load(std::memory_order_relaxed)) end = true;
+    if ((there && tick.t - since_ >= kSettleTime) || stop_.load(std::memory_order_relaxed)) end = true;
     blocker_.after_tick(tick);
     clearance_.look(X, end);
   }
   double clearance() const { return clearance_.least(); }
-  apps::Blocker blocker(const Scene& scene) const { return blocker_.find(scene); }
+  apps::Blocker blocker(const Scene& scene, const InitialContactReport& start) const {
+    return blocker_.find(scene, start);
+  }
 
   std::atomic<bool> end{false};
 
@@ -188,6 +192,17 @@ bool change_scene(const Case& c, Scene& scene) {
   return changed;
 }
 
+/// Why a task failed.
+void tell_why(const RunSummary& summary, const apps::Blocker& blocker, Result& result) {
+  if (summary.penetrating > 0) {
+    result.why = apps::format("%lld poses intersect another part", static_cast<long long>(summary.penetrating));
+    return;
+  }
+  result.blocked_by = blocker.part;
+  result.place_W = blocker.place_W;
+  result.why = apps::blocked_text(blocker);
+}
+
 /// What of a case one task needs.
 struct Attempt {
   const Study& study;
@@ -216,7 +231,7 @@ bool run_task(const Task& task, const Attempt& a, const RecordTo& record_to, Res
   one.route = route.name;
   RouteHand hand(who, route, task.center, rng);
   file.device.hand = who.hand;
-  file.script = StylusScript({{0, held_part(file.scene).pose}, {1, route.goal}});
+  file.script = StylusScript({{0, held_part(file.scene).pose}, {1, route.goal}});  // what the run is judged by
   const RunGoal goal(file, task.center);
   Watcher watcher(file.scene, task.center, hand, goal, a.stop, one);
   RunSettings settings;
@@ -232,18 +247,14 @@ bool run_task(const Task& task, const Attempt& a, const RecordTo& record_to, Res
   try {
     const RunSummary summary = run_session(file, settings);
     if (!summary.record_failure.empty()) throw Error(summary.record_failure);
+    one.reached = summary.completed && summary.penetrating == 0;
     if (a.stop && !one.reached) return false;
     one.depth = summary.depth_m;
     one.force = summary.force_max_n;
     one.torque = summary.torque_max_nm;
     one.intersecting = summary.penetrating;
     one.clearance = watcher.clearance();
-    if (!one.reached) {
-      const apps::Blocker blocker = watcher.blocker(file.scene);
-      one.blocked_by = blocker.part;
-      one.place_W = blocker.place_W;
-      one.why = apps::blocked_text(blocker.part, blocker.place_W);
-    }
+    if (!one.reached) tell_why(summary, watcher.blocker(file.scene, summary.start), one);
   } catch (const Error& e) {
     // A drawn size may leave no clearance at the start: the case failed.
     if (!changed || record_to) throw;

@@ -17,14 +17,14 @@ struct Result {
   std::vector<std::string> parameters;  ///< parameter_cells()
   std::string who, route;               ///< operator profile, route
   double offset = 0, tilt = 0;          ///< by which it was led astray at first, m and rad
-  bool reached = false;                 ///< the goal, and the part stayed there
+  bool reached = false;                 ///< RunSummary::completed, and no pose intersects another part
   double time = 0;                      ///< s, until it was there, or the time tried
   double depth = 0;                     ///< along the straight way to the goal at the end, m
   double force = 0, torque = 0;         ///< largest rendered, N, N·m
   double stuck = 0;                     ///< time spent wiggling, s
   std::int64_t intersecting = 0;        ///< poses, by FCL
-  std::string blocked_by;               ///< the part in contact in the last half second, most of the time; empty: none
-  Vec3 place_W = Vec3::Zero();          ///< middle of the last contacts with it, m
+  std::string blocked_by;               ///< apps::find_blocker(); empty: none
+  Vec3 place_W = Vec3::Zero();          ///< where it was touched last, m
   double clearance = 0;  ///< least distance of the surfaces, m; exact but for a hundredth of the radius of way
   std::string why;       ///< it was not reached, for people; empty: it was
 };

@@ -29,6 +29,11 @@ inline LagReason lag_reason(const TickEnd& end) {
   return end.late || end.moved ? LagReason::time : LagReason::capacity;
 }
 
+/// Whether a part lags, over the bound, for another reason than contact: where it is then is not where it came to rest.
+inline bool held_up(double lag, double bound, LagReason reason) {
+  return lag > bound && reason != LagReason::none && reason != LagReason::contact;
+}
+
 /// Counts TickReport::unexplained_lag_ticks.
 class LagCounter {
  public:

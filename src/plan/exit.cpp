@@ -33,11 +33,15 @@ WorldBox around_others(const Scene& scene) {
 
 Exit::Exit(const Scene& scene, const Vec3& center, double radius)
     : center_(center),
-      margin_(kMarginShare * radius),
+      margin_(margin(radius)),
       box_(bounding_box(*held_part(scene).mesh)),
       others_(around_others(scene)) {
   const Vec3 start = held_part(scene).pose * center, around = Vec3::Constant(kAround * radius);
   room_ = {others_.low.cwiseMin(start) - around, others_.high.cwiseMax(start) + around};
+}
+
+double Exit::margin(double radius) {
+  return kMarginShare * radius;
 }
 
 bool Exit::is_out(const Pose& X) const {

@@ -19,7 +19,9 @@ class Exit {
   /// `center` of mass of the held part (file frame, m), `radius` of it about that.
   Exit(const Scene& scene, const Vec3& center, double radius);
 
-  /// Whether the held part is out at `X`, by a margin of a twentieth of its radius.
+  /// By how much (m) a part of that radius is to be out: a twentieth of it.
+  static double margin(double radius);
+  /// Whether the held part is out at `X`, by the margin.
   bool is_out(const Pose& X) const;
   /// Poses at which it is out, with the orientation of `from`: straight out along the axes of the world and of the
   /// part.

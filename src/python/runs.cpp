@@ -180,6 +180,8 @@ nb::dict info_of(const RecordingInfo& info) {
   d["follows"] = info.continues;
   d["goes_on"] = info.continued_by;
   d["goal"] = info.goal;
+  d["goal_tolerance"] = info.goal_tolerance;
+  d["judged_after"] = info.judged_after;
   return d;
 }
 

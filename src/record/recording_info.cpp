@@ -21,7 +21,9 @@ constexpr struct {
                {"follows", &RecordingInfo::continues},
                {"goes_on", &RecordingInfo::continued_by},
                {"guide", &RecordingInfo::guide},
-               {"goal", &RecordingInfo::goal}};
+               {"goal", &RecordingInfo::goal},
+               {"goal_tolerance", &RecordingInfo::goal_tolerance},
+               {"judged_after", &RecordingInfo::judged_after}};
 }  // namespace
 
 std::string recording_info_path(const std::string& path) {

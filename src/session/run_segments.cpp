@@ -29,13 +29,16 @@ std::string names_of_filtered(const InitialContactReport& start, const Scene& sc
   return names;
 }
 
+std::string number_text(double x) {
+  char number[32];
+  return {number, std::to_chars(number, number + sizeof number, x).ptr};
+}
+
 /// As RecordingInfo::goal.
 std::string goal_text(const Pose& X) {
   std::string text;
-  for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()}) {
-    char number[32];
-    text += (text.empty() ? "" : ",") + std::string(number, std::to_chars(number, number + sizeof number, x).ptr);
-  }
+  for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()})
+    text += (text.empty() ? "" : ",") + number_text(x);
   return text;
 }
 
@@ -57,8 +60,9 @@ Scene in_its_time(Scene scene, bool real_time) {
   return scene;
 }
 
-RunSegments::RunSegments(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check)
-    : file_(file), settings_(settings), loop_(loop), check_(check) {
+RunSegments::RunSegments(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check,
+                         const RunGoal& goal)
+    : file_(file), settings_(settings), loop_(loop), check_(check), goal_(goal) {
   auto first = std::make_unique<RunSegment>();
   begin(*first, file.scene, loop.start());
   now_ = first.get();
@@ -99,7 +103,7 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
   RecordingInfo info{file_.path, segment.held, to_string(file_.scene.contact.resolver), settings_.program,
                      names_of_filtered(start, segment.scene)};
   info.guide = settings_.guide_path;
-  if (settings_.hand != nullptr) info.goal = goal_text(file_.script.pose(file_.script.end()));
+  name_goal(segment, info);
   segment.recording = settings_.record;
   if (segment.number > 0) {
     const fs::path first = settings_.record;
@@ -120,6 +124,16 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
     if (segment.number > 0) fs::remove(segment.scene_file);
     throw;
   }
+}
+
+/// What the run is judged by, so that whoever reads the recording need not have its script.
+void RunSegments::name_goal(const RunSegment& segment, RecordingInfo& info) const {
+  if (!(script_length(file_) > 0) || segment.held != held_part(file_.scene).name) return;
+  info.goal = goal_text(goal_.end());
+  info.goal_tolerance = number_text(goal_.tolerance());
+  // A person who leads the pen or the script's hand ends where they like.
+  if (!settings_.device.empty() || settings_.guide != nullptr) return;
+  info.judged_after = number_text(follows_script(settings_) ? script_length(file_) : 0);
 }
 
 bool RunSegments::follow() noexcept {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "session/run_check.hpp"
+#include "session/run_goal.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/record/recorder.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
@@ -39,7 +40,8 @@ Scene in_its_time(Scene scene, bool real_time);
 class RunSegments {
  public:
   /// `file` is the scene in which `loop` begins. Throws Error when the recording cannot be written. Keeps references.
-  RunSegments(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check);
+  RunSegments(const SceneFile& file, const RunSettings& settings, HapticLoop& loop, RunCheck& check,
+              const RunGoal& goal);
   /// No change() comes or is at work any more.
   ~RunSegments();
   RunSegments(const RunSegments&) = delete;
@@ -68,6 +70,7 @@ class RunSegments {
 
   void begin(RunSegment& segment, const Scene& scene, const InitialContactReport& start);
   void record(RunSegment& segment, const InitialContactReport& start);
+  void name_goal(const RunSegment& segment, RecordingInfo& info) const;
   bool wait_for(std::uint64_t change) const;
   void finish(RunSegment& segment, const std::string& continued_by) noexcept;
   void detach();
@@ -76,6 +79,7 @@ class RunSegments {
   const RunSettings& settings_;
   HapticLoop& loop_;
   RunCheck& check_;
+  const RunGoal& goal_;
   std::vector<std::unique_ptr<RunSegment>> segments_;  // that were in force, and the one that will be
   RunSegment* now_;
   std::uint64_t change_ = 0;  // that now_ is of

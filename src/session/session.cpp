@@ -7,6 +7,7 @@
 
 #include "core/number_text.hpp"
 #include "loop/held_weight.hpp"
+#include "loop/lag.hpp"
 #include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
 #include "servo/loop_priority.hpp"
@@ -78,7 +79,7 @@ double duration(const SceneFile& file, const RunSettings& settings) {
   if (settings.seconds > 0) return settings.seconds;
   // What another process's hand does is not known.
   if (!settings.device.empty()) return std::numeric_limits<double>::infinity();
-  const double length = file.script.end() - file.script.begin();
+  const double length = script_length(file);
   if (length > kMaxRunSeconds) {
     throw Error("the stylus script lasts " + number_text(length, 6) + " s, more than the " +
                 number_text(kMaxRunSeconds, 6) +
@@ -99,7 +100,7 @@ class Session {
         goal_(file_, loop_.center()),
         duration_(duration(file_, settings)),
         check_(settings.check_all, settings.real_time),
-        segments_(file_, settings, loop_, check_) {
+        segments_(file_, settings, loop_, check_, goal_) {
     if (settings.progress) settings.progress->duration = duration_;
     summary_.held_fast.parts.reserve(file.scene.parts.size());
     summary_.stability = pen_->stability();
@@ -128,7 +129,7 @@ class Session {
     if (summary_.missing_realtime.empty()) summary_.missing_realtime = missing_;
     summary_.device_losses = pen_->losses();
     summary_.tick_us = tegotae::summary(tick_times_);
-    const bool script_over = !settings_.device.empty() || summary_.seconds >= file_.script.end() - file_.script.begin();
+    const bool script_over = !follows_script(settings_) || summary_.seconds >= script_length(file_);
     summary_.depth_m = goal_.depth(X_);
     summary_.completed = script_over && holds_first_ && goal_.reached(X_) && !lagging_;
     summary_.start = segments_.start();
@@ -251,11 +252,9 @@ class Session {
 
   void count_lag(const TickReport& report) {
     LagSummary& lag = summary_.lag;
-    const bool lags = report.lag > loop_.lag_bound();
-    const bool contact = report.lag_reason == LagReason::none || report.lag_reason == LagReason::contact;
-    lagging_ = lags && !contact;
+    lagging_ = held_up(report.lag, loop_.lag_bound(), report.lag_reason);
     lag.max_m = std::max(lag.max_m, report.lag);
-    if (lags) ++lag.ticks[static_cast<std::size_t>(report.lag_reason)];
+    if (report.lag > loop_.lag_bound()) ++lag.ticks[static_cast<std::size_t>(report.lag_reason)];
     lag.unexplained = report.unexplained_lag_ticks;
   }
 

@@ -2,6 +2,8 @@
 #include <pty.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -146,6 +148,31 @@ TEST_CASE("a run that does not arrive is a failure", "[programs]") {
   CHECK(j.at("penetrating") == 0);
   CHECK(j.at("contacts_max").get<int>() > 0);
   CHECK(j.at("force_max_n").get<double>() > 0.5);
+  // In words: who was in the way, and where, as in the JSON. The floor is at z = 0.
+  const Output text =
+      run_program("tegotae", "run --fast --record " + (folder / "r.csv") + " " + (folder / "scene.toml"));
+  CHECK(text.code == 1);
+  const json by = j.at("blocked_by"), at = by.at("place_m");
+  CHECK(by.at("part") == "block");
+  CHECK(std::abs(at.at(2).get<double>()) < 1e-9);
+  char place[96];
+  const auto mm = [&](int k) { return 0.01 * std::round(1e5 * at.at(k).get<double>()) + 0.0; };  // no "-0.00"
+  std::snprintf(place, sizeof place, "(%.2f, %.2f, 0.00) mm\n", mm(0), mm(1));
+  CHECK_THAT(text.out, Catch::Contains(": FAILED: blocked by block at " + std::string(place)));
+  CHECK_THAT(run_program("tegotae", "review " + (folder / "r.csv")).out,
+             Catch::StartsWith("It does not get to its goal: blocked by block at " + std::string(place)));
+  // The script of --script is what the recording is judged by, and not that of its scene.
+  folder.write("up.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0.02,1,0,0,0\n0.5,0,0,0.03,1,0,0,0\n");
+  const Output up = run_program("tegotae", "run --fast --script " + (folder / "up.csv") + " --record " +
+                                               (folder / "r.csv") + " " + (folder / "scene.toml"));
+  CHECK(up.code == 0);
+  CHECK_THAT(up.out, Catch::Contains(": done\n"));
+  const json info = json::parse(read_text(folder / "r.csv.info.json"));
+  const std::string goal = info.at("goal");
+  REQUIRE(goal.rfind("0,0,", 0) == 0);
+  CHECK(std::stod(goal.substr(4)) == Approx(0.03).epsilon(1e-12));
+  CHECK(info.at("judged_after") == "0.5");
+  CHECK(run_program("tegotae", "review " + (folder / "r.csv")).code == 0);
 }
 
 TEST_CASE("in real time every period of the servo is a tick or a counted miss", "[programs]") {

@@ -11,7 +11,7 @@
 #include "plan/exit.hpp"
 #include "plan/motion_world.hpp"
 #include "plan/planner.hpp"
-#include "review/clearance_probe.hpp"
+#include "shared/clearance_probe.hpp"
 #include "tegotae/core/error.hpp"
 
 using namespace tegotae;
@@ -29,8 +29,8 @@ void judge(const Scene& scene, const Plan& plan) {
   const PathCheck check = check_path(FclOracle(scene), plan.path, plan.center, reach);
   CHECK(check.intersecting == 0);
   CHECK(plan.clearance >= kGapFloor);
-  review::ClearanceProbe probe(scene);
-  std::vector<review::Clearance> near;
+  apps::ClearanceProbe probe(scene);
+  std::vector<apps::Clearance> near;
   for (std::size_t i = 0; i < plan.path.size(); ++i)
     for (int k = 0; k < 10; ++k) {
       const Pose& to = plan.path[std::min(i + 1, plan.path.size() - 1)];

@@ -5,8 +5,8 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "models/shapes.hpp"
-#include "review/clearance_probe.hpp"
 #include "review/surface_clearance.hpp"
+#include "shared/clearance_probe.hpp"
 #include "triangle_distance.hpp"
 
 using namespace tegotae;

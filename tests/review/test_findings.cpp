@@ -207,7 +207,8 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
     CHECK(s.deeper == 0);
     CHECK(s.until == Approx(0.75).margin(3.5e-3));  // one pair a tick is asked about
   }
-  CHECK(tells(good, review::Evidence::Kind::plain, {"relieved by 4.3 µm until 0.75 s: left; no pose reached deeper"}));
+  CHECK(tells(good, review::Evidence::Kind::plain,
+              {"left; until 0.75 s contact is felt 4.30 um inside its surface; no pose reached deeper"}));
   CHECK(tells(good, review::Evidence::Kind::good, {"No pose intersects another part that was free of it"}));
 
   const Verdict deep = look(sliding_out(2e-6), f);
@@ -227,6 +228,102 @@ TEST_CASE("parts that begin pressed together are relieved until they are apart, 
   CHECK(back.outcome == review::Outcome::does_not_go);
   CHECK(f.start.intersecting == 5);
   CHECK(f.start.pairs[0].deeper == 0);
+}
+
+namespace {
+
+/// A block of 10 mm between two boards of 20 mm, 20 µm from each, at y.
+Scene between(double y) {
+  Scene scene = pressed_in();
+  for (Part& part : scene.parts)
+    if (!part.held) part.pose.p.x() *= 1 + (23e-6 / 0.01);
+  scene.parts.back().pose.p.y() = y;
+  return scene;
+}
+
+/// Along y from place to place, 20 µm a millisecond, with half a second of rest.
+std::vector<RecordFrame> along_y(const std::vector<double>& places) {
+  std::vector<RecordFrame> rows;
+  const auto add = [&](double y) {
+    rows.push_back(row(static_cast<int>(rows.size()), 0, 0, 0, 0));
+    rows.back().x.p.y() = rows.back().y.p.y() = y;
+  };
+  add(places.front());
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const double from = places[i - 1], way = places[i] - from;
+    const int n = static_cast<int>(std::lround(std::abs(way) / 2e-5));
+    for (int k = 1; k <= n; ++k) add(from + way * k / n);
+  }
+  for (int k = 0; k < 500; ++k) add(places.back());
+  return rows;
+}
+
+/// What is said of it with the goal at `goal`.
+Verdict verdict_of(const std::vector<double>& places, double goal, bool inwards, const GoalRule& rule = {}) {
+  const Scene scene = between(places.front());
+  const std::vector<RecordFrame> rows = along_y(places);
+  const SceneFile file = file_of(scene, {Quat::Identity(), {0, goal, 0}});
+  const Scan scan = scan_path(scene, "test", rows, {});
+  return judge(find(file, rows, scan, Vec3::Zero(), rule), scene, inwards, scan, "");
+}
+
+}  // namespace
+
+TEST_CASE("a part comes out when it is beside all others, and what is said otherwise is so") {
+  using review::Outcome;
+  const GoalRule by_end{std::nullopt, 0.1};
+  const std::string nothing = ": nothing blocked it at the end; the hand did not bring it there";
+  const auto check = [](const Verdict& v, Outcome outcome, const std::string& headline) {
+    CHECK(v.headline == headline);
+    CHECK((v.outcome == outcome));
+  };
+  // The boards end at 10 mm; the block is beside them by a twentieth of its radius (8.66 mm) from 15.43 mm on.
+  check(verdict_of({0, 0.002}, 0.002, false), Outcome::goes,
+        "It gets to its goal, 2 mm on the way out; still inside left and right");
+  check(verdict_of({0, 0.0153}, 0.0153, false), Outcome::goes,
+        "It gets to its goal, 15.3 mm on the way out; still inside left and right");
+  check(verdict_of({0, 0.0155}, 0.0155, false), Outcome::goes, "It comes out");
+  check(verdict_of({0.02, 0}, 0, true), Outcome::goes, "It goes in");
+  check(verdict_of({0.005, 0}, 0, true), Outcome::goes, "It goes in");
+  check(verdict_of({0.02, 0.04}, 0.04, false), Outcome::goes,
+        "It gets to its goal; it was out of the other parts where it began");
+  // There, and away again: for a run and for who asks whether it ever was there.
+  check(verdict_of({0, 0.02, 0.01}, 0.02, false, by_end), Outcome::does_not_go, "It does not come out" + nothing);
+  const Verdict left = verdict_of({0, 0.02, 0.01}, 0.02, false);
+  CHECK(left.headline.find("It comes out, and leaves again: it was there after ") == 0);
+  CHECK(left.outcome == Outcome::goes);
+  CHECK(verdict_of({0, 0.002, 0.006}, 0.002, false).headline.find("It gets to its goal, 1.6") ==
+        0);  // within the tolerance of 0.34 mm
+  // Elsewhere.
+  check(verdict_of({0, 0.018}, 0.04, false, by_end), Outcome::does_not_go,
+        "It does not get to its goal, though it is out of the other parts" + nothing);
+  check(verdict_of({0, 0.001}, 0.005, false, by_end), Outcome::does_not_go, "It does not get to its goal" + nothing);
+  check(verdict_of({0.02, 0.01}, 0, true, by_end), Outcome::does_not_go, "It does not go in" + nothing);
+  // Before the script's end nothing is judged; and where the goal is where it began nothing can be.
+  check(verdict_of({0, 0.002}, 0.02, false, {std::nullopt, 5.0}), Outcome::open,
+        "It ends before its script does, 2 mm of 20 mm on the way");
+  check(verdict_of({0, 0.02, 0}, 1e-4, false, by_end), Outcome::open,
+        "Its goal is where it began, within 0.305 mm: there is nothing to say about its way");
+  check(verdict_of({0, 0.02}, 1e-4, false), Outcome::does_not_go,
+        "It does not get back to its goal, where it began, within 0.305 mm" + nothing);
+  // The recorded tolerance holds.
+  CHECK(verdict_of({0, 0.019}, 0.02, false, {0.9e-3, 0.1}).outcome == Outcome::does_not_go);
+  CHECK(verdict_of({0, 0.019}, 0.02, false, {1.1e-3, 0.1}).outcome == Outcome::goes);
+}
+
+TEST_CASE("a part that is held up at its goal has not come to rest there") {
+  const Scene scene = between(0);
+  std::vector<RecordFrame> rows = along_y({0, 0.02});
+  const SceneFile file = file_of(scene, rows.back().x);
+  const Scan scan = scan_path(scene, "test", rows, {});
+  const auto reached = [&](double ahead, LagReason reason) {
+    rows.back().y.p.y() = 0.02 + ahead;
+    rows.back().lag_reason = reason;
+    return find(file, rows, scan, Vec3::Zero()).goal->reached;
+  };
+  CHECK(reached(0, LagReason::none));
+  CHECK(reached(0.01, LagReason::contact));
+  CHECK_FALSE(reached(0.01, LagReason::capacity));
 }
 
 TEST_CASE("a part that begins in another one is told, and the poses in it until it came free") {

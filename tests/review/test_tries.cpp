@@ -17,6 +17,8 @@
 using namespace tegotae;
 using namespace tegotae::test;
 using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
 using nlohmann::json;
 
 namespace {
@@ -109,6 +111,64 @@ TEST_CASE("tries that cannot succeed tell who is in the way") {
   const json summary = json::parse(read_text(folder / "t/summary.json"));
   CHECK(summary.at("reached") == 0);
   CHECK(summary.at("blocked_by").at("roof") == 2);
+  CHECK_THAT(o.out, Contains("  2 failed: blocked by roof\n"));
+  // Nothing in the way, and no time to go there.
+  const Output late = tries(scene, folder / "late", "--tries 1 --goal 0.5,0,0.03 --seconds 1");
+  CHECK(late.code == 1);
+  CHECK_THAT(late.out, Contains("  1 failed: nothing blocked it at the end; the hand did not bring it there\n"));
+}
+
+namespace {
+
+/// A try and the review of its recording. What `try` says of why it failed is what the review says; returns whether it
+/// did fail.
+bool agrees(const std::string& scene, const std::string& options, const std::string& out) {
+  std::filesystem::remove_all(out);
+  const Output tried = run_program("tegotae", "try " + scene + " --tries 1 --out " + out + " " + options);
+  const Output review = run_program("tegotae", "review " + out + "/best.csv");
+  INFO(scene << " " << options << "\n" << tried.out << tried.err << review.out << review.err);
+  CHECK(tried.code <= 1);
+  CHECK(review.code == tried.code);
+  const auto failed = tried.out.find("FAILED: ");
+  CHECK((failed != std::string::npos) == (tried.code == 1));
+  if (failed == std::string::npos) return false;
+  const std::string why = tried.out.substr(failed + 8, tried.out.find('\n', failed) - failed - 8);
+  const std::string headline = review.out.substr(0, review.out.find('\n'));
+  CHECK_THAT(headline, StartsWith("It does not ") && EndsWith(": " + why));
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("a try and the review of its recording never disagree") {
+  const TempFolder folder;
+  const std::string scene = write_scene(folder), out = folder / "t";
+  int failed = 0, all = 0;
+  const auto look = [&](const std::string& file, const std::string& options) {
+    failed += agrees(file, options, out) ? 1 : 0;
+    ++all;
+  };
+  // Whenever the time is over: before the part is there, there, and for less than half a second.
+  for (const char* goal : {"0,0,0.01002", "0.012,0,0.03", "0.02,0,0.036", "out"})
+    for (const char* seconds : {"1", "1.5", "3"})
+      look(scene, std::string("--goal ") + goal + " --seconds " + seconds + " --seed " + std::to_string(all));
+  CHECK(failed > 3);
+  CHECK(all - failed > 3);
+  // Fits: a pin in a slot 40 um wider, in and out.
+  folder.write("fit.toml",
+               "unit = \"mm\"\n[[part]]\nname = \"left\"\nmesh = \"cube.obj\"\nposition = [-0.01002, 0, 0]\n"
+               "[[part]]\nname = \"right\"\nmesh = \"cube.obj\"\nposition = [0.01002, 0, 0]\n"
+               "[[part]]\nname = \"below\"\nmesh = \"cube.obj\"\nposition = [0, 0, -0.0101]\n"
+               "[[part]]\nname = \"pin\"\nmesh = \"cube.obj\"\nheld = true\n");
+  for (const char* goal : {"out", "0,0,0.0002", "0,0,0.002", "0,0,-0.003", "0.003,0,0.02"})
+    look(folder / "fit.toml", std::string("--goal ") + goal + " --seconds 2");
+}
+
+TEST_CASE("a try of a peg and its review never disagree", "[.][parts]") {
+  const TempFolder folder;
+  for (const char* model : {"/peg_in_hole_0.94.toml", "/peg_in_hole_0.99.toml"})
+    for (const char* options : {"--seconds 1.5", "--seconds 3", "--seconds 4 --seed 2", "--seconds 2 --goal 0,0,0.03"})
+      agrees(std::string(TEGOTAE_MODELS_DIR) + model, options, folder / "t");
 }
 
 TEST_CASE("an interrupted call keeps its tries and goes on") {

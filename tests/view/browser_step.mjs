@@ -109,7 +109,8 @@ async function review(browser, page, screen, name) {
   await report.goto(`file://${file}`);
   await report.waitForSelector("#tables table", { timeout: patience });
   assert.ok(await report.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing sticks out of the report");
-  assert.equal(await report.textContent("#verdict h2"), "It comes out");
+  // Of 25 mm some 20 are gone: it is not out.
+  assert.match(await report.textContent("#verdict h2"), /^It gets to its goal, [12]\d(\.\d)? mm on the way out; still inside Buchse links$/);
   await picture(report, `${name}-review`);
   await context.close();
 }

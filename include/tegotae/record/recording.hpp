@@ -34,10 +34,14 @@ struct RecordingInfo {
   std::string program;   ///< name and version of the program that wrote it
   /// Names of the parts that the held part overlapped at the start, and from which nothing keeps it apart.
   std::string filtered{};
-  std::string continues{};     ///< the recording beside it that it continues: the scene changed there
-  std::string continued_by{};  ///< the recording beside it that continues it: the scene changed there
-  std::string guide{};         ///< path of the file whose path pulled the hand along
-  std::string goal{};  ///< where a hand without a script was to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
+  std::string continues{};       ///< the recording beside it that it continues: the scene changed there
+  std::string continued_by{};    ///< the recording beside it that continues it: the scene changed there
+  std::string guide{};           ///< path of the file whose path pulled the hand along
+  std::string goal{};            ///< where script or hand were to bring the held part: X_WF as X,Y,Z,QW,QX,QY,QZ, m
+  std::string goal_tolerance{};  ///< how far from the goal its center of mass may end, m; see RunSummary::completed
+  /// From which time on (s) the part's last pose says whether the run is completed. Empty: a person led the pen, and
+  /// may have been at the goal at any time.
+  std::string judged_after{};
 };
 
 /// A recording in memory.

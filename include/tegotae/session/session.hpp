@@ -147,10 +147,11 @@ struct LagSummary {
 struct RunSummary {
   std::int64_t ticks = 0;  ///< of the contact loop
   double seconds = 0;      ///< simulated time; in real time also the time it took
-  /// The run passed the end of the script (with the device of another process: whenever it ended), and the part that
-  /// the scene file holds rests where the script ends. Its center may be off by 2 % of the path's length plus the
-  /// part's radius, and by what friction and resolution leave of the pen; its rotation may be off by 0.1 rad. A part
-  /// that lags at the end by more than lag_bound() for another reason than contact does not count as arrived.
+  /// The run passed the end of the script (with the device of another process or RunSettings::hand: whenever it ended),
+  /// and the part that the scene file holds rests where the script ends. Its center may be off by 2 % of the path's
+  /// length plus the part's radius, and by what friction and resolution leave of the pen; its rotation may be off by
+  /// 0.1 rad. A part that lags at the end by more than lag_bound() for another reason than contact does not count as
+  /// arrived.
   bool completed = false;
   /// How far (m) that part's center has moved along the straight line from the script's start to its end.
   double depth_m = 0;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 from dataclasses import dataclass
@@ -20,7 +21,10 @@ class Review:
     Attributes
     ----------
     goes : bool
-        The part gets where it should.
+        The part gets where it should. False too where nothing can be said: see `outcome`.
+    outcome : str
+        "goes", "does not go", or "open": there is no goal, it is where the part began, or the recording ends before its
+        script does.
     verdict : str
         The same in a sentence.
     evidence : list of str
@@ -36,13 +40,18 @@ class Review:
     force, torque : (n,) float64
         N and N m, felt.
     assembly_force : (m,) structured or None
-        Of the assembly over depth (`forces=True`): depth_mm, insertion_n, insertion_peak_n, friction_n, pull_out_n,
-        low_n, high_n; nan where the part was not seen moving so.
+        Of the assembly over depth (`forces=True`), a row for each of 200 segments of the way; nan where the part was not
+        seen moving so. Fields, float64: `depth_mm`, mm along the way, the segment's middle; and in N, positive against
+        the motion: `insertion_n` and `insertion_peak_n`, mean and largest as it went on; `friction_n`, what of
+        `insertion_n` is friction; `seating_n`, mean as it stood at the deepest; `pull_out_n` and `pull_out_peak_n`, mean
+        and largest as it came back; `low_n` and `high_n`, `insertion_n` with the least and the most friction of `--mu`
+        (nan here).
     report : str or None
         Path of the HTML report, where one was asked for.
     """
 
     goes: bool
+    outcome: str
     verdict: str
     evidence: list[str]
     t: NDArray[np.float64]
@@ -93,18 +102,19 @@ def review(
     """
     with tempfile.TemporaryDirectory() as folder:
         path, page, force = (os.path.join(folder, name) for name in ("path.csv", "report.html", "forces.csv"))
-        command = ["review", os.fspath(recording)]
+        command = ["review", "--json", os.fspath(recording)]
         command += [os.fspath(scene)] if scene is not None else []
         command += ["--out", os.fspath(report) if report is not None else page, "--csv", path]
         command += ["--goal=" + pose_text(goal)] if goal is not None else []
         command += ["--forces", force] if forces else []
-        code, out = call(command)
+        _, out = call(command)
         table = read_table(path)
-        lines = [line.strip() for line in out.splitlines()]
+        said = json.loads(out)
         return Review(
-            goes=code == 0,
-            verdict=lines[0],
-            evidence=[line for line in lines[1:] if not line.startswith("report: ")],
+            goes=said["outcome"] == "goes",
+            outcome=said["outcome"],
+            verdict=said["headline"],
+            evidence=[line["text"] for line in said["evidence"]],
             t=np.array(table["t"], float),
             path=poses_of(table),
             clearance=np.array([number(v) for v in table["clearance"]]),

@@ -8,7 +8,7 @@
 #include "feature/surface_distance.hpp"
 #include "tegotae/loop/scene.hpp"
 
-namespace tegotae::review {
+namespace tegotae::apps {
 
 /// How far the held part is from another one at a pose.
 struct Clearance {
@@ -47,4 +47,4 @@ class ClearanceProbe {
   double way_ = 0;  ///< m, that no point of the held part has gone farther than
 };
 
-}  // namespace tegotae::review
+}  // namespace tegotae::apps

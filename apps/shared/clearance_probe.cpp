@@ -1,4 +1,4 @@
-#include "review/clearance_probe.hpp"
+#include "shared/clearance_probe.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "loop/scene_parts.hpp"
 #include "narrowphase/patch_cache.hpp"
 
-namespace tegotae::review {
+namespace tegotae::apps {
 
 ClearanceProbe::ClearanceProbe(const Scene& scene)
     : scene_(scene), held_(held_part(scene)), ball_(bounding_sphere(*held_.mesh)) {
@@ -61,4 +61,4 @@ void ClearanceProbe::at(const Pose& X, double reach, std::vector<Clearance>& out
   while (out.size() > 1 && out.back().distance > reach) out.pop_back();
 }
 
-}  // namespace tegotae::review
+}  // namespace tegotae::apps
