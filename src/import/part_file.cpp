@@ -1,5 +1,6 @@
 #include "import/part_file.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "import/file_check.hpp"
@@ -20,8 +21,30 @@ bool is_part_file(const std::string& path) {
   return extension == ".gltf" || extension == ".glb" || extension == ".3mf";
 }
 
+namespace {
+
+/// Parts that their place leaves no volume are told; those without any extent, a way to hide a node, are left out.
+void tell_flat(PartFile& file) {
+  constexpr double kFlat = 1e-9;  // of the cube of the largest entry; matrices are of floats
+  std::vector<PartFile::Placed> parts;
+  for (PartFile::Placed& part : file.parts) {
+    const Mat3 A = part.X.leftCols<3>();
+    const double largest = A.cwiseAbs().maxCoeff();
+    if (largest == 0)
+      file.notes.push_back('"' + part.name + "\" is scaled to nothing: left out");
+    else if (std::abs((A / largest).determinant()) <= kFlat)
+      file.notes.push_back('"' + part.name + "\" is scaled to nothing in some direction: a sheet without a volume");
+    if (largest != 0) parts.push_back(std::move(part));
+  }
+  file.parts = std::move(parts);
+}
+
+}  // namespace
+
 PartFile read_part_file(const std::string& path) {
-  return lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
+  PartFile file = lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
+  tell_flat(file);
+  return file;
 }
 
 void append(const TriangleMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {
