@@ -54,7 +54,7 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
 
 int run_tries(const TryOptions& o) {
   const Study study = study_of(o);
-  const std::unique_ptr<Tasks> tasks = load_tasks(study);
+  const std::unique_ptr<Tasks> tasks = load_tasks(study, o.load);
   tasks->of(make_case(study, 0));  // what is wrong with it, before anything is written
   std::vector<std::string> outputs;
   for (const char* name : {"/tries.csv", "/summary.json", "/report.html", "/best.csv", "/best.csv.info.json"})

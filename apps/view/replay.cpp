@@ -95,11 +95,11 @@ std::vector<std::string> scene_changes(const RecordingInfo& info) {
 }
 
 std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html,
-                          std::size_t max_frames) {
+                          std::size_t max_frames, const MeshLoader& load) {
   const Recording recording = read_recording(path);
   const std::vector<RecordFrame>& rows = recording.frames;
   if (rows.empty()) throw Error(path + ": has no rows");
-  SceneFile file = load_recorded_scene(path, recording.info, scene);
+  SceneFile file = load_recorded_scene(path, recording.info, scene, {{}, true, {}, load});
   std::vector<std::string> inputs = file.files;
   inputs.insert(inputs.end(), {path, recording_info_path(path)});
   refuse_to_replace(html, inputs);
