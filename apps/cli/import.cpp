@@ -8,7 +8,6 @@
 
 #include "cli/open_scene.hpp"
 #include "cli/scene_writer.hpp"
-#include "cli/watched_child.hpp"
 #include "core/name_list.hpp"
 #include "core/number_text.hpp"
 #include "shared/length_option.hpp"
@@ -92,16 +91,21 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
   add_length_option(*import, "--coarse-chord", options.assembly.coarse_chord,
                     "STEP: how far they may be from other curved faces (50um); a part alone in its file is between the "
                     "two by its size");
-  import->add_option("--seconds", options.seconds, "How long reading, or the facets of one part, may take (600)")
+  import->add_option("--seconds", options.bounds.seconds, "How long reading, or the facets of one part, may take (600)")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("S");
+  import
+      ->add_option("--megabytes", options.bounds.megabytes,
+                   "How much memory reading may take (three quarters of the machine's)")
+      ->check(CLI::Range(1.0, 1e9))
+      ->type_name("MB");
   return import;
 }
 
 int import_file(const ImportOptions& options) {
   const char* hint =
       "is its unit right? For fewer facets tegotae import has --chord and --coarse-chord, for more time --seconds";
-  return watched_child(options.file, options.seconds, hint, [&](const auto& at) { return import_here(options, at); });
+  return watched_child(options.file, options.bounds, hint, [&](const auto& at) { return import_here(options, at); });
 }
 
 }  // namespace tegotae::apps

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "cli/watched_child.hpp"
 #include "tegotae/import/assembly.hpp"
 
 namespace tegotae::apps {
@@ -12,8 +13,8 @@ struct ImportOptions {
   std::string folder;
   std::string hold;  ///< name of the part to hold; empty: none
   AssemblyOptions assembly;
-  bool quiet = false;    ///< nothing on stdout
-  double seconds = 600;  ///< for each thing that takes its time
+  bool quiet = false;  ///< nothing on stdout
+  ChildBounds bounds;
 };
 
 /// Adds the subcommand `import`.

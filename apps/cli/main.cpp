@@ -62,19 +62,20 @@ int main(int argc, char** argv) {
   const CLI::App* import = add_import(app, import_options);
 
   review::ReviewOptions review_options;
-  const CLI::App* review = review::add_review(app, review_options);
+  CLI::App* review = review::add_review(app, review_options);
 
   study::TryOptions try_options;
-  const CLI::App* tries = study::add_try(app, try_options);
+  CLI::App* tries = study::add_try(app, try_options);
 
   study::StudyOptions study_options;
-  const CLI::App* study = study::add_study(app, study_options);
+  CLI::App* study = study::add_study(app, study_options);
 
   plan::PlanCommand plan_options;
-  const CLI::App* plan = plan::add_plan(app, plan_options);
+  CLI::App* plan = plan::add_plan(app, plan_options);
 
   bool trusted = false;
-  for (CLI::App* reads : {run, view, check})
+  for (CLI::App* reads : {run, view, check, replay, review, tries, study, study_options.run, study_options.merge,
+                          study_options.one, plan})
     reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
 
   bench::BenchOptions bench_options;
@@ -120,7 +121,9 @@ int main(int argc, char** argv) {
     const MeshLoader load = [trusted](const std::string& mesh, double unit) {
       return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };
-    check_options.load = load;
+    check_options.load = replay_options.load = review_options.load = load;
+    try_options.load = study_options.load = plan_options.load = load;
+    study_options.trusted = trusted;
     run_options.run.review = view_options.run.review = review::script_report;
     if (check->parsed()) return check_files(check_options);
     if (view->parsed()) return view_file(view_options, load);

@@ -43,6 +43,7 @@ int view_file(const ViewOptions& options, const MeshLoader& load) {
     ReplayOptions replay;
     replay.recording = name;
     replay.page = options.run.page;
+    replay.load = load;
     return show_recording(replay);
   }
   OpenOptions open = options.open;
@@ -77,12 +78,13 @@ int show_recording(const ReplayOptions& options) {
     StatusLine status;
     bundle = view::replay_bundle(
         options.recording, options.scene, options.html, options.frames,
-        [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); });
+        [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); }, options.load);
   }
   if (options.html.empty())
     view::serve_replay(
-        bundle, [&] { return review::recording_report(options.recording, options.scene); }, page_address(options.page),
-        catch_interrupts(), [&](const view::Server& server) { announce_page(server, options.page); });
+        bundle, [&] { return review::recording_report(options.recording, options.scene, options.load); },
+        page_address(options.page), catch_interrupts(),
+        [&](const view::Server& server) { announce_page(server, options.page); });
   else
     view::write_replay(bundle, options.html);
   return kDone;

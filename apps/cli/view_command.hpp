@@ -28,6 +28,7 @@ struct ReplayOptions {
   std::string html;   ///< file to write the page to; empty: it is served
   std::size_t frames = view::kMaxFrames;
   PageOptions page;
+  MeshLoader load;  ///< reads the meshes
 };
 
 /// Adds the subcommand `replay`.

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,9 +11,12 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <iostream>
+#include <new>
 
 #include "core/number_text.hpp"
+#include "core/sanitizers.hpp"
 #include "shared/process.hpp"
 #include "shared/run_options.hpp"
 #include "tegotae/core/clock.hpp"
@@ -47,12 +51,54 @@ std::string last_line(int fd, double seconds, bool& late) {
   }
 }
 
+/// The message of a child without memory, made while there is some.
+std::string& out_of_memory() {
+  static std::string text;
+  return text;
+}
+
+/// So that a file that wants all memory ends this process and not others. Whoever asks for more ends it here: readers
+/// that catch what `new` throws would tell of another reason.
+void bound_memory(const std::string& file, double megabytes) {
+#ifndef TEGOTAE_SANITIZED  // sanitizers reserve terabytes of address space
+  if (megabytes <= 0)
+    megabytes = 0.75e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  out_of_memory() = "tegotae: " + file + ": not read: it takes more than " + fixed_text(megabytes, 0) +
+                    " MB of memory; tegotae import has --megabytes\n";
+  std::set_new_handler([] {
+    const std::string& text = out_of_memory();
+    [[maybe_unused]] const ssize_t n = write(STDERR_FILENO, text.data(), text.size());
+    _exit(kBadInput);
+  });
+  rlimit bound{};
+  getrlimit(RLIMIT_AS, &bound);  // whoever started the program may have set a lower one
+  bound.rlim_cur = bound.rlim_max = std::min(bound.rlim_max, static_cast<rlim_t>(1e6 * megabytes));
+  if (setrlimit(RLIMIT_AS, &bound) != 0) throw Error(file + ": its memory cannot be bounded: " + std::strerror(errno));
+#else
+  static_cast<void>(file), static_cast<void>(megabytes);
+#endif
+}
+
+/// What to add to the error of a child that was near its bound: C libraries that get no memory tell of damage.
+std::string near_bound() {
+  rlimit bound{};
+  getrlimit(RLIMIT_AS, &bound);
+  std::ifstream status("/proc/self/status");
+  double kilobytes = 0;
+  for (std::string word; status >> word;)
+    if (word == "VmPeak:") status >> kilobytes;
+  const double most = static_cast<double>(bound.rlim_cur);
+  if (bound.rlim_cur == RLIM_INFINITY || 1024 * kilobytes < 0.75 * most) return "";
+  return "; or it takes more than " + fixed_text(1e-6 * most, 0) + " MB of memory: tegotae import has --megabytes";
+}
+
 /// What the child is for: it ends in here.
-[[noreturn]] void be_child(const std::string& file, int out,
+[[noreturn]] void be_child(const std::string& file, double megabytes, int out,
                            const std::function<int(const std::function<void(const std::string&)>&)>& body) {
   int code = kRunFailed;
   std::string last;
   try {
+    bound_memory(file, megabytes);
     code = body([&](const std::string& next) {
       if (next == last) return;
       last = next;
@@ -61,7 +107,7 @@ std::string last_line(int fd, double seconds, bool& late) {
       [[maybe_unused]] const ssize_t n = write(out, line.data(), line.size());
     });
   } catch (const Error& e) {
-    std::cerr << "tegotae: " << e.what() << "\n";
+    std::cerr << "tegotae: " << e.what() << near_bound() << "\n";
     code = kBadInput;
   } catch (const std::exception& e) {
     std::cerr << "tegotae: " << file << ": " << e.what() << "\n";
@@ -71,7 +117,7 @@ std::string last_line(int fd, double seconds, bool& late) {
 
 }  // namespace
 
-int watched_child(const std::string& file, double seconds, const std::string& hint,
+int watched_child(const std::string& file, const ChildBounds& bounds, const std::string& hint,
                   const std::function<int(const std::function<void(const std::string&)>&)>& body) {
   std::cout.flush();
   int ends[2];
@@ -84,11 +130,11 @@ int watched_child(const std::string& file, double seconds, const std::string& hi
   }
   if (child == 0) {
     close(ends[0]);
-    be_child(file, ends[1], body);
+    be_child(file, bounds.megabytes, ends[1], body);
   }
   close(ends[1]);
   bool late = false;
-  const std::string at = last_line(ends[0], seconds, late);
+  const std::string at = last_line(ends[0], bounds.seconds, late);
   close(ends[0]);
   if (late) kill(child, SIGKILL);
   int status = 0;
@@ -96,8 +142,8 @@ int watched_child(const std::string& file, double seconds, const std::string& hi
   }
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   if (late)
-    throw Error(file + ": not read: " + (at.empty() ? "" : at + " ") + "took more than " + number_text(seconds, 6) +
-                " s; " + hint);
+    throw Error(file + ": not read: " + (at.empty() ? "" : at + " ") + "took more than " +
+                number_text(bounds.seconds, 6) + " s; " + hint);
   const int signal = WTERMSIG(status);
   if (signal == SIGINT || signal == SIGTERM) return kRunFailed;
   throw Error(file + ": damaged: its reader crashed (" + strsignal(signal) + ")");

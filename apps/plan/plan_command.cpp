@@ -73,6 +73,7 @@ void finish(PlanReport& r, const std::optional<review::ClearanceBand>& band, app
 int run_all(const PlanCommand& o) {
   SceneOptions how;
   how.held_needed = false;
+  how.load = o.load;
   const SceneFile file = apps::load_with_progress(o.scene, how);
   apps::print_notes(file.scene);
   refuse_to_replace(order_files(o.folder), file.files);
@@ -127,6 +128,7 @@ int run_plan(const PlanCommand& o) {
   if (o.all) return run_all(o);
   SceneOptions how;
   how.hold = o.hold;
+  how.load = o.load;
   PlanReport r(apps::load_with_progress(o.scene, how));
   r.to_goal = !o.goal.empty();
   r.folder = o.folder;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "review/clearance_band.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::plan {
 
@@ -21,6 +22,7 @@ struct PlanCommand {
   std::optional<double> seconds;
   std::string folder = "plan";  ///< for what it writes
   bool json = false;
+  MeshLoader load;  ///< reads the meshes
 };
 
 /// The subcommand `plan`.

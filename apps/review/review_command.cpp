@@ -54,9 +54,9 @@ void print(const Verdict& verdict, const std::string& report) {
 
 }  // namespace
 
-std::string recording_report(const std::string& recording, const std::string& scene) {
+std::string recording_report(const std::string& recording, const std::string& scene, const MeshLoader& load) {
   Recording read = read_recording(recording);
-  SceneFile file = view::load_recorded_scene(recording, read.info, scene);
+  SceneFile file = view::load_recorded_scene(recording, read.info, scene, {{}, true, {}, load});
   return report_html(review_recording(recording, std::move(read), std::move(file), {}, {}), {});
 }
 
@@ -98,6 +98,7 @@ int run_review(const ReviewOptions& o) {
   status.say("reading the recording");
   Recording recording = read_recording(o.recording);
   SceneOptions how;
+  how.load = o.load;
   how.progress = [&](std::size_t done, std::size_t total) { progress("reading mesh files", done, total); };
   SceneFile scene = view::load_recorded_scene(o.recording, recording.info, o.scene, how);
   std::vector<std::string> inputs = scene.files;

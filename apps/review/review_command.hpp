@@ -5,6 +5,7 @@
 #include <string>
 
 #include "review/clearance_band.hpp"
+#include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::review {
 
@@ -18,6 +19,7 @@ struct ReviewOptions {
   std::string mu;                 ///< "LOW:HIGH", see ForceBand; empty: none
   std::optional<ClearanceBand> band;
   bool json = false;  ///< the verdict as one line of JSON
+  MeshLoader load;    ///< reads the meshes
 };
 
 /// Adds `--band LOW HIGH`, two lengths with units; `band` is left alone unless it is given.
@@ -29,7 +31,8 @@ CLI::App* add_review(CLI::App& app, ReviewOptions& options);
 /// Writes the report and the exports, and prints the verdict. Returns the exit code. Throws Error.
 int run_review(const ReviewOptions& options);
 
-/// The report on `recording` over `scene` (empty: the one that it names), HTML. Throws Error.
-std::string recording_report(const std::string& recording, const std::string& scene);
+/// The report on `recording` over `scene` (empty: the one that it names), whose meshes `load` reads, HTML. Throws
+/// Error.
+std::string recording_report(const std::string& recording, const std::string& scene, const MeshLoader& load);
 
 }  // namespace tegotae::review

@@ -69,7 +69,8 @@ int free_port() {
 /// A line a shard.
 std::string task_lines(const DriverJob& job) {
   const std::string start = quoted(this_program()) + " study " + quoted(fs::absolute(job.study).string()) + " --out " +
-                            quoted(fs::absolute(job.out).string()) + " --jobs 1 --shard ";
+                            quoted(fs::absolute(job.out).string()) + " --jobs 1" + (job.trusted ? " --trusted" : "") +
+                            " --shard ";
   std::string text;
   for (const Shard& shard : job.shards)
     text += start + std::to_string(shard.index + 1) + "/" + std::to_string(shard.count) + "\n";

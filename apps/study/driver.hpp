@@ -12,6 +12,7 @@ struct DriverJob {
   std::string study, out;     ///< paths
   std::vector<Shard> shards;  ///< that have something left to do
   int processors = 0;         ///< 0: all
+  bool trusted = false;       ///< read meshes in the shards' own processes
 };
 
 /// The path of HyperShell's program; throws Error with how to get it, and what to do without, where there is none.

@@ -46,7 +46,7 @@ std::string default_out(const std::string& study) {
 
 void open(const StudyOptions& o, Opened& s) {
   s.study = read_study(o.study);
-  s.tasks = load_tasks(s.study);
+  s.tasks = load_tasks(s.study, o.load);
   s.out = o.out.empty() ? default_out(o.study) : o.out;
   s.layout = layout_of(s.study, *s.tasks);
 }
@@ -111,7 +111,7 @@ int run_all(const StudyOptions& o) {
   const int processors = o.processors > 0 ? o.processors : static_cast<int>(std::thread::hardware_concurrency());
   const int shards = std::min(cases, o.shards > 0 ? o.shards : processors * kShardsPerProcessor);
   const std::map<int, Result> rows = read_shards(s.out, s.layout);
-  DriverJob job{o.study, s.out, {}, processors};
+  DriverJob job{o.study, s.out, {}, processors, o.trusted};
   std::vector<bool> needed(static_cast<std::size_t>(shards), false);
   for (const int i : missing(rows, cases)) needed[static_cast<std::size_t>(i % shards)] = true;
   for (int i = 0; i < shards; ++i)
@@ -121,7 +121,7 @@ int run_all(const StudyOptions& o) {
 }
 
 /// Makes a case again, with its recordings and the page that replays the last of them in `folder`.
-int run_one(const Opened& s, int number, const std::string& folder) {
+int run_one(const Opened& s, int number, const std::string& folder, const MeshLoader& load) {
   const Case c = make_case(s.study, number);
   const std::size_t tasks = s.tasks->of(c).size();
   std::vector<std::string> recordings;
@@ -148,11 +148,11 @@ int run_one(const Opened& s, int number, const std::string& folder) {
   const std::string page = folder + "/" + fs::path(replay_page(number)).filename().string();
   {
     apps::StatusLine status;
-    view::write_replay(view::replay_bundle(recordings.back(), {}, page, view::kMaxFrames,
-                                           [&](const char* what, std::size_t done, std::size_t total) {
-                                             status.show(what, done, total);
-                                           }),
-                       page);
+    view::write_replay(
+        view::replay_bundle(
+            recordings.back(), {}, page, view::kMaxFrames,
+            [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); }, load),
+        page);
   }
   std::cout << "replay: " << page << std::endl;
   return apps::kDone;
@@ -166,7 +166,7 @@ int run_cases(const StudyOptions& o) {
       throw Error(o.study + format(": has no case %d; its cases are 0 to %d", number, case_count(s.study) - 1));
   if (!o.to.empty() && o.numbers.size() > 1) throw Error("study case: --to is the folder of one case");
   for (const int number : o.numbers) {
-    const int code = run_one(s, number, o.to.empty() ? s.out + "/" + case_folder(number) : o.to);
+    const int code = run_one(s, number, o.to.empty() ? s.out + "/" + case_folder(number) : o.to, o.load);
     if (code != apps::kDone) return code;
   }
   return apps::kDone;

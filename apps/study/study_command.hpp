@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tegotae/scene_file/scene_file.hpp"
+
 namespace tegotae::study {
 
 struct StudyOptions {
@@ -15,6 +17,8 @@ struct StudyOptions {
   int processors = 0;        ///< of `run`; 0: all
   std::vector<int> numbers;  ///< of `case`
   std::string to;            ///< of `case`: folder of one; empty: in `out`
+  MeshLoader load;           ///< reads the meshes
+  bool trusted = false;      ///< shards of `run` read theirs in their own process
   CLI::App* self = nullptr;
   CLI::App* run = nullptr;
   CLI::App* merge = nullptr;

@@ -137,12 +137,13 @@ std::vector<std::string> Tasks::inputs() const {
   return out;
 }
 
-std::unique_ptr<Tasks> load_tasks(const Study& study) {
+std::unique_ptr<Tasks> load_tasks(const Study& study, const MeshLoader& load) {
   std::vector<SceneFile> files;
   for (const std::string& scene : study.scenes) {
     SceneOptions how;
     how.hold = study.hold;
     how.held_needed = study.orders.empty();
+    how.load = load;
     files.push_back(apps::load_with_progress(scene, how));
     apps::print_notes(files.back().scene);
   }

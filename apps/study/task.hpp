@@ -44,7 +44,8 @@ class Tasks {
   std::map<std::vector<std::size_t>, std::shared_ptr<const Task>> made_;  // by scene, order, step
 };
 
-/// Reads the scenes of a study and makes their tasks' source. Shows how far it is, and what the files lack.
-std::unique_ptr<Tasks> load_tasks(const Study& study);
+/// Reads the scenes of a study, their meshes by `load`, and makes their tasks' source. Shows how far it is, and what
+/// the files lack.
+std::unique_ptr<Tasks> load_tasks(const Study& study, const MeshLoader& load);
 
 }  // namespace tegotae::study

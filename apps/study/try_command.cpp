@@ -55,7 +55,7 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
 
 int run_tries(const TryOptions& o) {
   const Study study = study_of(o);
-  const std::unique_ptr<Tasks> tasks = load_tasks(study);
+  const std::unique_ptr<Tasks> tasks = load_tasks(study, o.load);
   {
     apps::StatusLine status;
     status.say("preparing the tries");

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "tegotae/scene_file/scene_file.hpp"
+
 namespace tegotae::study {
 
 struct TryOptions {
@@ -13,6 +15,7 @@ struct TryOptions {
   int tries = 20, jobs = 0;
   std::uint64_t seed = 1;
   double seconds = 20;
+  MeshLoader load;  ///< reads the meshes
 };
 
 /// The subcommand `try`.

@@ -97,7 +97,8 @@ std::vector<std::string> scene_changes(const RecordingInfo& info) {
 
 std::string replay_bundle(const std::string& path, const std::string& scene, const std::string& html,
                           std::size_t max_frames,
-                          const std::function<void(const char* what, std::size_t done, std::size_t total)>& progress) {
+                          const std::function<void(const char* what, std::size_t done, std::size_t total)>& progress,
+                          const MeshLoader& load) {
   const auto tell = [&](const char* what, std::size_t done, std::size_t total) {
     if (progress) progress(what, done, total);
   };
@@ -107,6 +108,7 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   if (rows.empty()) throw Error(path + ": has no rows");
   SceneOptions how;
   how.progress = [&](std::size_t done, std::size_t total) { tell("reading mesh files", done, total); };
+  how.load = load;
   SceneFile file = load_recorded_scene(path, recording.info, scene, how);
   std::vector<std::string> inputs = file.files;
   inputs.insert(inputs.end(), {path, recording_info_path(path)});

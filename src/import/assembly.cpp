@@ -10,6 +10,7 @@
 #include "import/part_file.hpp"
 #include "import/read_parts.hpp"
 #include "import/reading.hpp"
+#include "import/usable.hpp"
 #include "import/utf8.hpp"
 #include "mesh/components.hpp"
 #include "tegotae/core/error.hpp"
@@ -161,7 +162,7 @@ Assembly read_assembly(const std::string& path, const AssemblyOptions& options) 
     center_far_shapes(assembly);
     name_parts(assembly);
     for (std::string& note : assembly.notes) note = printable(note);
-    if (assembly.parts.empty()) throw Error(path + ": no parts with triangles");
+    if (assembly.parts.empty()) throw Error(path + ": no parts with triangles" + cause_of(assembly.notes));
     require_plausible(path, assembly, options);
     return assembly;
   });

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 
 #include "core/wide_text.hpp"
 #include "tegotae/core/error.hpp"
@@ -42,8 +43,20 @@ inline std::size_t first_not_of(std::string_view text, std::string_view set, std
   throw Error(path + ": " + why);
 }
 
-/// Refuses text in UTF-16 or UTF-32: these formats are of single bytes.
+/// Refuses a file that has been packed, which its name does not tell.
+inline void require_unpacked(const std::string& path, std::string_view bytes) {
+  using namespace std::string_view_literals;
+  constexpr std::pair<std::string_view, const char*> kPacked[] = {
+      {"\x1f\x8b"sv, "gzip"},         {"PK\3\4"sv, "ZIP"},           {"BZh"sv, "bzip2"}, {"\3757zXZ\0"sv, "xz"},
+      {"\x28\xb5\x2f\xfd"sv, "zstd"}, {"7z\xbc\xaf\x27\x1c"sv, "7z"}};
+  for (const auto& [start, kind] : kPacked)
+    if (bytes.substr(0, start.size()) == start)
+      refuse(path, std::string("is packed by ") + kind + ", which is not read: unpack it first");
+}
+
+/// Refuses what is packed, and text in UTF-16 or UTF-32: these formats are of single bytes.
 inline void require_single_bytes(const std::string& path, std::string_view bytes) {
+  require_unpacked(path, bytes);
   if (const char* encoding = wide_encoding(bytes))
     refuse(path, std::string("its text is in ") + encoding + ", which this format is not: save it as UTF-8");
 }

@@ -106,6 +106,8 @@ class GltfCheck {
     const json& buffer = list("buffers")[i];
     const auto bytes = whole_number<std::uint64_t>(buffer.at("byteLength"));
     if (!buffer.contains("uri") && is_fallback(buffer)) return;
+    // What the others have instead is for extensions to say; whoever uses them finds that they have nothing.
+    if (!buffer.contains("uri") && i > 0) return;
     std::uint64_t there = chunk_;
     if (buffer.contains("uri")) {
       const auto uri = buffer["uri"].get<std::string>();
@@ -194,7 +196,9 @@ class GltfCheck {
   void check_elements(const json& of, std::uint64_t count, std::uint64_t size, const std::string& self) const {
     const json& view = list("bufferViews")[reference(of.at("bufferView"), "bufferViews", self)];
     const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")), from = number(of, "byteOffset", 0);
-    const std::uint64_t stride = std::max(size, number(view, "byteStride", size));
+    const std::uint64_t told = number(view, "byteStride", 0);  // as if it were not there, where it is 0
+    if (told > 0 && told < size) refuse("damaged: the elements of " + self + " overlap: its byteStride is too small");
+    const std::uint64_t stride = std::max(size, told);
     if (count == 0) return;
     if (from > whole || size > whole - from || (count - 1) > (whole - from - size) / stride)
       refuse("damaged: " + self + " reaches past the end of its bufferView");
@@ -263,6 +267,7 @@ class GltfCheck {
       const json& node = list("nodes")[i];
       if (node.contains("mesh")) reference(node["mesh"], "meshes", called("node", i));
       if (node.contains("skin")) reference(node["skin"], "skins", called("node", i));
+      if (node.contains("matrix")) check_matrix(node["matrix"], called("node", i));
       if (const json* instances = extension(node, "EXT_mesh_gpu_instancing"))
         check_accessors(instances->at("attributes"), called("node", i));
       if (!node.contains("children")) return;
@@ -288,10 +293,21 @@ class GltfCheck {
     each("scenes", [&](std::size_t i) {
       const json& scene = list("scenes")[i];
       if (!scene.contains("nodes")) return;
-      for (const json& root : scene["nodes"])
-        if (child[reference(root, "nodes", called("scene", i))])
-          refuse("damaged: a root node of a scene is another's child");
+      std::set<std::uint64_t> roots;
+      for (const json& root : scene["nodes"]) {
+        const std::uint64_t node = reference(root, "nodes", called("scene", i));
+        if (child[node]) refuse("damaged: a root node of a scene is another's child");
+        if (!roots.insert(node).second)
+          refuse("damaged: " + called("scene", i) + " names node " + std::to_string(node) + " twice");
+      }
     });
+  }
+
+  /// By columns. Other last rows than 0 0 0 1 bend space, which no place of a rigid part does.
+  void check_matrix(const json& matrix, const std::string& self) const {
+    for (const std::size_t k : {3, 7, 11, 15})
+      if (!(std::abs(matrix.at(k).get<double>() - (k == 15 ? 1 : 0)) <= kRoundedRow))
+        refuse("damaged: the matrix of " + self + " is no place: its last row is not 0 0 0 1");
   }
 
   const std::string& path_;
@@ -342,6 +358,7 @@ void make_whole(json& value) {
 
 CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
   CheckedGltf out;
+  require_unpacked(path, bytes);
   const bool binary = lower_extension(path) == ".glb" ? bytes.substr(0, 1) != "{" : bytes.substr(0, 4) == "glTF";
   const std::string_view text = binary ? glb_json(path, bytes, out.chunk) : bytes;
   require_single_bytes(path, text);
@@ -356,6 +373,9 @@ CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
   try {
     const auto version = top.at("asset").at("version").get<std::string>();
     if (version.rfind("2.", 0) != 0) throw Error(path + ": glTF version " + version + " is not read (2.0 is)");
+    const std::string least = top["asset"].value("minVersion", "2.0");
+    if (least != "2.0" && least.rfind("1.", 0) != 0 && least.rfind("0.", 0) != 0)
+      throw Error(path + ": it requires a reader of glTF " + least + "; 2.0 is read");
     const GltfCheck check(path, top, out.chunk.size());
     out.notes = check.check_extensions();
     check.run();

@@ -6,6 +6,9 @@
 
 namespace tegotae {
 
+/// What the last row of a matrix may miss 0 0 0 1 by.
+constexpr double kRoundedRow = 1e-4;
+
 /// A glTF file whose references were checked.
 struct CheckedGltf {
   std::string json;                ///< written anew: no two readers can read it differently

@@ -14,6 +14,9 @@
 namespace tegotae {
 namespace {
 
+// Of views. Without an URI only the first buffer of a GLB file has data.
+constexpr const char* kNoData = " lies in a buffer that has no data";
+
 /// cgltf's way to read a buffer's file: at least `*size` bytes, from regular files in the glTF file's folder and below.
 cgltf_result read_buffer(const cgltf_memory_options*, const cgltf_file_options* options, const char* file,
                          cgltf_size* size, void** data) {
@@ -65,7 +68,8 @@ void decompress(const std::string& path, std::size_t i, cgltf_buffer_view& view)
   const auto* buffer = static_cast<const unsigned char*>(from.buffer->data);
   view.data = std::malloc(from.count * from.stride);  // cgltf frees it
   if (view.data == nullptr) throw std::bad_alloc();
-  if (buffer == nullptr || decode(from, buffer + from.offset, view.data) != 0)
+  if (buffer == nullptr) throw Error(path + ": damaged: bufferView " + std::to_string(i) + kNoData);
+  if (decode(from, buffer + from.offset, view.data) != 0)
     throw Error(path + ": damaged: bufferView " + std::to_string(i) + " is not a stream of EXT_meshopt_compression");
   undo_filter(from, view.data);
 }
@@ -92,10 +96,29 @@ GltfData parse_gltf(const std::string& path, const CheckedGltf& checked) {
 
 namespace {
 
+/// cgltf reads zeros where there is nothing.
+void require_data(const std::string& path, const cgltf_accessor& accessor) {
+  if (accessor.buffer_view != nullptr && cgltf_buffer_view_data(accessor.buffer_view) == nullptr)
+    throw Error(path + ": damaged: an accessor" + kNoData);
+}
+
+/// cgltf takes indices of any kind of number, also of floats.
+void require_indices(const std::string& path, const cgltf_accessor& accessor) {
+  require_data(path, accessor);
+  if (accessor.component_type != cgltf_component_type_r_8u && accessor.component_type != cgltf_component_type_r_16u &&
+      accessor.component_type != cgltf_component_type_r_32u)
+    throw Error(path + ": damaged: indices are no unsigned whole numbers");
+}
+
 void unpack(const std::string& path, const cgltf_accessor& accessor, std::vector<float>& numbers) {
+  require_data(path, accessor);
   numbers.resize(cgltf_num_components(accessor.type) * accessor.count);
   if (cgltf_accessor_unpack_floats(&accessor, numbers.data(), numbers.size()) != numbers.size())
     throw Error(path + ": damaged: the numbers of an accessor cannot be read");
+  // Signed integers have one value below -1, which stands for -1 too; cgltf takes it for what it is.
+  if (accessor.normalized &&
+      (accessor.component_type == cgltf_component_type_r_8 || accessor.component_type == cgltf_component_type_r_16))
+    for (float& number : numbers) number = std::max(number, -1.0f);
 }
 
 /// The two parts of a sparse accessor: which elements change, and to what.
@@ -124,6 +147,7 @@ Changes changes_of(const cgltf_accessor& accessor) {
 /// Calls `each` with the number of an element that a sparse accessor changes and its number among the changes.
 template <class Each>
 void for_changes(const std::string& path, const cgltf_accessor& accessor, const Changes& changes, Each each) {
+  require_indices(path, changes.indices);
   for (std::size_t i = 0; i < changes.indices.count; ++i) {
     const std::size_t to = cgltf_accessor_read_index(&changes.indices, i);
     if (to >= accessor.count)
@@ -166,6 +190,7 @@ std::vector<Vec3> points_of(const std::string& path, const cgltf_accessor& acces
 
 std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accessor& accessor) {
   if (accessor.type != cgltf_type_scalar) throw Error(path + ": damaged: indices of a primitive are no scalars");
+  require_indices(path, accessor);
   cgltf_accessor dense = accessor;
   dense.is_sparse = 0;
   std::vector<std::size_t> indices(accessor.count, 0);
@@ -173,6 +198,7 @@ std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accesso
     for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = cgltf_accessor_read_index(&dense, i);
   if (!accessor.is_sparse) return indices;
   const Changes changes = changes_of(accessor);
+  require_data(path, changes.values);
   for_changes(path, accessor, changes,
               [&](std::size_t to, std::size_t i) { indices[to] = cgltf_accessor_read_index(&changes.values, i); });
   return indices;

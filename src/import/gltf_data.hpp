@@ -33,6 +33,7 @@ std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accesso
 struct GltfTriangles {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool left_over = false;  ///< corners that are too few for one more triangle
 };
 GltfTriangles triangles_of(const std::string& path, const cgltf_primitive& primitive);
 

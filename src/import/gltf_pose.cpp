@@ -14,8 +14,12 @@ std::vector<Matrix34> joint_maps(const std::string& path, const cgltf_skin& skin
   if (skin.inverse_bind_matrices == nullptr) return maps;
   const std::vector<double> m = numbers_of(path, *skin.inverse_bind_matrices, 16);
   if (m.size() < 16 * maps.size()) throw Error(path + ": damaged: a skin has fewer inverse bind matrices than joints");
-  for (std::size_t j = 0; j < maps.size(); ++j)
-    maps[j] = product(maps[j], Eigen::Map<const Eigen::Matrix4d>(&m[16 * j]).topRows<3>());
+  for (std::size_t j = 0; j < maps.size(); ++j) {
+    const Eigen::Map<const Eigen::Matrix4d> bind(&m[16 * j]);
+    if (!((bind.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kRoundedRow))
+      throw Error(path + ": damaged: an inverse bind matrix is no place: its last row is not 0 0 0 1");
+    maps[j] = product(maps[j], bind.topRows<3>());
+  }
   return maps;
 }
 

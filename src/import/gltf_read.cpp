@@ -9,7 +9,6 @@
 #include "import/file_check.hpp"
 #include "import/gltf_data.hpp"
 #include "import/made_up_name.hpp"
-#include "import/note_texts.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -65,7 +64,6 @@ class GltfReader {
         if (data_.nodes[i].parent == nullptr) add(data_.nodes[i], Matrix34::Identity(), groups);
     }
     tell_unread();
-    notes_.tell(file_.notes);
     return std::move(file_);
   }
 
@@ -89,6 +87,10 @@ class GltfReader {
     if (off_weights_ > 0)
       file_.notes.push_back("the weights of " + std::to_string(off_weights_) +
                             " vertices on their joints do not add up to one: taken as shares of their sum");
+    if (!left_over_.empty())
+      file_.notes.push_back("the last corners of " + std::to_string(left_over_.size()) +
+                            (left_over_.size() == 1 ? " list" : " lists") +
+                            " of triangles are too few for a triangle: left out");
   }
 
   void add_parts(const cgltf_node& node, const Matrix34& X, const std::vector<std::string>& groups) {
@@ -108,10 +110,7 @@ class GltfReader {
     const Matrix34 own = node.skin != nullptr ? Matrix34(Matrix34::Identity()) : X;
     for (const Matrix34& instance : instances_of(node)) {
       part.X = product(own, instance);
-      if (part.X.leftCols<3>().isZero(0))
-        notes_.add(note_texts::kScaledAway, '"' + part.name + '"');
-      else
-        file_.parts.push_back(part);
+      file_.parts.push_back(part);
       if (file_.parts.size() > kMaxParts) throw Error(path_ + ": more than a million parts");
     }
   }
@@ -180,6 +179,7 @@ class GltfReader {
       return {std::move(plain.points), std::move(plain.triangles)};
     }
     GltfTriangles plain = triangles_of(where, primitive);
+    if (plain.left_over) left_over_.insert(&primitive);
     for (std::size_t t = 0; t < primitive.targets_count && t < weights.size(); ++t)
       if (weights[t] != 0) morph(where, primitive.targets[t], weights[t], plain.points);
     if (node.skin != nullptr && !plain.triangles.empty())
@@ -203,8 +203,8 @@ class GltfReader {
   std::map<std::tuple<const cgltf_mesh*, const cgltf_skin*, std::vector<float>>, std::size_t> known_;
   std::map<const cgltf_mesh*, std::vector<std::size_t>> faces_;  // of each primitive
   std::set<const cgltf_node*> shown_;                            // of those with meshes
+  std::set<const cgltf_primitive*> left_over_;                   // with corners that make no triangle
   std::size_t off_weights_ = 0;                                  // vertices whose weights do not add up to one
-  ImportNotes notes_;
   PartFile file_;
 };
 

@@ -45,6 +45,12 @@ std::vector<std::array<std::uint32_t, 3>> assembled(const std::string& path, cgl
   return triangles;  // of points and lines: none
 }
 
+/// Whether some of `n` corners make no triangle.
+bool has_left_over(cgltf_primitive_type type, std::size_t n) {
+  if (type == cgltf_primitive_type_triangles) return n % 3 != 0;
+  return (type == cgltf_primitive_type_triangle_strip || type == cgltf_primitive_type_triangle_fan) && n > 0 && n < 3;
+}
+
 const cgltf_attribute* position_of(const cgltf_attribute* attributes, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     if (attributes[i].type == cgltf_attribute_type_position) return &attributes[i];
@@ -77,7 +83,9 @@ GltfTriangles triangles_of(const std::string& path, const cgltf_primitive& primi
   out.points = points_of(path, *position->data);
   if (out.points.size() > std::numeric_limits<std::uint32_t>::max() / 4)
     throw Error(path + ": too large: more than a billion vertices");
-  out.triangles = assembled(path, primitive.type, indices_of(path, primitive, out.points.size()));
+  const std::vector<std::size_t> indices = indices_of(path, primitive, out.points.size());
+  out.triangles = assembled(path, primitive.type, indices);
+  out.left_over = has_left_over(primitive.type, indices.size());
   return out;
 }
 
@@ -103,12 +111,13 @@ GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data
   // The stream has the bare integers; what they stand for the accessor says.
   const cgltf_attribute* told = position_of(primitive.attributes, primitive.attributes_count);
   const double divisor = told == nullptr || attribute->normalized() ? 1 : divisor_of(*told->data);
+  const bool share = divisor != 1 || (attribute->normalized() && draco::IsDataTypeIntegral(attribute->data_type()));
   GltfTriangles out;
   for (draco::PointIndex i(0); i < mesh->num_points(); ++i) {
     std::array<float, 3> p{};
     if (!attribute->ConvertValue<float, 3>(attribute->mapped_index(i), p.data())) throw fail("has no positions");
     out.points.emplace_back(p[0], p[1], p[2]);
-    if (divisor != 1) out.points.back() = (out.points.back() / divisor).cwiseMax(-1);  // -128 stands for -1 too
+    if (share) out.points.back() = (out.points.back() / divisor).cwiseMax(-1);  // -128 stands for -1 too
   }
   std::vector<std::size_t> indices;
   for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {

@@ -17,7 +17,7 @@ namespace tegotae {
 namespace {
 
 // To be raised whenever load_mesh() makes another mesh, or other notes, of the same file.
-constexpr std::uint32_t kBuild = 1;
+constexpr std::uint32_t kBuild = 2;
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 // The key of a name in glTF, and what each other way to write it has.
 constexpr std::string_view kUri = "\"uri\"", kEscape = "\\u";

@@ -19,9 +19,12 @@ namespace tegotae {
 namespace {
 
 void limit(int resource, double value) {
-  const auto most = static_cast<rlim_t>(std::clamp(value, 0.0, 1e18));
-  const rlimit both{most, most};
-  if (setrlimit(static_cast<__rlimit_resource_t>(resource), &both) != 0) std::_Exit(3);
+  const auto which = static_cast<__rlimit_resource_t>(resource);
+  rlimit bound{};
+  // Whoever started the program may have set a lower one, which cannot be raised.
+  if (getrlimit(which, &bound) != 0) std::_Exit(3);
+  bound.rlim_cur = bound.rlim_max = std::min(bound.rlim_max, static_cast<rlim_t>(std::clamp(value, 0.0, 1e18)));
+  if (setrlimit(which, &bound) != 0) std::_Exit(3);
 }
 
 /// Bounds of this process that nothing in it can take back.

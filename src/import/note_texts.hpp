@@ -59,6 +59,10 @@ inline constexpr NoteText kEmptyMesh{"", "parts", "no triangles, so left out",
                                      "if it is a body, export it as a mesh of triangles"};
 inline constexpr NoteText kScaledAway{"", "parts", "scaled to nothing, so left out",
                                       "some programs hide parts so: show it and export anew"};
+inline constexpr NoteText kFlat{"", "parts", "scaled to nothing in some direction, so a sheet without a volume",
+                                "if it is to be a solid, give it its thickness and export anew"};
+inline constexpr NoteText kUnreadShape{"", "objects", "an element that is not read instead of a mesh, so left out",
+                                       "export it as a mesh of triangles"};
 inline constexpr NoteText kSupport{"", "objects", "a support of the print, so left out",
                                    "if it is a part, give its object the type model"};
 inline constexpr NoteText kOther{"", "objects", "of the type other, which is nothing to be made, so left out",

@@ -1,9 +1,11 @@
 #include "import/part_file.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "import/file_check.hpp"
 #include "import/gltf_read.hpp"
+#include "import/note_texts.hpp"
 #include "import/threemf_read.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -20,8 +22,32 @@ bool is_part_file(const std::string& path) {
   return extension == ".gltf" || extension == ".glb" || extension == ".3mf";
 }
 
+namespace {
+
+/// Parts that their place leaves no volume are told; those without any extent, a way to hide a node, are left out.
+void tell_flat(PartFile& file) {
+  constexpr double kFlat = 1e-9;  // of the cube of the largest entry; matrices are of floats
+  ImportNotes notes;
+  std::vector<PartFile::Placed> parts;
+  for (PartFile::Placed& part : file.parts) {
+    const Mat3 A = part.X.leftCols<3>();
+    const double largest = A.cwiseAbs().maxCoeff();
+    if (largest == 0)
+      notes.add(note_texts::kScaledAway, '"' + part.name + '"');
+    else if (std::abs((A / largest).determinant()) <= kFlat)
+      notes.add(note_texts::kFlat, '"' + part.name + '"');
+    if (largest != 0) parts.push_back(std::move(part));
+  }
+  file.parts = std::move(parts);
+  notes.tell(file.notes);
+}
+
+}  // namespace
+
 PartFile read_part_file(const std::string& path) {
-  return lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
+  PartFile file = lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
+  tell_flat(file);
+  return file;
 }
 
 void append(const TriangleMesh& from, const Matrix34& X, double unit, TriangleMesh& to) {

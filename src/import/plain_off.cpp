@@ -19,12 +19,14 @@ class OffReader {
   std::string plain(std::vector<std::string>& notes) {
     read_header();
     if (vertices_ > rest_.size() || faces_ > rest_.size())
-      refuse(path_, "truncated: it announces more elements than it has bytes");
+      refuse(path_, crowded_ ? "damaged: more than counts on the line of its counts; each vertex and face takes a line"
+                             : "truncated: it announces more elements than it has bytes");
     PlyBytes out;
     for (std::uint64_t i = 0; i < vertices_; ++i) out.vertex(read_vertex(i));
     for (std::uint64_t i = 0; i < faces_; ++i) out.face(read_face(i));
     if (!next_line().empty())
       notes.push_back("lines behind its last face are not read: its counts announce fewer vertices and faces");
+    out.tell_short(notes);
     if (!out.has_faces()) refuse(path_, "no triangles");
     return out.file();
   }
@@ -54,6 +56,8 @@ class OffReader {
     }
     if (!take_count(counts, vertices_) || !take_count(counts, faces_))
       refuse(path_, "damaged: the counts of vertices and faces are no numbers (text OFF only)");
+    take_word(counts);  // of edges, which nobody needs
+    crowded_ = !take_word(counts).empty();
   }
 
   void read_prefixes(std::string_view prefixes) {
@@ -128,6 +132,7 @@ class OffReader {
   std::string_view rest_;
   std::uint64_t vertices_ = 0, faces_ = 0;
   bool homogeneous_ = false, any_dimension_ = false;
+  bool crowded_ = false;  // something behind the counts
 };
 
 }  // namespace

@@ -267,6 +267,7 @@ class PlyReader {
     }
     if (!is_padding(body_.rest()))
       notes.push_back("what stands behind its last element is not read: its header announces fewer elements");
+    out_.tell_short(notes);
     if (!out_.has_faces()) refuse(path_, "no triangles");
     return out_.file();
   }
@@ -344,10 +345,29 @@ class PlyReader {
   PlyBytes out_;
 };
 
+/// Whether the lines end as on the machines of the format's first years, by a carriage return alone.
+bool has_old_ends(std::string_view bytes) {
+  const std::size_t end = first_of(bytes, "\r\n");
+  return bytes.substr(end, 1) == "\r" && bytes.substr(end + 1, 1) != "\n";
+}
+
+/// Those of the header and, where it is text, of the body become line feeds.
+std::string with_new_ends(std::string_view bytes) {
+  constexpr std::string_view kEnd = "end_header\r";
+  std::string out(bytes);
+  const std::size_t found = bytes.find(kEnd);
+  const std::size_t end = found == bytes.npos ? bytes.size() : found + kEnd.size();
+  const bool text = bytes.substr(0, end).find("format ascii") != bytes.npos;
+  std::replace(out.begin(), text ? out.end() : out.begin() + static_cast<std::ptrdiff_t>(end), '\r', '\n');
+  return out;
+}
+
 }  // namespace
 
 std::string plain_ply(const std::string& path, std::string_view bytes, std::vector<std::string>& notes) {
-  return PlyReader(path, bytes).plain(notes);
+  if (!has_old_ends(bytes)) return PlyReader(path, bytes).plain(notes);
+  const std::string plain = with_new_ends(bytes);
+  return PlyReader(path, plain).plain(notes);
 }
 
 }  // namespace tegotae

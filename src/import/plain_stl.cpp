@@ -78,14 +78,25 @@ class TextStl {
     return line;
   }
 
+  /// Whether the word `facet`, which stands before `rest`, begins a facet: `outer` is the first that follows of its
+  /// words. In a name it may be any word.
+  bool begins_facet(std::string_view rest) const {
+    TextStl behind(path_, rest);
+    if (!is_word(behind.next(), "normal")) return false;
+    std::string_view word = behind.next();
+    while (!word.empty() && !is_of_facet(word)) word = behind.next();
+    return is_word(word, "outer");
+  }
+
   /// The first word of the name is kept. A name ends with its line, or before a facet on it.
   void solid() {
     const std::string_view all = rest_;
     TextStl line(path_, rest_of_line());
     std::string_view name;
     for (std::string_view word = line.next(); !word.empty(); word = line.next()) {
-      if (is_word(word, "facet") && is_word(TextStl(path_, line.rest_).next(), "normal")) {
-        rest_ = all.substr(static_cast<std::size_t>(word.data() - all.data()));
+      const auto at = static_cast<std::size_t>(word.data() - all.data());
+      if (is_word(word, "facet") && begins_facet(all.substr(at + word.size()))) {
+        rest_ = all.substr(at);
         break;
       }
       if (name.empty()) name = word;
@@ -153,6 +164,29 @@ bool is_text(std::string_view bytes) {
                       [](char c) { return static_cast<unsigned char>(c) < 32 && kBlank.find(c) == kBlank.npos; });
 }
 
+/// Whether a text has the word of facets that no name has.
+bool has_facets(std::string_view text) {
+  return text.find("endfacet") != text.npos || text.find("ENDFACET") != text.npos;
+}
+
+/// The line of the first zero byte.
+std::size_t zero_line(std::string_view text) {
+  const std::string_view before = text.substr(0, text.find('\0'));
+  return static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
+}
+
+/// What a text begins with instead of `solid`, where nobody can see it.
+std::string other_start(std::string_view text) {
+  std::string bytes;
+  for (const char c : text.substr(0, 8)) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x80) break;
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    ((bytes += ' ') += kDigits[code / 16]) += kDigits[code % 16];
+  }
+  return bytes.empty() ? "" : ", this one with the bytes" + bytes;
+}
+
 }  // namespace
 
 std::string plain_stl(const std::string& path, std::string file) {
@@ -169,7 +203,10 @@ std::string plain_stl(const std::string& path, std::string file) {
   if (facets > 0 && whole < bytes.size() && (room == facets || is_padding(bytes.substr(whole))))
     return std::string(bytes.substr(0, whole));
   require_single_bytes(path, bytes);
-  if (is_text(bytes.substr(0, kHeader))) refuse(path, "damaged: a text STL file begins with \"solid\"");
+  if (is_word(text.substr(0, 5), "solid") && has_facets(text))
+    refuse(path, "damaged: zero bytes in the text, the first in line " + std::to_string(zero_line(text)));
+  if (is_text(bytes.substr(0, kHeader)))
+    refuse(path, "damaged: a text STL file begins with \"solid\"" + other_start(text));
   if (bytes.size() < kHeader) refuse(path, "truncated: too short for a binary STL and no text STL");
   refuse(path, std::string(facets > room ? "truncated" : "damaged") + ": its header states " + std::to_string(facets) +
                    " triangles, the file has bytes for " + std::to_string(room));

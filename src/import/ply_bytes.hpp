@@ -16,10 +16,19 @@ class PlyBytes {
     for (const double x : p) put(vertex_bytes_, x);
     ++vertices_;
   }
+  /// Faces of fewer than three corners are counted, not written.
   void face(const std::vector<std::uint32_t>& corners) {
+    if (corners.size() < 3) {
+      ++short_faces_;
+      return;
+    }
     put(face_bytes_, static_cast<std::uint32_t>(corners.size()));
     for (const std::uint32_t corner : corners) put(face_bytes_, corner);
     ++faces_;
+  }
+  void tell_short(std::vector<std::string>& notes) const {
+    if (short_faces_ > 0)
+      notes.push_back("faces of fewer than three corners are left out, " + std::to_string(short_faces_) + " of them");
   }
   bool has_faces() const { return faces_ > 0; }
   std::string file() const {
@@ -36,7 +45,7 @@ class PlyBytes {
     bytes.append(raw, sizeof value);
   }
 
-  std::uint64_t vertices_ = 0, faces_ = 0;
+  std::uint64_t vertices_ = 0, faces_ = 0, short_faces_ = 0;
   std::string vertex_bytes_, face_bytes_;
 };
 

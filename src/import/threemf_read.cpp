@@ -190,9 +190,20 @@ class ThreeMfReader {
       groups.pop_back();
       return;
     }
+    if (!child(object, "mesh")) {
+      notes_.add(note_texts::kUnreadShape, '"' + name + "\" (" + unread_shape(object) + ')');
+      return;
+    }
     const auto [known, fresh] = mesh_of_.emplace(std::pair(in, id), file_.meshes.size());
     if (fresh) file_.meshes.push_back(mesh_of(object, name));
     file_.parts.push_back({name, groups, X, known->second, color_of(object, in)});
+  }
+
+  /// What stands in an object where the core of the format has its mesh or components.
+  static std::string unread_shape(const pugi::xml_node& object) {
+    for (const pugi::xml_node& inside : object.children())
+      if (inside.type() == pugi::node_element && !is(inside.name(), "metadatagroup")) return inside.name();
+    return "empty";
   }
 
   TriangleMesh mesh_of(const pugi::xml_node& object, const std::string& name) {

@@ -12,8 +12,15 @@ constexpr double kLargestCoordinate = 1e6;
 
 }  // namespace
 
+std::string cause_of(const std::vector<std::string>& notes) {
+  for (const char* words : {"left out", "is not read", "without a volume"})
+    for (const std::string& note : notes)
+      if (note.find(words) != std::string::npos) return ": " + note;
+  return "";
+}
+
 void require_usable(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error(mesh.name + ": no triangles");
+  if (mesh.triangles.empty()) throw Error(mesh.name + ": no triangles" + cause_of(mesh.notes));
   for (const auto& t : mesh.triangles) {
     for (const std::uint32_t v : t) {
       const Vec3& p = mesh.vertices[v];
@@ -30,7 +37,7 @@ void require_area(const TriangleMesh& welded) {
   for (const auto& t : welded.triangles) {
     if (!is_degenerate(welded, t, step)) return;
   }
-  throw Error(welded.name + ": no triangle has an area");
+  throw Error(welded.name + ": no triangle has an area" + cause_of(welded.notes));
 }
 
 TriangleMesh usable(TriangleMesh mesh, const std::string& path, const std::string& name) {

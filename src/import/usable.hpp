@@ -1,10 +1,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tegotae/mesh/triangle_mesh.hpp"
 
 namespace tegotae {
+
+/// For a message that there is nothing: what was left out or not read, of all that is told of a file; may be empty.
+std::string cause_of(const std::vector<std::string>& notes);
 
 /// Throws Error unless `mesh` has triangles and its coordinates are finite and on this side of 1000 km.
 void require_usable(const TriangleMesh& mesh);

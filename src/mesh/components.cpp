@@ -31,14 +31,11 @@ std::vector<Extent> extents(const TriangleMesh& mesh, const Components& parts) {
 /// For every component the one it stays with (itself, unless it is the wall of a cavity).
 std::vector<std::uint32_t> owners(const TriangleMesh& mesh, const Topology& topology, const Components& parts) {
   const std::vector<Extent> all = extents(mesh, parts);
-  std::vector<std::uint8_t> open(parts.count, 0);
-  for (std::size_t h = 0; h < topology.twin.size(); ++h) {
-    if (topology.twin[h] == kNone && parts.of[h / 3] != kNone) open[parts.of[h / 3]] = 1;
-  }
+  const std::vector<bool> open = open_components(topology, parts);
   std::vector<std::uint32_t> owner(parts.count);
   std::iota(owner.begin(), owner.end(), 0u);
   for (std::uint32_t c = 0; c < parts.count; ++c) {
-    if (open[c] != 0 || all[c].volume >= 0) continue;
+    if (open[c] || all[c].volume >= 0) continue;
     double smallest = std::numeric_limits<double>::infinity();
     for (std::uint32_t o = 0; o < parts.count; ++o) {
       if (o == c || all[o].volume <= 0 || !all[o].box.contains(all[c].box) || all[o].box.volume() >= smallest) continue;
@@ -78,6 +75,13 @@ Components components(const TriangleMesh& mesh, const Topology& topology) {
     out.of[f] = n;
   }
   return out;
+}
+
+std::vector<bool> open_components(const Topology& topology, const Components& parts) {
+  std::vector<bool> open(parts.count, false);
+  for (std::size_t h = 0; h < topology.twin.size(); ++h)
+    if (topology.twin[h] == kNone && parts.of[h / 3] != kNone) open[parts.of[h / 3]] = true;
+  return open;
 }
 
 std::vector<TriangleMesh> split(const TriangleMesh& mesh, std::vector<std::uint32_t>& first_face) {

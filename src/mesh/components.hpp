@@ -15,6 +15,9 @@ struct Components {
 
 Components components(const TriangleMesh& mesh, const Topology& topology);
 
+/// Of each component, whether it has an edge that does not join exactly two faces with the same orientation.
+std::vector<bool> open_components(const Topology& topology, const Components& parts);
+
 /// The components of the welded `mesh` as surfaces of their own, in the order of their first faces (`first_face`, in
 /// `mesh`). A closed component turned inside out is the wall of a cavity: it stays with the smallest component whose
 /// box holds its box. Collapsed faces are left out.

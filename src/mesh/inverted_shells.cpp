@@ -29,7 +29,7 @@ bool winds_round(const TriangleMesh& mesh, const Shell& shell, const Vec3& p) {
 
 }  // namespace
 
-std::size_t count_inverted_shells(const TriangleMesh& mesh, const Components& shells) {
+std::size_t count_inverted_shells(const TriangleMesh& mesh, const Components& shells, const std::vector<bool>& open) {
   std::vector<Shell> all(shells.count);
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     if (shells.of[f] == kNone) continue;
@@ -40,13 +40,19 @@ std::size_t count_inverted_shells(const TriangleMesh& mesh, const Components& sh
     shell.faces.push_back(f);
   }
   std::size_t inverted = 0;
-  for (const Shell& shell : all) {
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    if (open[s]) continue;
+    const Shell& shell = all[s];
     const std::uint32_t f = shell.faces.front();
     const Vec3 p = (corner(mesh, f, 0) + corner(mesh, f, 1) + corner(mesh, f, 2)) / 3;
     std::size_t around = 0;
-    for (const Shell& other : all)
-      around += &other != &shell && other.box.contains(shell.box) && winds_round(mesh, other, p);
-    inverted += (around % 2 == 1) == (shell.volume > 0);
+    bool unsure = false;
+    for (std::size_t o = 0; o < all.size() && !unsure; ++o) {
+      if (o == s || !all[o].box.contains(shell.box) || !winds_round(mesh, all[o], p)) continue;
+      ++around;
+      unsure = open[o];
+    }
+    inverted += !unsure && (around % 2 == 1) == (shell.volume > 0);
   }
   return inverted;
 }

@@ -47,7 +47,7 @@ MeshReport report(const TriangleMesh& mesh) {
     if (topology.twin[3 * edge.f[0] + k] == kNone) ++out.non_manifold_edges;
   }
   out.closed = is_closed(topology);
-  if (out.closed) out.inverted_shells = count_inverted_shells(mesh, shells);
+  out.inverted_shells = count_inverted_shells(mesh, shells, open_components(topology, shells));
 
   if (!mesh.vertices.empty()) out.box_min = out.box_max = mesh.vertices[0];
   for (const Vec3& p : mesh.vertices) {

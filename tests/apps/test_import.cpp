@@ -9,6 +9,7 @@
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #ifdef TEGOTAE_HAS_STEP
 #include "mesh/step_assembly.hpp"
 #endif
@@ -121,6 +122,25 @@ TEST_CASE("clashes are listed by name, depth and place", "[import]") {
   check_refused(run_program("tegotae", "check --clash " + (folder / "tet.obj")), {"tet.obj: --clash needs a scene"});
   check_refused(run_program("tegotae", "check --within 2mm " + (folder / "clash.toml")), {"--clash"});
 }
+
+#if !defined(TEGOTAE_SANITIZED)
+TEST_CASE("an import that takes too much memory says so, and leaves nothing", "[import]") {
+  const TempFolder folder;
+  std::string big;
+  for (int i = 0; i < 100'000; ++i)
+    big += "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\n";
+  folder.write("big.obj", big);
+  const std::string command = "import " + (folder / "big.obj") + " --unit mm -o " + (folder / "out");
+  const Output o = run_program("tegotae", command + " --megabytes 100");
+  CHECK(o.code == 2);
+  CHECK(o.err == "tegotae: " + (folder / "big.obj") +
+                     ": not read: it takes more than 100 MB of memory; tegotae import has --megabytes\n");
+  CHECK(!std::filesystem::exists(folder / "out"));
+  CHECK(run_program("tegotae", command + " --megabytes 4000").code == 0);
+  std::filesystem::remove_all(folder / "out");
+  CHECK(run_program("tegotae", command).code == 0);
+}
+#endif
 
 #ifdef TEGOTAE_HAS_STEP
 TEST_CASE("an import that takes too long says at what, and leaves nothing", "[import]") {

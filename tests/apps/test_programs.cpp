@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "apps/program_summary.hpp"
 #include "catch.hpp"
+#include "core/sanitizers.hpp"
 #include "mesh/gltf_doc.hpp"
 #include "spawn.hpp"
 
@@ -254,6 +256,86 @@ TEST_CASE("check and run tell what of a mesh is not as its file says", "[program
     CHECK(run.err.find("tet.gltf: ") < at);
     CHECK(run.err.find(note, at + 1) == std::string::npos);
   }
+}
+
+TEST_CASE("every program that reads a scene has its meshes read by the helper, unless they are trusted", "[programs]") {
+  const TempFolder folder, alone;
+  write_small_scene(folder);
+  const std::string scene = folder / "scene.toml", recording = folder / "r.csv";
+  folder.write("study.toml", "scenes = [\"scene.toml\"]\nseconds = 1\n");
+  const Output made = run_program("tegotae", "run --fast " + scene + " --record " + recording);
+  INFO(made.err);
+  REQUIRE(made.code == 0);
+  // A copy of the program, and no helper beside it or in PATH.
+  std::filesystem::copy_file(TEGOTAE_BIN_DIR "/tegotae", alone / "tegotae");
+  const auto run = [&](const std::string& arguments) {
+    const std::string command = "PATH=" + (alone / "none") + " XDG_CACHE_HOME=" + (alone / "cache") + " " +
+                                (alone / "tegotae") + " " + arguments + " </dev/null >" + (alone / "out") + " 2>" +
+                                (alone / "err");
+    Output o;
+    o.code = WEXITSTATUS(std::system(command.c_str()));
+    o.out = read_text(alone / "out");
+    o.err = read_text(alone / "err");
+    return o;
+  };
+  const std::string commands[] = {"check " + (folder / "tet.obj"),
+                                  "check " + scene,
+                                  "check --clash " + scene,
+                                  "run --fast " + scene,
+                                  "try " + scene + " --tries 1 --seconds 1 --out " + (alone / "tries"),
+                                  "study " + (folder / "study.toml") + " --out " + (alone / "study"),
+                                  "study case " + (folder / "study.toml") + " 0 --out " + (alone / "case"),
+                                  "replay " + recording + " --html " + (alone / "r.html"),
+                                  "review " + recording + " --out " + (alone / "review.html"),
+                                  "plan " + scene + " --seconds 1 --to " + (alone / "plan"),
+                                  "plan --all " + scene + " --to " + (alone / "order")};
+  for (const std::string& command : commands) {
+    INFO(command);
+    const Output kept = run(command);
+    if (kept.err.find("libompl-dev") != std::string::npos) continue;  // built without a planner
+    INFO(kept.err);
+    CHECK(kept.code == 2);
+    CHECK_THAT(kept.err, Catch::Contains("tet.obj: the loading program tegotae-load-mesh cannot be started"));
+    const Output trusted = run(command + " --trusted");
+    INFO(trusted.out + trusted.err);
+    CHECK(trusted.code < 2);  // done, or tried in vain
+    CHECK_THAT(trusted.err, !Catch::Contains("cannot be started"));
+  }
+  // A page would be served until a signal.
+  const Output page = run("view --no-browser " + scene);
+  CHECK(page.code == 2);
+  CHECK_THAT(page.err, Catch::Contains("cannot be started"));
+}
+
+TEST_CASE("a bound on memory that was set before is no reason not to read a mesh", "[programs]") {
+#if !defined(TEGOTAE_SANITIZED)
+  const TempFolder folder;
+  write_small_scene(folder);
+  for (const char* limits : {"ulimit -v 2000000; ", "ulimit -t 20; ", "ulimit -c 0; "}) {
+    INFO(limits);
+    const std::string command = std::string(limits) + TEGOTAE_BIN_DIR "/tegotae check " + (folder / "tet.obj") + " >" +
+                                (folder / "out") + " 2>&1";
+    CHECK(WEXITSTATUS(std::system(command.c_str())) == 0);
+    CHECK_THAT(read_text(folder / "out"), Catch::Contains("4 triangles"));
+  }
+#endif
+}
+
+TEST_CASE("check names shells that look the wrong way, also beside open ones", "[programs]") {
+  const TempFolder folder;
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nv 5 0 1\n";
+  const std::string inward = "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n", outward = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const std::string open = "f 5 7 6\nf 5 6 8\nf 6 7 8\n", inward_too = "f 5 6 7\nf 5 8 6\nf 6 8 7\nf 5 7 8\n";
+  const auto check = [&](const std::string& faces) {
+    folder.write("s.obj", corners + faces);
+    return run_program("tegotae", "check " + (folder / "s.obj")).out;
+  };
+  const char* const rule = "the wrong way: a shell faces outwards, the wall of a cavity inwards\n";
+  CHECK_THAT(check(inward + open), Catch::Contains(", 2 components, not closed\n") &&
+                                       Catch::Contains(std::string("  1 of 2 shells looks ") + rule));
+  CHECK_THAT(check(inward + inward_too), Catch::Contains(", 2 components, closed\n") &&
+                                             Catch::Contains(std::string("  2 of 2 shells look ") + rule));
+  CHECK_THAT(check(outward + open), !Catch::Contains("the wrong way"));
 }
 
 TEST_CASE("check names T-junctions", "[programs]") {

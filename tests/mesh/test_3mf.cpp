@@ -133,6 +133,42 @@ TEST_CASE("3MF: what is not built is left out, supports with a note; lattices ar
              Catch::Contains("\"tip\": its beam lattice is not read") && Catch::Contains("\"prop\": a support"));
 }
 
+TEST_CASE("3MF: shapes that extensions have in place of a mesh are told by their element", "[3mf]") {
+  const TempFolder folder;
+  const std::string
+      boolean = object("2", "name=\"cut\"",
+                       R"(<metadatagroup/><bo:booleanshape objectid="1"><bo:boolean objectid="1"/></bo:booleanshape>)"),
+      displaced = object("3", "name=\"rough\"", "<d:displacementmesh/>"), nothing = object("4", "", "");
+  const std::string spaces =
+      "xmlns:bo=\"http://schemas.3mf.io/3dmanufacturing/booleans/2023/07\" "
+      "xmlns:d=\"http://schemas.microsoft.com/3dmanufacturing/displacement/2022/07\"";
+  const Assembly a = read_assembly(write(
+      folder, model(object("1", "") + boolean + displaced + nothing,
+                    R"(<item objectid="1"/><item objectid="2"/><item objectid="3"/><item objectid="4"/>)", spaces)));
+  REQUIRE(a.parts.size() == 1);
+  REQUIRE(a.notes.size() == 1);
+  CHECK_THAT(
+      a.notes[0],
+      Catch::Contains("3 objects (\"cut\" (bo:booleanshape), \"rough\" (d:displacementmesh), \"object 4\" (empty))") &&
+          Catch::Contains("left out; export it as a mesh"));
+  // Where there is nothing else, the refusal says why.
+  const std::string alone = write(folder, model(displaced, R"(<item objectid="3"/>)", spaces));
+  CHECK_THAT(refusal(alone), Catch::Contains("no parts with triangles: \"rough\" (d:displacementmesh): "));
+  CHECK_THAT(refusal([&] { load_mesh(alone); }), Catch::Contains("no triangles: \"rough\" (d:displacementmesh): "));
+}
+
+TEST_CASE("3MF: transforms that leave an object no volume are told", "[3mf]") {
+  const TempFolder folder;
+  const Assembly a = read_assembly(
+      write(folder, model(object("1", "name=\"tip\""), R"(<item objectid="1" transform="1 0 0 0 1 0 0 0 0 0 0 0"/>)"
+                                                       R"(<item objectid="1" transform="0 0 0 0 0 0 0 0 0 5 0 0"/>)"
+                                                       R"(<item objectid="1" transform="1 0 0 0 1 0 0 0 2 0 0 0"/>)")));
+  CHECK(a.parts.size() == 2);
+  REQUIRE(a.notes.size() == 2);
+  CHECK(has_note(a, "\"tip\": scaled to nothing in some direction, so a sheet"));
+  CHECK(has_note(a, "\"tip\": scaled to nothing, so left out"));
+}
+
 TEST_CASE("3MF: objects of the type other, and meshes that stand in for slices, are told", "[3mf]") {
   const TempFolder folder;
   const Assembly a =

@@ -192,6 +192,127 @@ TEST_CASE("STL: a damaged facet swallows no other", "[flat]") {
   }
 }
 
+TEST_CASE("STL: a facet begins where outer follows, whatever words a name has", "[flat]") {
+  const std::string all = text_stl("2");
+  for (const char* name :
+       {"facet normal", "my facet normal 0 0 1 part", "facet normal 0 0 1 facet normal", "a facet"}) {
+    INFO(name);
+    check_tetrahedron("name.stl", replaced_all(all, "solid t\n", std::string("solid ") + name + '\n'));
+    // Also all on one line, and with a facet on the line of the name.
+    const std::string line = replaced_all(all, "solid t\n", std::string("solid ") + name + ' ');
+    check_tetrahedron("line.stl", line);
+    check_tetrahedron("one.stl", replaced_all(line, "\n", " "));
+  }
+}
+
+TEST_CASE("text that only looks right is told by what is wrong with it", "[flat]") {
+  std::string zero = text_stl("2");
+  zero[zero.find("endloop") - 1] = '\0';  // the end of line 6
+  CHECK_THAT(refused("zero.stl", zero), Catch::Contains("zero bytes in the text, the first in line 6"));
+  const std::string marks = "\xef\xbb\xbf\xef\xbb\xbf";
+  CHECK_THAT(refused("marks.stl", marks + text_stl("2")),
+             Catch::Contains("begins with \"solid\", this one with the bytes EF BB BF"));
+  CHECK_THAT(refused("space.stl", "\xc2\xa0" + text_stl("2")), Catch::Contains("this one with the bytes C2 A0"));
+  for (const char* ends : {" ", "\t"})
+    CHECK_THAT(refused("line.off", "OFF\n4 4 0 " + replaced_all(kOffCorners + kOffFaces, "\n", ends) + "\n"),
+               Catch::Contains("more than counts on the line of its counts"));
+  CHECK_THAT(refused("short.off", "OFF\n4 4 0\n"), Catch::Contains("truncated"));
+  // Packed files keep their first name.
+  const std::pair<std::string, const char*> packed[] = {{"\x1f\x8b\x08", "gzip"}, {"PK\3\4", "ZIP"},
+                                                        {"BZh9", "bzip2"},        {std::string("\3757zXZ\0", 6), "xz"},
+                                                        {"(\xb5/\xfd", "zstd"},   {"7z\xbc\xaf'\x1c", "7z"}};
+  for (const char* name : {"a.stl", "a.ply", "a.obj", "a.off", "a.gltf", "a.glb"})
+    for (const auto& [start, kind] : packed) {
+      INFO(name);
+      CHECK_THAT(refused(name, start + std::string(200, 'x')), Catch::Contains(std::string("is packed by ") + kind));
+    }
+  // A binary STL may begin with anything.
+  std::string binary("\x1f\x8b");
+  binary.resize(80);
+  binary += std::string("\1\0\0\0", 4);
+  for (const float x : {0.f, 0.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
+    binary.append(reinterpret_cast<const char*>(&x), sizeof x);
+  CHECK(refused("header.stl", binary + std::string(2, '\0')).empty());
+}
+
+TEST_CASE("PLY: lines may end with a carriage return alone, as the format began", "[flat]") {
+  const std::string vertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string text = "ply\nformat ascii 1.0\ncomment a\n" + vertex + face + kOffCorners + kOffFaces;
+  check_tetrahedron("return.ply", replaced_all(text, "\n", "\r"));
+  check_tetrahedron("crlf.ply", replaced_all(text, "\n", "\r\n"));
+  CHECK_THAT(refused("cut.ply", replaced_all(text, "\n", "\r").substr(0, 100)), Catch::Contains("truncated"));
+  CHECK_THAT(refused("lost.ply", replaced_all(replaced_all(text, "3 1 2 3", "3 1 2"), "\n", "\r")),
+             Catch::Contains("truncated or damaged at face 2"));
+  // Of a binary file only the header has lines; a 13 in its body is a number. Vertex 0 has one, which nobody reads.
+  std::string binary =
+      replaced_all("ply\nformat binary_little_endian 1.0\n" + vertex + "property uchar more\n" + face, "\n", "\r");
+  const float corners[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const auto& corner : corners) {
+    binary.append(reinterpret_cast<const char*>(corner), sizeof corner);
+    binary += '\r';
+  }
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (const auto& f : faces) {
+    binary += '\3';
+    binary.append(reinterpret_cast<const char*>(f), sizeof f);
+  }
+  check_tetrahedron("binary.ply", binary);
+  std::string feed = binary;  // a body that begins with a line feed: the low byte of the first x
+  feed[feed.find("end_header\r") + 11] = '\n';
+  const TempFolder folder;
+  folder.write("feed.ply", feed);
+  CHECK(load_mesh(folder / "feed.ply").vertices.size() == 4);
+}
+
+TEST_CASE("PLY: faces of any number of corners", "[flat]") {
+  // A prism of height 2 over an L of area 3, turned outward: concave, and its sides are quadrangles.
+  const float base[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  std::string text, binary;
+  const auto face = [&](const std::vector<int>& corners) {
+    text += std::to_string(corners.size());
+    binary += static_cast<char>(corners.size());
+    for (const int i : corners) {
+      text += ' ' + std::to_string(i);
+      binary.append(reinterpret_cast<const char*>(&i), sizeof i);
+    }
+    text += '\n';
+  };
+  for (const float z : {0.f, 2.f})
+    for (const auto& p : base) {
+      text += std::to_string(p[0]) + ' ' + std::to_string(p[1]) + ' ' + std::to_string(z) + '\n';
+      for (const float x : {p[0], p[1], z}) binary.append(reinterpret_cast<const char*>(&x), sizeof x);
+    }
+  face({5, 4, 3, 2, 1, 0});
+  face({6, 7, 8, 9, 10, 11});
+  for (int i = 0; i < 6; ++i) face({i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i});
+  const std::string head =
+      "element vertex 12\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 8\nproperty list uchar int vertex_indices\nend_header\n";
+  const TempFolder folder;
+  folder.write("text.ply", "ply\nformat ascii 1.0\n" + head + text);
+  folder.write("binary.ply", "ply\nformat binary_little_endian 1.0\n" + head + binary);
+  for (const char* name : {"text.ply", "binary.ply"}) {
+    INFO(name);
+    const TriangleMesh mesh = load_mesh(folder / name);
+    CHECK(report(mesh).closed);
+    CHECK(report(mesh).triangles == 20);  // of n corners n - 2
+    CHECK(volume(mesh) == Approx(6));
+    CHECK(mesh.notes.empty());
+  }
+}
+
+TEST_CASE("PLY, OFF: faces of fewer than three corners are counted and left out", "[flat]") {
+  const std::string few = "0\n1 2\n2 0 1\n", why = "faces of fewer than three corners are left out, 3 of them";
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 7\nproperty list uchar int vertex_indices\nend_header\n";
+  CHECK(check_tetrahedron("few.ply", head + kOffCorners + few + kOffFaces).notes == std::vector<std::string>{why});
+  CHECK(check_tetrahedron("few.off", "OFF\n4 7 0\n" + kOffCorners + few + kOffFaces).notes ==
+        std::vector<std::string>{why});
+  CHECK_THAT(refused("only.off", "OFF\n4 3 0\n" + kOffCorners + few), Catch::Contains("no triangles"));
+}
+
 TEST_CASE("OBJ: padding and marks at the end of a file are no statement", "[flat]") {
   for (const std::string& end : {std::string(40, '\0'), std::string("\x1a"), std::string("\n\x1a\0\0", 4)}) {
     check_tetrahedron("end.obj", kCorners + kFaces + end);
@@ -257,7 +378,7 @@ TEST_CASE("OFF: what vertices have besides, and other dimensions", "[flat]") {
   CHECK_THAT(refused("word.off", "BOFF\n4 4 6\n" + with("")), Catch::Contains("does not begin with OFF"));
 }
 
-TEST_CASE("OFF: faces of any number of corners, and of none", "[flat]") {
+TEST_CASE("OFF: faces of any number of corners", "[flat]") {
   const TempFolder folder;
   for (const int n : {3, 9, 10, 40, 300}) {
     INFO(n);
@@ -266,7 +387,6 @@ TEST_CASE("OFF: faces of any number of corners, and of none", "[flat]") {
     CHECK(report(mesh).closed);
     CHECK(volume(mesh) == Approx(n * std::sin(2 * M_PI / n) / 2).epsilon(1e-4));
   }
-  check_tetrahedron("few.off", "OFF\n4 7 0\n" + kOffCorners + "0\n1 2\n2 0 1\n" + kOffFaces);
 }
 
 TEST_CASE("STL: comments, colors and padding around the facets; names of any length", "[flat]") {

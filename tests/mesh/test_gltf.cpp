@@ -3,6 +3,11 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
 #include "mesh/assembly_checks.hpp"
 #include "mesh/gltf_doc.hpp"
 #include "tegotae/import/load.hpp"
@@ -146,6 +151,156 @@ TEST_CASE("glTF: nodes of other scenes, and those scaled to nothing, are told an
   REQUIRE(a.parts.size() == 1);
   CHECK(has_note(a, "\"hidden\": scaled to nothing"));
   CHECK(has_note(a, "not in the scene that is read: nodes with meshes, 1"));
+  doc.node({{"mesh", mesh}, {"translation", {0, 9, 0}}}, false);  // in no scene at all
+  CHECK(has_note(read(doc.save(folder)), "not in the scene that is read: nodes with meshes, 2"));
+}
+
+TEST_CASE("glTF: nodes that leave a part no volume are told", "[gltf]") {
+  const TempFolder folder;
+  const auto notes_of = [&](const Json& place, const Json& parent) {
+    GltfDoc doc;
+    Json node = place;
+    node["mesh"] = doc.mesh(doc.tetrahedron());
+    node["name"] = "thin";
+    const std::size_t child = doc.node(node, false);
+    Json above = parent;
+    above["children"] = {child};
+    doc.node(above);
+    const Assembly a = read_assembly(doc.save(folder));
+    CHECK(a.parts.size() == 1);
+    CHECK(load_mesh(folder / "a.gltf").notes == a.notes);
+    return a.notes;
+  };
+  const Json none = Json::object(), turned = {{"rotation", {0.2, 0.4, 0.4, 0.8}}};
+  for (const Json& scale : {Json({1, 1, 0}), Json({0, 3, 1}), Json({-1, 0, 1})}) {
+    INFO(scale.dump());
+    for (const auto& [place, parent] : {std::pair(Json{{"scale", scale}}, none), {turned, Json{{"scale", scale}}}}) {
+      const std::vector<std::string> notes = notes_of(place, parent);
+      REQUIRE(notes.size() == 1);
+      CHECK_THAT(notes[0], Catch::Contains("\"thin\": scaled to nothing in some direction"));
+    }
+  }
+  CHECK(notes_of({{"scale", {1, 1, 0.001}}}, turned).empty());
+  CHECK(notes_of({{"scale", {1e-3, 1e-3, 1e-3}}}, turned).empty());
+}
+
+TEST_CASE("glTF: what asks for a newer reader, bends space or names a root twice is refused", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}});
+  for (const char* version : {"2.0", "1.0"}) {
+    doc.j["asset"]["minVersion"] = version;
+    check_near(box_of(read(doc.save(folder)), 0), {5, 0, 0}, {6, 1, 1});
+  }
+  GltfDoc newer = doc;
+  newer.j["asset"]["minVersion"] = "2.1";
+  CHECK_THAT(refused(newer.save(folder)), Catch::Contains("it requires a reader of glTF 2.1; 2.0 is read"));
+  for (const auto& [entry, value] : {std::pair(3, 0.5), {7, -0.1}, {11, 1}, {15, 2}, {15, 0}}) {
+    GltfDoc bent = doc;
+    bent.j["nodes"][0]["matrix"][static_cast<std::size_t>(entry)] = value;
+    CHECK_THAT(refused(bent.save(folder)), Catch::Contains("the matrix of node 0 is no place"));
+  }
+  doc.j["nodes"][0]["matrix"][15] = 0.99999994;  // as a float may be written
+  check_near(box_of(read(doc.save(folder)), 0), {5, 0, 0}, {6, 1, 1});
+  doc.j["scenes"][0]["nodes"] = {0, 0};
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("scene 0 names node 0 twice"));
+}
+
+TEST_CASE("glTF: a buffer's file may lie in a folder below, its name written with percent signs", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.save(folder);
+  std::filesystem::create_directory(folder / "raw data");
+  std::filesystem::rename(folder / "a.bin", folder / "raw data/b.bin");
+  Json j = Json::parse(read_text(folder / "a.gltf"));
+  for (const char* uri : {"raw%20data/b.bin", "raw data/b.bin", "./raw%20data/b.bin"}) {
+    INFO(uri);
+    j["buffers"][0]["uri"] = uri;
+    folder.write("a.gltf", j.dump());
+    check_near(box_of(read(folder / "a.gltf"), 0), Vec3::Zero(), Vec3::Ones());
+  }
+}
+
+TEST_CASE("glTF: what lies in a buffer without data is refused, not read as zeros", "[gltf]") {
+  const TempFolder folder;
+  for (const bool fallback : {false, true}) {
+    GltfDoc doc;
+    doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+    Json empty = {{"byteLength", 96}};
+    if (fallback) empty["extensions"] = {{"EXT_meshopt_compression", {{"fallback", true}}}};
+    doc.j["buffers"] = Json::array({empty});
+    CHECK(read(doc.save(folder)).parts.size() == 1);  // nobody uses it
+    // A whole primitive, beside one that lacks its indices, its positions, or what a sparse accessor changes.
+    const auto lacking = [&](const std::function<void(GltfDoc&, Json&)>& change) {
+      GltfDoc bad = doc;
+      Json second = bad.tetrahedron();
+      change(bad, second);
+      bad.j["meshes"][0]["primitives"].push_back(second);
+      return refused(bad.save(folder));
+    };
+    const auto move = [](GltfDoc& bad, const Json& accessor) {
+      Json& view = bad.j["bufferViews"][bad.j["accessors"][accessor.get<std::size_t>()]["bufferView"].get<int>()];
+      view["buffer"] = 1;
+      view["byteOffset"] = 0;
+    };
+    const char* const why = "mesh 0, primitive 1 (node 0): damaged: an accessor lies in a buffer that has no data";
+    CHECK_THAT(lacking([&](GltfDoc& bad, Json& p) { move(bad, p["indices"]); }), Catch::Contains(why));
+    CHECK_THAT(lacking([&](GltfDoc& bad, Json& p) { move(bad, p["attributes"]["POSITION"]); }), Catch::Contains(why));
+    for (const char* part : {"indices", "values"}) {
+      INFO(part);
+      CHECK_THAT(lacking([&](GltfDoc& bad, Json& p) {
+                   const std::size_t view = bad.view(std::string(12, '\0'));
+                   Json sparse = {{"count", 1},
+                                  {"indices", {{"bufferView", view}, {"componentType", 5121}}},
+                                  {"values", {{"bufferView", view}}}};
+                   bad.j["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 0}, {"byteLength", 12}});
+                   sparse[part]["bufferView"] = view + 1;
+                   bad.j["accessors"][p["indices"].get<std::size_t>()]["sparse"] = sparse;
+                 }),
+                 Catch::Contains(why));
+    }
+  }
+}
+
+TEST_CASE("glTF: indices are unsigned whole numbers, and lists of triangles have three for each", "[gltf]") {
+  const TempFolder folder;
+  const auto with = [&](const std::string& bytes, int type, std::size_t count, int mode = 4) {
+    GltfDoc doc;
+    Json more = {{"attributes", {{"POSITION", doc.corners()}}},
+                 {"indices", doc.accessor(bytes, type, "SCALAR", count)},
+                 {"mode", mode}};
+    doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+    doc.j["meshes"][0]["primitives"].push_back(more);
+    return doc.save(folder);
+  };
+  const char* const why = "indices are no unsigned whole numbers";
+  CHECK_THAT(refused(with(GltfDoc::bytes_of<float>({0, 2, 1}), 5126, 3)), Catch::Contains(why));
+  CHECK_THAT(refused(with(std::string({0, 2, 1}), 5120, 3)), Catch::Contains(why));
+  CHECK_THAT(refused(with(GltfDoc::bytes_of<std::int16_t>({0, 2, 1}), 5122, 3)), Catch::Contains(why));
+  for (const auto& [count, mode, told] : {std::tuple(5, 4, true),
+                                          {4, 4, true},
+                                          {6, 4, false},
+                                          {2, 5, true},
+                                          {4, 5, false},
+                                          {1, 6, true},
+                                          {4, 6, false},
+                                          {2, 1, false}}) {
+    INFO(count << " of mode " << mode);
+    const Assembly a = read_assembly(with(std::string("\0\2\1\0\1\3", 6), 5121, static_cast<std::size_t>(count), mode));
+    CHECK(has_note(a, "the last corners of 1 list of triangles") == told);
+    CHECK(a.notes.size() == (told ? 1 : 0));
+  }
+}
+
+TEST_CASE("glTF: elements that overlap are refused", "[gltf]") {
+  const TempFolder folder;
+  GltfDoc doc;
+  doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
+  doc.j["bufferViews"][0]["byteStride"] = 12;
+  CHECK(read(doc.save(folder)).parts.size() == 1);
+  doc.j["bufferViews"][0]["byteStride"] = 8;
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("the elements of accessor 0 overlap"));
 }
 
 TEST_CASE("glTF: the bytes say what a file is; numbers like 8.0 are whole", "[gltf]") {
@@ -224,6 +379,51 @@ TEST_CASE("glTF: positions of integers mean what they stand for (KHR_mesh_quanti
   check(std::int16_t{32767}, 5122, true, 1);
   check(std::uint16_t{50000}, 5123, false, 2e-5);
   check(std::uint16_t{65535}, 5123, true, 1);
+}
+
+TEST_CASE("glTF: the lowest of the normalized signed integers stands for -1, as the one above it", "[gltf]") {
+  const auto check = [](auto lowest, int type) {
+    using T = decltype(lowest);
+    INFO(type);
+    GltfDoc doc;
+    doc.uses("KHR_mesh_quantization");
+    const T highest = std::numeric_limits<T>::max();
+    const auto add = [&](const std::vector<T>& rows) {
+      const std::size_t accessor = doc.accessor(GltfDoc::bytes_of(rows), type, "VEC3", 4);
+      doc.j["bufferViews"].back()["byteStride"] = 4 * sizeof(T);
+      doc.j["accessors"][accessor]["normalized"] = true;
+      return accessor;
+    };
+    std::vector<T> rows;
+    for (int corner = -1; corner < 3; ++corner)
+      for (int k = 0; k < 4; ++k) rows.push_back(k == corner ? highest : lowest);
+    const std::size_t position = add(rows), shift = add(std::vector<T>(16, lowest));
+    Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", doc.faces()}};
+    doc.node({{"mesh", doc.mesh(primitive)}});
+    primitive["targets"] = {{{"POSITION", shift}}};
+    doc.node({{"mesh", doc.mesh(primitive)}, {"weights", {1}}});
+    // A sparse accessor of nothing but zeros, and what it changes: the mesh's own positions.
+    doc.j["accessors"].push_back(doc.j["accessors"][position]);
+    Json& sparse = doc.j["accessors"].back();
+    const std::size_t all = doc.view(std::string({0, 1, 2, 3}));
+    std::vector<T> tight;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (i % 4 != 3) tight.push_back(rows[i]);
+    sparse["sparse"] = {{"count", 4},
+                        {"indices", {{"bufferView", all}, {"componentType", 5121}}},
+                        {"values", {{"bufferView", doc.view(GltfDoc::bytes_of(tight))}}}};
+    sparse.erase("bufferView");
+    primitive.erase("targets");
+    primitive["attributes"]["POSITION"] = doc.j["accessors"].size() - 1;
+    doc.node({{"mesh", doc.mesh(primitive)}});
+    const TempFolder folder;
+    const Assembly a = read(doc.save(folder));
+    REQUIRE(a.parts.size() == 3);
+    for (const std::size_t plain : {0u, 2u}) check_near(box_of(a, plain), -Vec3::Ones(), Vec3::Ones());
+    check_near(box_of(a, 1), Vec3::Constant(-2), Vec3::Zero());
+  };
+  check(std::int8_t{-128}, 5120);
+  check(std::int16_t{-32768}, 5122);
 }
 
 TEST_CASE("glTF: sparse accessors", "[gltf]") {
@@ -309,6 +509,11 @@ TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", 
   check_near(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
   doc.j["skins"][0]["joints"] = {near};
   CHECK_THAT(refused(doc.save(folder)), Catch::Contains("a vertex names a joint"));
+  doc.j["skins"][0] = {{"joints", {near, far}},
+                       {"inverseBindMatrices", doc.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  //
+                                                           1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                                          "MAT4", 16)}};
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("an inverse bind matrix is no place"));
 }
 
 TEST_CASE("glTF: weights of a skin count as shares of their sum, and are told when that is not one", "[gltf]") {
@@ -421,8 +626,8 @@ TEST_CASE("glTF: integers compressed by Draco stand for what their accessor says
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(4);
   const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_INT16);
-  const std::int16_t c[4][3] = {{0, 0, 0}, {32767, 0, 0}, {0, 32767, 0}, {0, 0, 32767}};
-  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const std::int16_t c[4][3] = {{0, 0, 0}, {32767, 0, 0}, {0, 32767, 0}, {0, 0, -32768}};  // normalized: -1 too
+  const int faces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
   for (int f = 0; f < 4; ++f)
     builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(f)), c[faces[f][0]],
                                       c[faces[f][1]], c[faces[f][2]]);
@@ -443,7 +648,7 @@ TEST_CASE("glTF: integers compressed by Draco stand for what their accessor says
                                  {"indices", 1},
                                  {"extensions", {{"KHR_draco_mesh_compression", stream}}}})},
               {"scale", {size, size, size}}});
-    check_near(box_of(read(doc.save(folder)), 0), Vec3::Zero(), Vec3::Ones());
+    check_near(box_of(read(doc.save(folder)), 0), {0, 0, normalized ? -1 : -32768.0 / 32767}, {1, 1, 0});
   }
 }
 
@@ -508,6 +713,71 @@ TEST_CASE("glTF: meshoptimizer (EXT_meshopt_compression)", "[gltf]") {
     damaged.j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;
     CHECK_THAT(refused(damaged.save(folder)), Catch::Contains("no sizes that EXT_meshopt_compression allows"));
   }
+}
+
+TEST_CASE("glTF: what meshoptimizer filters: directions and rotations", "[gltf]") {
+  const auto add = [](GltfDoc& doc, const void* data, std::size_t count, std::size_t stride, const char* filter,
+                      const char* shape, int type) {
+    std::string stream(meshopt_encodeVertexBufferBound(count, stride), '\0');
+    stream.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(stream.data()), stream.size(), data,
+                                             count, stride));
+    const std::size_t accessor = doc.accessor(stream, type, shape, count);
+    doc.j["accessors"][accessor]["normalized"] = true;
+    Json& view = doc.j["bufferViews"].back();
+    const Json from = {{"buffer", 0},
+                       {"byteOffset", view["byteOffset"]},
+                       {"byteLength", stream.size()},
+                       {"byteStride", stride},
+                       {"count", count},
+                       {"mode", "ATTRIBUTES"},
+                       {"filter", filter}};
+    view = {{"buffer", 1},
+            {"byteOffset", 0},
+            {"byteLength", count * stride},
+            {"byteStride", stride},
+            {"extensions", {{"EXT_meshopt_compression", from}}}};
+    return accessor;
+  };
+  const auto begun = [] {
+    GltfDoc doc;
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"})
+      doc.uses(extension);
+    doc.j["buffers"] =
+        Json::array({{{"byteLength", 96}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
+    return doc;
+  };
+  const TempFolder folder;
+  // A regular tetrahedron, its corners on the unit sphere; the filter keeps directions in bytes or in shorts.
+  const float s = std::sqrt(1.0f / 3);
+  const std::vector<float> corners = {s, s, s, 0, s, -s, -s, 0, -s, s, -s, 0, -s, -s, s, 0};
+  for (const auto& [stride, within] : {std::pair(4, 0.02), {8, 2e-4}}) {
+    INFO(stride);
+    const auto bytes = static_cast<std::size_t>(stride);
+    std::string packed(4 * bytes, '\0');
+    meshopt_encodeFilterOct(packed.data(), 4, bytes, stride == 4 ? 8 : 16, corners.data());
+    GltfDoc doc = begun();
+    const std::size_t position = add(doc, packed.data(), 4, bytes, "OCTAHEDRAL", "VEC3", stride == 4 ? 5120 : 5122);
+    const std::size_t faces = doc.accessor(std::string({0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2}), 5121, "SCALAR", 12);
+    doc.node({{"mesh", doc.mesh({{"attributes", {{"POSITION", position}}}, {"indices", faces}})}});
+    const Assembly a = read(doc.save(folder));
+    CHECK(volume(*a.shapes[0]) == Approx(8 * std::sqrt(3.0) / 27).epsilon(within));
+    check_box(box_of(a, 0), Vec3::Constant(-s), Vec3::Constant(s), 2 * within);
+  }
+  // Turns of nothing, a quarter about z, and a half about x.
+  const float r = std::sqrt(0.5f);
+  const std::vector<float> turns = {0, 0, 0, 1, 0, 0, r, r, 1, 0, 0, 0};
+  std::string packed(24, '\0');
+  meshopt_encodeFilterQuat(packed.data(), 3, 8, 16, turns.data());
+  GltfDoc doc = begun();
+  const Json places = {{"TRANSLATION", doc.floats({0, 0, 0, 5, 0, 0, 0, 0, 7}, "VEC3", 3)},
+                       {"ROTATION", add(doc, packed.data(), 3, 8, "QUATERNION", "VEC4", 5122)}};
+  doc.node(
+      {{"mesh", doc.mesh(doc.tetrahedron())}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", places}}}}}});
+  const Assembly a = read(doc.save(folder));
+  REQUIRE(a.parts.size() == 3);
+  check_box(box_of(a, 0), Vec3::Zero(), Vec3::Ones(), 1e-3);
+  check_box(box_of(a, 1), {4, 0, 0}, {5, 1, 1}, 1e-3);
+  check_box(box_of(a, 2), {0, -1, 6}, {1, 0, 7}, 1e-3);
 }
 
 TEST_CASE("glTF: another unit scales meshes and places; names that a program made up give way to the mesh's",

@@ -290,6 +290,45 @@ TEST_CASE("shells that look the wrong way are counted", "[topology]") {
   REQUIRE(shells({false, true, false, true}) == 1);
 }
 
+TEST_CASE("of a mesh that is not closed, its closed shells are judged", "[topology]") {
+  // Boxes of these sizes and places, some inside out, some without a face.
+  struct Shell {
+    double size;
+    Vec3 at;
+    bool turned, open;
+  };
+  const auto inverted = [](const std::vector<Shell>& shells) {
+    TriangleMesh all;
+    bool closed = true;
+    for (const Shell& shell : shells) {
+      const auto base = static_cast<std::uint32_t>(all.vertices.size());
+      TriangleMesh box = shapes::moved(shapes::box(Vec3::Constant(shell.size)), shell.at);
+      if (shell.open) box.triangles.pop_back();
+      closed = closed && !shell.open;
+      all.vertices.insert(all.vertices.end(), box.vertices.begin(), box.vertices.end());
+      for (auto t : box.triangles) {
+        if (shell.turned) std::swap(t[1], t[2]);
+        all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+      }
+    }
+    const MeshReport r = report(all);
+    REQUIRE(r.closed == closed);
+    REQUIRE(r.components == shells.size());
+    return r.inverted_shells;
+  };
+  const Vec3 here = Vec3::Zero(), beside(20, 0, 0), farther(40, 0, 0);
+  REQUIRE(inverted({{1, here, false, false}, {1, beside, false, true}}) == 0);
+  REQUIRE(inverted({{1, here, true, false}, {1, beside, false, true}}) == 1);
+  REQUIRE(inverted({{1, here, true, false}, {1, beside, true, true}}) == 1);  // an open one has no outside
+  REQUIRE(inverted({{1, here, true, false}, {1, beside, true, false}, {1, farther, false, true}}) == 2);
+  // A wall with its cavity, and an open shell elsewhere.
+  REQUIRE(inverted({{4, here, false, false}, {2, here, true, false}, {1, beside, false, true}}) == 0);
+  REQUIRE(inverted({{4, here, false, false}, {2, here, false, false}, {1, beside, false, true}}) == 1);
+  // What an open shell surrounds may be its cavity, or a part in a box without a lid.
+  REQUIRE(inverted({{4, here, false, true}, {2, here, true, false}}) == 0);
+  REQUIRE(inverted({{4, here, false, true}, {2, here, false, false}}) == 0);
+}
+
 TEST_CASE("a vertex where two flat sheets touch is not flat", "[topology]") {
   // Two fans around vertex 0, in the planes z = 0 and x = 0.
   TriangleMesh mesh;

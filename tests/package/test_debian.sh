@@ -25,7 +25,7 @@ dpkg-deb -f "$work"/libtegotae-dev_*.deb Depends | grep -q zlib1g-dev || fail "l
 
 bin=$work/unpacked/usr/bin
 "$bin/tegotae" --version | grep -qE '^tegotae [0-9]+[.][0-9]+[.][0-9]+$' || fail "tegotae --version"
-"$bin/tegotae" check --isolated "$root/models/peg_0.94.obj" | grep -q closed || fail "tegotae check --isolated"
+"$bin/tegotae" check "$root/models/peg_0.94.obj" | grep -q closed || fail "tegotae check"
 quiet=$work/log
 cmake -S "$root/apps/examples" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/unpacked/usr" >"$quiet" 2>&1 &&
   cmake --build "$work/build" --target meshes_from_memory >>"$quiet" 2>&1 || { cat "$quiet"; fail "the example"; }

@@ -17,7 +17,8 @@ struct MeshReport {
   /// Collapsed, or with a height below 8 steps of single precision (their normals are not used).
   std::size_t degenerate_faces = 0;
   std::size_t duplicate_faces = 0;  ///< the same three vertices as an earlier face, in any order; none collapsed
-  /// Closed meshes: components whose faces point inward where they should point outward, or the reverse.
+  /// Closed components whose faces point inward where they should point outward, or the reverse. What an open component
+  /// surrounds is not judged.
   std::size_t inverted_shells = 0;
   bool closed = false;          ///< every edge joins exactly two faces with the same orientation
   Vec3 box_min = Vec3::Zero();  ///< m, file frame
