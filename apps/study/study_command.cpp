@@ -9,7 +9,6 @@
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
 #include "shared/run_options.hpp"
-#include "shared/status_line.hpp"
 #include "study/driver.hpp"
 #include "study/merge.hpp"
 #include "study/outcome.hpp"

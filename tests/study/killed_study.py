@@ -176,7 +176,7 @@ def run_clients(o, folder, study, chance):
     env = dict(drivers.environment(), HYPERSHELL_DATABASE_FILE=folder + "/tasks.db", HYPERSHELL_SERVER_EVICT="20",
                HYPERSHELL_CLIENT_HEARTRATE="1")
     # `hs cluster` waits ten minutes for a client that says nothing, a server by itself as long as it is told.
-    common = ["-p", str(port), "-k", "study"]
+    common = ["-p", str(port), "-k", "the-key-of-this-test"]
     hs = drivers.program("hs")
     process = subprocess.Popen([hs, "server", folder + "/tasks", "-r", "9", "-w", "1", "-Q", "1"] + common, env=env,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
