@@ -221,7 +221,8 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
 std::string assembly_force_csv(const AssemblyForce& force) {
   std::string text =
       "depth_mm,insertion_n,insertion_peak_n,friction_n,seating_n,pull_out_n,pull_out_peak_n,low_n,high_n\n";
-  const auto number = [](double x) { return std::isfinite(x) ? apps::format("%.6g", x) : std::string(); };
+  // Plus zero, so that there is no "-0".
+  const auto number = [](double x) { return std::isfinite(x) ? apps::format("%.6g", x + 0.0) : std::string(); };
   for (const DepthForce& d : force.over_depth) {
     text += number(1e3 * d.depth);
     for (const double x :

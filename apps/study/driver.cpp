@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 
 // How often a shard is begun again whose process was killed.
 const char* const kRetries = "9";
+// What is asked to end has this long, s.
+constexpr double kPatience = 10;
 
 /// The first of `names` on PATH; empty: none.
 std::string on_path(std::initializer_list<const char*> names) {
@@ -109,6 +112,14 @@ int wait_for(pid_t child, const std::atomic<bool>& interrupted) {
   }
 }
 
+/// Waits until what the driver started has ended too, after Ctrl-C.
+void wait_for_group(pid_t group) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  while (::kill(-group, 0) == 0 && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ::kill(-group, SIGKILL);
+}
+
 }  // namespace
 
 std::string find_driver(const std::string& study) {
@@ -120,7 +131,7 @@ std::string find_driver(const std::string& study) {
       study + "` makes all cases in one process, and with --shard I/N a part of them");
 }
 
-void drive(const std::string& driver, const DriverJob& job) {
+bool drive(const std::string& driver, const DriverJob& job) {
   const fs::path folder = fs::path(job.out) / "driver";
   std::error_code failed;
   fs::remove_all(folder, failed);  // of an earlier call; what is done is in the shards
@@ -133,12 +144,19 @@ void drive(const std::string& driver, const DriverJob& job) {
   const std::vector<std::string> command = {
       driver, "cluster", tasks, "-N", std::to_string(processors), "-p", std::to_string(free_port()), "-r", kRetries,
       "-w",   "1",       "-Q",  "1"};
-  const int status = wait_for(start(command, log), apps::catch_interrupts());
+  const std::atomic<bool>& interrupted = apps::catch_interrupts();
+  const pid_t child = start(command, log);
+  const int status = wait_for(child, interrupted);
+  if (interrupted) {
+    wait_for_group(child);
+    return false;
+  }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw Error(driver + " failed (" +
                 (WIFEXITED(status) ? "exit code " + std::to_string(WEXITSTATUS(status))
                                    : "signal " + std::to_string(WTERMSIG(status))) +
                 "); what it says is in " + log + ". What is finished is kept");
+  return true;
 }
 
 }  // namespace tegotae::study

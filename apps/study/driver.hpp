@@ -19,7 +19,8 @@ struct DriverJob {
 std::string find_driver(const std::string& study);
 
 /// Has HyperShell run `tegotae study` on the shards, a process each; a shard whose process ends otherwise than it
-/// should is begun again. Returns when all have ended. Throws Error when HyperShell cannot be started or fails.
-void drive(const std::string& driver, const DriverJob& job);
+/// should is begun again. Returns when all have ended; false when Ctrl-C ended them. Throws Error when HyperShell
+/// cannot be started or fails.
+bool drive(const std::string& driver, const DriverJob& job);
 
 }  // namespace tegotae::study

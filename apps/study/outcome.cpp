@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "shared/format.hpp"
 
@@ -58,6 +59,29 @@ const Result* best_case(const std::vector<Result>& results) {
   };
   const auto best = std::min_element(results.begin(), results.end(), better);
   return best == results.end() ? nullptr : &*best;
+}
+
+bool began(const Result& r) {
+  // What did not begin has the clearance of a result that nobody filled in.
+  return r.reached || r.intersecting > 0 || r.clearance > 0;
+}
+
+std::vector<int> worth_seeing(const std::vector<Result>& results, std::size_t n) {
+  std::vector<const Result*> first = {best_case(results)}, later;
+  const auto weaker = [](const Result& a, const Result& b) { return a.force < b.force; };
+  const auto most = std::max_element(results.begin(), results.end(), weaker);
+  if (most != results.end()) first.push_back(&*most);
+  std::set<std::string> blocked;
+  for (const Result& r : results)
+    if (!r.reached) (blocked.insert(r.blocked_by).second ? first : later).push_back(&r);
+  first.insert(first.end(), later.begin(), later.end());
+  std::vector<int> out;
+  for (const Result* r : first) {
+    if (out.size() == n) break;
+    if (r != nullptr && began(*r) && std::find(out.begin(), out.end(), r->number) == out.end())
+      out.push_back(r->number);
+  }
+  return out;
 }
 
 std::string headline(const std::vector<Result>& results, const char* word) {

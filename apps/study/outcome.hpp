@@ -32,6 +32,13 @@ std::map<std::string, std::size_t> failures(const std::vector<Result>& results);
 /// The successful case that took the shortest time; without one the case that came farthest. Null when there is none.
 const Result* best_case(const std::vector<Result>& results);
 
+/// Whether it could begin: a drawn size may leave no clearance at the start. One that could not has no recording.
+bool began(const Result& result);
+
+/// The numbers of at most `n` cases that began, to be looked at first: the best, the one with the largest force, of
+/// each part that blocked some the first, then others that failed.
+std::vector<int> worth_seeing(const std::vector<Result>& results, std::size_t n);
+
 /// How many reached the goal, what that speaks for, and in what time; `word`: "tries" or "cases".
 std::string headline(const std::vector<Result>& results, const char* word);
 /// The same with who was in the way, in a few lines for a person.

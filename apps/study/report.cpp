@@ -23,6 +23,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxRows = 10000;  // of a page that is to open; the table has all
 constexpr double kDegrees = 57.29577951;
 
+/// The path of `file` from `folder`.
+std::string from_folder(const std::string& folder, const std::string& file) {
+  namespace fs = std::filesystem;
+  return fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal()).string();
+}
+
 /// Counts by a text of each case, in the order of the texts.
 std::map<std::string, Count> counted(const std::vector<Result>& results,
                                      const std::function<std::string(const Result&)>& key) {
@@ -40,6 +46,8 @@ struct Source {
   const Study& study;
   Tasks& tasks;
   const std::vector<Result>& results;
+  const std::vector<int>& replays;
+  std::string file;  // the study's, from the report's folder: the same however the command spelled either
 
   bool tries() const { return study.path.empty(); }
   const char* word() const { return word_for(study); }
@@ -85,7 +93,7 @@ Json what(const Source& s) {
     j["held"] = held_part(task.file.scene).name;
     j["goal"] = pose(task.routes.front().goal);
   } else {
-    j["study"] = s.study.path;
+    j["study"] = s.file;
     j["task"] = s.tasks.fingerprint();
   }
   j["seed"] = s.study.seed;
@@ -153,8 +161,9 @@ Json measures_table(const Source& s) {
 
 Json case_row(const Source& s, const Result& r) {
   const std::string number = std::to_string(r.number);
+  const bool shown = !s.tries() && began(r);
   Json row = Json::array();
-  row.push_back(s.tries() ? Json(number) : Json({{"text", number}, {"href", replay_page(r.number)}}));
+  row.push_back(shown ? Json({{"text", number}, {"href", replay_page(r.number)}}) : Json(number));
   for (const std::string& parameter : r.parameters) row.push_back(parameter);
   for (const Json& cell :
        {Json(r.who), Json(r.route), Json(format("%.2f", 1e3 * r.offset)), Json(format("%.1f", r.tilt * kDegrees)),
@@ -162,7 +171,10 @@ Json case_row(const Source& s, const Result& r) {
         Json(format("%.2f", r.time)), Json(fixed_text(1e3 * r.depth, 2)), Json(format("%.2f", r.force)),
         Json(review::length_text(r.clearance)), Json(format("%.2f", r.stuck)), Json(r.reached ? "–" : r.why)})
     row.push_back(cell);
-  if (!s.tries()) row.push_back("tegotae study case " + s.study.path + " " + number);
+  if (shown)
+    row.push_back({{"command", {"tegotae", "study", "case", s.file, number, "--out", "."}}, {"files", {3, 6}}});
+  else if (!s.tries())
+    row.push_back("–");
   return row;
 }
 
@@ -218,6 +230,19 @@ Json plots(const Source& s) {
   return out;
 }
 
+/// Over the table of cases.
+std::string cases_text(const Source& s) {
+  std::string text = s.results.size() > kMaxRows ? format("The first %zu; cases.csv has all. ", kMaxRows) : "";
+  if (s.tries()) return text;
+  std::string list;
+  for (const int number : s.replays) list += (list.empty() ? "" : ", ") + std::to_string(number);
+  if (!list.empty()) text += "The replays of " + list + " are there. ";
+  return text +
+         "The link of a case leads to its replay once the command in its last column was run, in this report's "
+         "folder where it names no other: it makes the case again and records it, for tegotae replay and "
+         "review too.";
+}
+
 Json report(const Source& s) {
   Json tables = Json::array();
   for (const Axis& axis : s.study.axes)
@@ -226,27 +251,23 @@ Json report(const Source& s) {
   tables.push_back(group_table(s, "operator", s.by_operator()));
   tables.push_back(group_table(s, "route", s.by_route()));
   if (!failures(s.results).empty()) tables.push_back(failure_table(s));
-  const std::string more =
-      s.results.size() > kMaxRows ? format("The first %zu; cases.csv has all.", kMaxRows) : std::string();
   const std::string name = std::filesystem::path(s.tries() ? s.study.scenes.front() : s.study.path).filename().string();
-  return {
-      {"title",
-       s.tries() ? "Tries with " + held_part(s.tasks.file(make_case(s.study, 0)).scene).name : "Study " + name},
-      {"subtitle", name + format(", seed %llu, %s s each", static_cast<unsigned long long>(s.study.seed),
-                                 number_text(s.study.seconds, 6).c_str())},
-      {"intro", headline(s.results, s.word()) +
-                    "\nEach one is a modeled operator at a simulated pen, led astray and tilted at random; what is "
-                    "in the way when the time is over is who was touched most in the last half second. " +
-                    (s.tries() ? "The best try is in best.csv, for tegotae review."
-                               : "The number of a case is a link to its replay. The command in its last column makes "
-                                 "that: it makes the case again and records it, for tegotae replay and review too.")},
-      {"sections",
-       {{{"title", "Success"},
-         {"text", "With the interval that holds the true share with 95 % (Wilson)."},
-         {"plots", plots(s)},
-         {"tables", tables}},
-        {{"title", "Forces and clearances"}, {"text", ""}, {"tables", {measures_table(s)}}},
-        {{"title", s.tries() ? "Tries" : "Cases"}, {"text", more}, {"tables", {cases_table(s)}}}}}};
+  return {{"title",
+           s.tries() ? "Tries with " + held_part(s.tasks.file(make_case(s.study, 0)).scene).name : "Study " + name},
+          {"subtitle", name + format(", seed %llu, %s s each", static_cast<unsigned long long>(s.study.seed),
+                                     number_text(s.study.seconds, 6).c_str())},
+          {"intro", headline(s.results, s.word()) +
+                        "\nEach one is a modeled operator at a simulated pen, led astray and tilted at random; what is "
+                        "in the way when the time is over is who was touched most in the last half second. " +
+                        (s.tries() ? "The best try is in best.csv, for tegotae review."
+                                   : "The number of a case is a link to its replay.")},
+          {"sections",
+           {{{"title", "Success"},
+             {"text", "With the interval that holds the true share with 95 % (Wilson)."},
+             {"plots", plots(s)},
+             {"tables", tables}},
+            {{"title", "Forces and clearances"}, {"text", ""}, {"tables", {measures_table(s)}}},
+            {{"title", s.tries() ? "Tries" : "Cases"}, {"text", cases_text(s)}, {"tables", {cases_table(s)}}}}}};
 }
 
 }  // namespace
@@ -263,8 +284,10 @@ std::string replay_page(int number) {
   return case_folder(number) + "/replay.html";
 }
 
-void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::string& folder) {
-  const Source source{study, tasks, results};
+void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::vector<int>& replays,
+                  const std::string& folder) {
+  const std::string file = study.path.empty() ? "" : from_folder(folder, study.path);
+  const Source source{study, tasks, results, replays, file};
   // Names come from files and may not be UTF-8.
   write_file(folder + "/summary.json", summary(source).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   write_file(folder + "/report.html", apps::report_page(report(source)));

@@ -14,7 +14,9 @@ const char* word_for(const Study& study);
 std::string case_folder(int number);
 std::string replay_page(int number);
 
-/// Writes summary.json and report.html into `folder`. `results` in the order of their numbers. Throws Error.
-void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::string& folder);
+/// Writes summary.json and report.html into `folder`. `results` in the order of their numbers; `replays`: of these the
+/// pages are there. Throws Error.
+void write_report(const Study& study, Tasks& tasks, const std::vector<Result>& results, const std::vector<int>& replays,
+                  const std::string& folder);
 
 }  // namespace tegotae::study

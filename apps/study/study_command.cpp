@@ -9,16 +9,14 @@
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
 #include "shared/run_options.hpp"
-#include "shared/status_line.hpp"
-#include "study/case_scene.hpp"
 #include "study/driver.hpp"
 #include "study/merge.hpp"
 #include "study/outcome.hpp"
+#include "study/replay_case.hpp"
 #include "study/report.hpp"
 #include "study/shard.hpp"
 #include "study/study_file.hpp"
 #include "tegotae/core/error.hpp"
-#include "view/replay.hpp"
 
 namespace tegotae::study {
 namespace {
@@ -37,6 +35,7 @@ struct Opened {
   std::unique_ptr<Tasks> tasks;
   std::string out;
   TableLayout layout;
+  MeshLoader load;
 };
 
 std::string default_out(const std::string& study) {
@@ -46,9 +45,15 @@ std::string default_out(const std::string& study) {
 
 void open(const StudyOptions& o, Opened& s) {
   s.study = read_study(o.study);
-  s.tasks = load_tasks(s.study, o.load);
+  s.load = o.load;
+  s.tasks = load_tasks(s.study, s.load);
   s.out = o.out.empty() ? default_out(o.study) : o.out;
   s.layout = layout_of(s.study, *s.tasks);
+}
+
+int say_interrupted() {
+  std::cout << "interrupted; the same command continues from here" << std::endl;
+  return apps::kRunFailed;
 }
 
 int run_shard(const StudyOptions& o) {
@@ -61,10 +66,7 @@ int run_shard(const StudyOptions& o) {
   const std::vector<int> numbers = numbers_of(shard, case_count(s.study));
   const std::atomic<bool>& interrupted = apps::catch_interrupts();
   run_missing(s.study, *s.tasks, numbers, o.jobs, table, interrupted);
-  if (interrupted) {
-    std::cout << "interrupted; the same command continues from here" << std::endl;
-    return apps::kRunFailed;
-  }
+  if (interrupted) return say_interrupted();
   std::vector<Result> results;
   for (const int i : numbers) results.push_back(table.rows().at(i));
   std::cout << "shard " << o.shard << ": " << headline(results, "cases") << std::endl;
@@ -79,7 +81,19 @@ std::vector<int> missing(const std::map<int, Result>& rows, int cases) {
   return out;
 }
 
-int merge(const Opened& s) {
+/// Makes the replays of the cases that are to be looked at first. Of which they are there; fewer when interrupted.
+std::vector<int> make_replays(const Opened& s, const std::vector<Result>& results, int most,
+                              const std::atomic<bool>& interrupted) {
+  std::vector<int> made;
+  for (const int number : worth_seeing(results, static_cast<std::size_t>(most))) {
+    if (!replay_case(s.study, *s.tasks, number, s.out + "/" + case_folder(number), s.load, interrupted)) break;
+    made.push_back(number);
+  }
+  std::sort(made.begin(), made.end());
+  return made;
+}
+
+int merge(const Opened& s, int replays) {
   const int cases = case_count(s.study);
   std::map<int, Result> rows = read_shards(s.out, s.layout);
   const std::vector<int> left = missing(rows, cases);
@@ -98,9 +112,13 @@ int merge(const Opened& s) {
   std::vector<Result> results;
   for (const auto& [number, r] : rows) results.push_back(r);
   replace_file(outputs.front(), table_text(s.layout, rows));
-  write_report(s.study, *s.tasks, results, s.out);
-  std::cout << summary_text(results, "cases") << "table: " << outputs[0] << "\nreport: " << outputs[2] << std::endl;
-  return apps::kDone;
+  const std::atomic<bool>& interrupted = apps::catch_interrupts();
+  const std::vector<int> made = make_replays(s, results, replays, interrupted);
+  write_report(s.study, *s.tasks, results, made, s.out);
+  std::cout << summary_text(results, "cases") << "table: " << outputs[0] << "\nreport: " << outputs[2] << "\n";
+  for (const int number : made) std::cout << "replay: " << s.out << "/" << replay_page(number) << "\n";
+  std::cout << std::flush;
+  return interrupted ? say_interrupted() : apps::kDone;
 }
 
 int run_all(const StudyOptions& o) {
@@ -116,45 +134,20 @@ int run_all(const StudyOptions& o) {
   for (const int i : missing(rows, cases)) needed[static_cast<std::size_t>(i % shards)] = true;
   for (int i = 0; i < shards; ++i)
     if (needed[static_cast<std::size_t>(i)]) job.shards.push_back({i, shards});
-  if (!job.shards.empty()) drive(driver, job);
-  return merge(s);
+  if (!job.shards.empty() && !drive(driver, job)) return say_interrupted();
+  return merge(s, o.replays);
 }
 
-/// Makes a case again, with its recordings and the page that replays the last of them in `folder`.
-int run_one(const Opened& s, int number, const std::string& folder, const MeshLoader& load) {
-  const Case c = make_case(s.study, number);
-  const std::size_t tasks = s.tasks->of(c).size();
-  std::vector<std::string> recordings;
-  const RecordTo record_to = [&](SceneFile& file, std::size_t task) {
-    const std::string to = tasks == 1 ? folder : folder + "/step-" + std::to_string(task + 1);
-    file.path = write_case_scene(file, c, to);
-    recordings.push_back(to + "/recording.mcap");
-    return recordings.back();
-  };
-  std::optional<Result> result;
-  {
-    apps::StatusLine status;
-    status.say(format("running case %d", number));
-    result = run_case(s.study, *s.tasks, c, apps::catch_interrupts(), record_to);
-  }
-  if (!result) {
-    std::cout << "interrupted" << std::endl;
-    return apps::kRunFailed;
-  }
-  std::cout << "case " << number << ": " << (result->reached ? "reached the goal" : "FAILED: " + result->why)
-            << format(", %.2f s, at most %.2f N\n", result->time, result->force);
-  for (const std::string& recording : recordings)
+/// Makes a case again into `folder` and says where what is.
+int run_one(const Opened& s, int number, const std::string& folder) {
+  const std::optional<Replay> made = replay_case(s.study, *s.tasks, number, folder, s.load, apps::catch_interrupts());
+  if (!made) return say_interrupted();
+  const Result& r = made->result;
+  std::cout << "case " << number << ": " << (r.reached ? "reached the goal" : "FAILED: " + r.why)
+            << format(", %.2f s, at most %.2f N\n", r.time, r.force);
+  for (const std::string& recording : made->recordings)
     std::cout << "tegotae replay " << recording << "\ntegotae review " << recording << "\n";
-  const std::string page = folder + "/" + fs::path(replay_page(number)).filename().string();
-  {
-    apps::StatusLine status;
-    view::write_replay(
-        view::replay_bundle(
-            recordings.back(), {}, page, view::kMaxFrames,
-            [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); }, load),
-        page);
-  }
-  std::cout << "replay: " << page << std::endl;
+  std::cout << "replay: " << made->page << std::endl;
   return apps::kDone;
 }
 
@@ -166,7 +159,7 @@ int run_cases(const StudyOptions& o) {
       throw Error(o.study + format(": has no case %d; its cases are 0 to %d", number, case_count(s.study) - 1));
   if (!o.to.empty() && o.numbers.size() > 1) throw Error("study case: --to is the folder of one case");
   for (const int number : o.numbers) {
-    const int code = run_one(s, number, o.to.empty() ? s.out + "/" + case_folder(number) : o.to, o.load);
+    const int code = run_one(s, number, o.to.empty() ? s.out + "/" + case_folder(number) : o.to);
     if (code != apps::kDone) return code;
   }
   return apps::kDone;
@@ -207,6 +200,11 @@ CLI::App* add_study(CLI::App& app, StudyOptions& o) {
       ->check(CLI::NonNegativeNumber);
   o.one->add_option("--to", o.to, "Folder for scene, recording and replay")->type_name("DIR");
   for (CLI::App* part : {o.run, o.merge, o.one}) add_out(*part, o);
+  for (CLI::App* part : {o.run, o.merge})
+    part->add_option("--replays", o.replays, "Cases whose replay is made at once: the best, the worst, failed ones")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str()
+        ->type_name("N");
   return o.self;
 }
 
@@ -215,7 +213,7 @@ int run_study(const StudyOptions& o) {
   if (o.merge->parsed()) {
     Opened s;
     open(o, s);
-    return merge(s);
+    return merge(s, o.replays);
   }
   if (o.one->parsed()) return run_cases(o);
   if (o.study.empty()) throw Error("study: name a study file (see --help)");

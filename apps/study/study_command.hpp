@@ -15,6 +15,7 @@ struct StudyOptions {
   int jobs = 0;              ///< of a shard
   int shards = 0;            ///< of `run`; 0: fits study and processors
   int processors = 0;        ///< of `run`; 0: all
+  int replays = 5;           ///< of `merge` and `run`: how many cases get their page at once
   std::vector<int> numbers;  ///< of `case`
   std::string to;            ///< of `case`: folder of one; empty: in `out`
   MeshLoader load;           ///< reads the meshes

@@ -71,7 +71,7 @@ int run_tries(const TryOptions& o) {
   std::vector<Result> results;
   for (const auto& [number, r] : table.rows())
     if (number < o.tries) results.push_back(r);
-  write_report(study, *tasks, results, o.out);
+  write_report(study, *tasks, results, {}, o.out);
   std::cout << summary_text(results, word_for(study));
   const std::string recording = o.out + "/best.csv";
   const Result* best = best_case(results);

@@ -7,8 +7,9 @@ namespace tegotae::apps {
 
 /// The self-contained report page with `report` in it: {title, subtitle?, intro?, claims?: [{name, value, target, unit,
 /// holds}], sections: [{title, text?, plots?, graph?, tables?}]}; plots as in web/src/common/plot.js, graph {nodes:
-/// [{text, layer}], arrows: [[from, to]]}, tables {caption?, head, rows, text?}, whose cells are texts, numbers or
-/// {text, class?, href?} and `text` the places of the columns of words. Numbers that are not finite come out as gaps.
+/// [{text, layer}], arrows: [[from, to]]}, tables {caption?, head, rows, text?}, whose cells are texts, numbers, {text,
+/// class?, href?} or {command, files} as in web/src/common/command.js, and `text` the places of the columns of words.
+/// Numbers that are not finite come out as gaps.
 std::string report_page(const nlohmann::json& report);
 
 /// The review page with its data (a view::Bundle's bytes) inside, self-contained.

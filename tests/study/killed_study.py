@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """A study whose workers are killed at random has the bytes of the undisturbed one:
-killed_study.py TEGOTAE shards|hosts|hypershell --cases N --kills K [--seed S].
+killed_study.py TEGOTAE shards|hosts|hypershell|clients --cases N --kills K [--seed S].
 
 shards: two workers of the shard contract, each begun again when it is killed; two workers may even have the same shard.
 hosts: GNU parallel over three hosts, which are network namespaces of this machine where it allows them. A host dies with
-all that it runs. hypershell: `tegotae study run`, whose workers are killed."""
+all that it runs. hypershell: `tegotae study run`, which is interrupted once and whose workers are killed. clients:
+HyperShell's clients, as on four hosts, are killed in the middle of a task."""
 import argparse
+import csv
 import os
 import random
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -43,6 +46,10 @@ def undisturbed(tegotae, folder, cases):
     table = drivers.read(folder, "once", "cases.csv")
     if table.count(b"\n") != cases + 2:
         sys.exit("the undisturbed table has %d lines" % table.count(b"\n"))
+    ends = [row["reached"] for row in csv.DictReader(table.decode().splitlines()[1:])]
+    print("undisturbed: %d of %d cases reached the goal" % (ends.count("1"), cases), flush=True)
+    if set(ends) != {"0", "1"}:
+        sys.exit("the cases end all alike; give them another time or goal")
     return study, table, took
 
 
@@ -92,9 +99,11 @@ def run_shards(o, folder, study, chance):
             command = [o.tegotae, "study", study, "--out", folder + "/out", "--jobs", "1", "--shard", shard]
             running.append((shard, subprocess.Popen(command, stdout=subprocess.DEVNULL)))
         time.sleep(o.wait * 2 * chance.random())
-        if kills < o.kills:
-            if kill([chance.choice(running)[1].pid]):
-                kills += 1
+        alive = [one[1] for one in running if one[1].poll() is None]
+        if kills < o.kills and alive:
+            victim = chance.choice(alive)
+            victim.kill()
+            kills += victim.wait() == -KILL
         for one in list(running):
             code = one[1].poll()
             if code is None:
@@ -114,22 +123,76 @@ def watch(process, o, victims, chance, what):
         if time.time() > end:
             kill([process.pid])
             sys.exit(what + " does not end")
+        if kills == o.kills:
+            time.sleep(0.05)
+            continue
         time.sleep(o.wait * 2 * chance.random())
-        found = victims()
-        if kills < o.kills and found and kill(chance.choice(found)):
-            kills += 1
+        while process.poll() is None and time.time() < end:
+            found = victims()
+            if found and kill(chance.choice(found)):
+                kills += 1
+                break
+            time.sleep(0.02)
     if process.returncode != 0:
         sys.exit("%s ended with %d\n%s" % (what, process.returncode, process.stdout.read()))
     return kills
+
+
+def interrupt(o, command):
+    """Ctrl-C while shards are worked on: nothing goes on, and the exit code is 1."""
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=drivers.environment())
+    found, end = [], time.time() + PATIENCE
+    while not found and process.poll() is None and time.time() < end:
+        time.sleep(0.05)
+        found = [pid for pid, args in children(process.pid) if "--shard" in args]
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=PATIENCE)[0]
+    if process.returncode != 1 or "interrupted; the same command continues" not in said:
+        sys.exit("Ctrl-C at %d workers: ended with %d: %s" % (len(found), process.returncode, said))
+    left = [args for pid, _, args in processes() if pid in found]  # a zombie has no arguments
+    if any(left):
+        sys.exit("after Ctrl-C goes on: " + "; ".join(left))
 
 
 def run_hypershell(o, folder, study, chance):
     if not drivers.program("hs"):
         drivers.skip("no HyperShell (pip install hypershell)")
     command = [o.tegotae, "study", "run", study, "--out", folder + "/out", "--processors", "2", "--shards", "24"]
+    interrupt(o, command)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=drivers.environment(), start_new_session=True)
     workers = lambda: [[pid] for pid, args in children(process.pid) if args.startswith(o.tegotae) and "--shard" in args]
     return watch(process, o, workers, chance, "tegotae study run")
+
+
+def run_clients(o, folder, study, chance):
+    """The last of four clients lives on."""
+    if not drivers.program("hs"):
+        drivers.skip("no HyperShell (pip install hypershell)")
+    with open(folder + "/tasks", "w", encoding="utf-8") as file:
+        file.writelines("%s study %s --out %s/out --jobs 1 --shard %d/24\n" % (o.tegotae, study, folder, i) for i in range(1, 25))
+    with socket.socket() as free:
+        free.bind(("localhost", 0))
+        port = free.getsockname()[1]
+    env = dict(drivers.environment(), HYPERSHELL_DATABASE_FILE=folder + "/tasks.db", HYPERSHELL_SERVER_EVICT="20",
+               HYPERSHELL_CLIENT_HEARTRATE="1")
+    # `hs cluster` waits ten minutes for a client that says nothing, a server by itself as long as it is told.
+    common = ["-p", str(port), "-k", "the-key-of-this-test"]
+    hs = drivers.program("hs")
+    process = subprocess.Popen([hs, "server", folder + "/tasks", "-r", "9", "-w", "1", "-Q", "1"] + common, env=env,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    clients = [subprocess.Popen([hs, "client", "-d", "5"] + common, env=env, stdout=subprocess.DEVNULL) for _ in range(4)]
+
+    def at_work():
+        """Each client that works on a shard now, with what it runs, where it is not the last one."""
+        alive = [client.pid for client in clients if client.poll() is None]
+        below = [[pid] + [child for child, _ in children(pid)] for pid in alive]
+        busy = [pids for pids in below if len(pids) > 1]
+        return busy if len(alive) > 1 else []
+
+    try:
+        return watch(process, o, at_work, chance, "hs server")
+    finally:
+        kill([client.pid for client in clients if client.poll() is None])
 
 
 def isolated():
@@ -143,9 +206,11 @@ def run_hosts(o, folder, study, chance):
         drivers.skip("no GNU parallel (apt-get install parallel)")
     names = ["one", "two", "three"]
     os.mkdir(folder + "/hosts")
+    isolate = isolated()
+    print("hosts: " + ("namespaces with a network of their own" if isolate else "NOT isolated: this machine allows no namespaces"), flush=True)
     ssh = folder + "/ssh"
     with open(ssh, "w", encoding="utf-8") as file:
-        file.write(HOST % {"folder": folder, "isolate": isolated()})
+        file.write(HOST % {"folder": folder, "isolate": isolate})
     os.chmod(ssh, 0o755)
     hosts = ",".join("1/" + name for name in names)
     command = ["parallel", "--will-cite", "--ssh", ssh, "-S", hosts, "--retries", "100",
@@ -177,13 +242,13 @@ def run_hosts(o, folder, study, chance):
 def main():
     parse = argparse.ArgumentParser()
     parse.add_argument("tegotae")
-    parse.add_argument("how", choices=["shards", "hosts", "hypershell"])
+    parse.add_argument("how", choices=["shards", "hosts", "hypershell", "clients"])
     parse.add_argument("--cases", type=int, required=True)
     parse.add_argument("--kills", type=int, required=True)
     parse.add_argument("--seed", type=int, default=1)
     o = parse.parse_args()
     chance = random.Random(o.seed)
-    ways = {"shards": run_shards, "hosts": run_hosts, "hypershell": run_hypershell}
+    ways = {"shards": run_shards, "hosts": run_hosts, "hypershell": run_hypershell, "clients": run_clients}
     with tempfile.TemporaryDirectory(prefix="tegotae_study_") as folder:
         study, table, took = undisturbed(o.tegotae, folder, o.cases)
         o.wait = 0.5 * took / max(1, o.kills)  # whatever the machine, the kills fall within the study
@@ -197,7 +262,7 @@ def main():
             sys.exit("the report is another one")
         left = [name for name in os.listdir(folder + "/out/shards") if not name.endswith(".csv")]
         print("%s: %d cases, %d kills, the same table after %.1f s; left over: %d" % (o.how, o.cases, kills, took, len(left)))
-        if kills < max(1, o.kills // 2):
+        if kills != o.kills:
             sys.exit("only %d of %d kills hit anything" % (kills, o.kills))
 
 

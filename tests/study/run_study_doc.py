@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Does what docs/study.md says: run_study_doc.py TEGOTAE. Its ```toml block is the study of the first ```sh block; each
-other ```sh block has a cheap study of that name. `ssh` and `sbatch` are stand-ins that run here what they are given. A block
-whose program is absent is left out, and named. All blocks end with the same table."""
+other ```sh block has a cheap study of that name. `ssh`, `sbatch` and `srun` are stand-ins that run here what they are
+given. A block whose program is absent is left out, and named. All folders of results end with the same table."""
 import os
 import re
 import subprocess
@@ -22,10 +22,25 @@ exec bash -c "$*"
 """,
     "sbatch": """#!/bin/bash
 script=${!#}
-last=$(sed -n 's/^#SBATCH --array=1-//p' "$script")
+value() { sed -n "s/^#SBATCH --$1=//p" "$script"; }
+last=$(value array)
+if [ -z "$last" ]; then
+  SLURM_NNODES=$(value nodes) SLURM_CPUS_PER_TASK=$(value cpus-per-task) exec sh "$script"
+fi
+last=${last#1-}
 for i in $(seq "$last"); do
   SLURM_ARRAY_TASK_ID=$i SLURM_ARRAY_TASK_COUNT=$last sh "$script" || exit
 done
+""",
+    # One task on each node of the allocation; ends with the worst of their exit codes.
+    "srun": """#!/bin/bash
+for i in $(seq "$SLURM_NNODES"); do
+  "$@" &
+  all+=($!)
+done
+code=0
+for one in "${all[@]}"; do wait "$one" || code=$?; done
+exit $code
 """,
 }
 
@@ -48,7 +63,7 @@ def main():
     if len(toml) != 1 or len(shell) < 5:
         sys.exit("blocks are missing")
     needs = {"study run ": "hs", "hs cluster": "hs", "parallel ": "parallel", "sbatch ": None}
-    tables, left_out = {}, []
+    tables, left_out, blocks_run = {}, [], set()
     with tempfile.TemporaryDirectory(prefix="tegotae_doc_") as top:
         os.mkdir(top + "/bin")
         for name, text in STANDS_IN.items():
@@ -71,11 +86,12 @@ def main():
             os.mkdir(folder)
             drivers.write_study(folder, 48)
             run_block(text, folder, path)
-            out = re.findall(r"--out (?:\$PWD/)?(\w+)", text)[-1]
-            tables[text] = drivers.read(folder, out, "cases.csv")
+            for out in set(re.findall(r"--out (?:\$PWD/)?(\w+)", text)):
+                tables[text, out] = drivers.read(folder, out, "cases.csv")
+                blocks_run.add(text)
     if len(set(tables.values())) != 1:
         sys.exit("the drivers make different tables")
-    print("%d blocks run, all with the same table" % (1 + len(tables)))
+    print("%d blocks run; %d folders of results have the same table" % (1 + len(blocks_run), len(tables)))
     if left_out:
         drivers.skip("not there: " + ", ".join(sorted(set(left_out))))
 

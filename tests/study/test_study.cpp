@@ -70,6 +70,32 @@ TEST_CASE("a quantile lies between its neighbors") {
   CHECK(quantile({1, 2, 4}, 1) == 4);
 }
 
+TEST_CASE("what is to be looked at first is the best, the hardest, and of each part that blocked some one") {
+  // Number, reached, time, force, who blocked it.
+  const auto result = [](int number, bool reached, double time, double force, const std::string& part = "") {
+    Result r;
+    r.number = number;
+    r.reached = reached;
+    r.time = time;
+    r.force = force;
+    r.blocked_by = part;
+    r.clearance = 1e-5;
+    return r;
+  };
+  std::vector<Result> all = {result(0, true, 3, 1),         result(1, true, 2, 1),
+                             result(2, false, 9, 4, "lid"), result(3, false, 9, 5, "lid"),
+                             result(4, false, 9, 1, "lid"), result(5, false, 9, 1, "floor"),
+                             result(6, false, 9, 1)};
+  CHECK(worth_seeing(all, 3) == std::vector<int>{1, 3, 2});
+  CHECK(worth_seeing(all, 100) == std::vector<int>{1, 3, 2, 5, 6, 4});
+  CHECK(worth_seeing(all, 0).empty());
+  CHECK(worth_seeing({}, 5).empty());
+  // One that could not begin has nothing to be seen.
+  all[3].clearance = 0;
+  CHECK_FALSE(began(all[3]));
+  CHECK(worth_seeing(all, 3) == std::vector<int>{1, 2, 5});
+}
+
 TEST_CASE("every combination comes as often as every other, and more repeats change no case") {
   Study study;
   study.axes = {numbers("mu", {0, 0.1, 0.2}), numbers("offset", {1e-3, 2e-3}),

@@ -53,7 +53,8 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   CHECK(by.at("1e-04").at("reached") == 2);
   CHECK(summary_in(out).at("blocked_by") == json::object({{"hole", 2}}));
   CHECK_THAT(read_text(out + "/cases.csv"), Contains("\"blocked by hole at ("));
-  CHECK_THAT(read_text(out + "/report.html"), Contains("tegotae study case"));
+  CHECK_THAT(read_text(out + "/report.html"),
+             Contains("\"tegotae\",\"study\",\"case\",\"../study.toml\",\"2\",\"--out\",\".\""));
   CHECK_THAT(read_text(out + "/report.html"), Contains("case-2/replay.html"));
 
   // The written case has the peg's size, and its recording a verdict in the review.

@@ -7,6 +7,7 @@ import "./browser_replay.mjs";
 import "./browser_review.mjs";
 import "./browser_parts.mjs";
 import "./browser_section.mjs";
+import "./browser_study.mjs";
 import "./browser_step.mjs";
 import "./pieces.mjs";
 import { runCases } from "./cases.mjs";

@@ -1,3 +1,5 @@
+import { commandText } from "./command.js";
+
 // Builds elements. Text goes in as text, never as markup: names come from files.
 export function element(tag, text = "", className = "") {
   const e = document.createElement(tag);
@@ -13,8 +15,8 @@ function cellText(value) {
   return rounding ? "< 1e-6" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
 }
 
-// A table of {caption?, head: [...], rows: [[cell, ...], ...], text?: [...]}; a cell is text, a number or {text, class?,
-// href?}. Columns of the places in `text` are of words, and begin at the left.
+// A table of {caption?, head: [...], rows: [[cell, ...], ...], text?: [...]}; a cell is text, a number, {text, class?,
+// href?} or a command (see command.js). Columns of the places in `text` are of words, and begin at the left.
 export function tableOf({ caption, head, rows, text = [] }) {
   const table = element("table");
   if (caption) table.append(element("caption", caption));
@@ -28,7 +30,7 @@ export function tableOf({ caption, head, rows, text = [] }) {
       const rich = cell !== null && typeof cell === "object";
       const td = element("td", rich ? "" : cellText(cell), (rich && cell.class) || align(place));
       if (rich) {
-        const inside = element(cell.href ? "a" : "span", cell.text);
+        const inside = element(cell.href ? "a" : cell.command ? "code" : "span", cell.command ? commandText(cell) : cell.text);
         if (cell.href) inside.href = cell.href;
         td.append(inside);
       }
