@@ -92,16 +92,18 @@ std::string command(const Options& o) {
          o.markdown + "` (with `--scene NAME` a row of it)\n\n";
 }
 
-/// Rows of a run of all scenes replace the table, those of some their rows in it.
+/// Rows that were made replace those of the table, if it is of the same command; a run of all scenes makes it anew
+/// where it is of another one.
 void write_table(const Options& o, const std::vector<JudgedScene>& scenes,
                  const std::map<std::string, std::string>& rows) {
   const Page page = read_page(o.markdown);
-  if (!o.scenes.empty() && page.generated.find(command(o)) != 0)
+  const bool same = page.generated.find(command(o)) == 0;
+  if (!o.scenes.empty() && !same)
     throw Error(o.markdown + ": its table is not of " + command(o).substr(0, command(o).find('\n')));
   std::string table = command(o) + kHead;
   for (const JudgedScene& scene : scenes) {
     const auto made = rows.find(scene.name);
-    table += made != rows.end() ? made->second : o.scenes.empty() ? "" : row_in(page.generated, scene);
+    table += made != rows.end() ? made->second : same ? row_in(page.generated, scene) : "";
   }
   replace_file(o.markdown, page.before + table + page.after);
 }
@@ -134,7 +136,7 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Compares the planner with RRT-Connect that asks FCL, in processor time of one thread.", "plan_judge");
+  CLI::App app("Compares the planner with RRT-Connect that asks FCL, in processor time of all threads.", "plan_judge");
   Options o;
   app.add_option("--seeds", o.judge.seeds, "Runs of each planner on a scene")
       ->check(CLI::Range(1, 1000))

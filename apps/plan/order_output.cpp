@@ -177,14 +177,17 @@ std::string order_html(const SceneFile& file, const Disassembly& order) {
 }
 
 /// The path of a step, among the parts that are there then.
-void write_step(const SceneFile& file, const Removal& step, const std::string& path) {
+void write_step(const SceneFile& file, const Removal& step, const std::optional<review::ClearanceBand>& band,
+                const std::string& path) {
   Scene then = removal_scene(file.scene, step.there, step.parts);
   Part& held = held_part(then);
   const std::vector<RecordFrame> rows = path_rows(step.plan.path, step.plan.center, bounding_sphere(*held.mesh).radius);
   held.pose = rows.front().x;
-  write_file(path + ".glb", review::path_gltf(then, file.up, rows, true));
-  const review::Scan scan = review::scan_path(then, path, rows, {});
-  write_file(path + ".csv", review::path_csv(then, rows, scan, {}));
+  const review::Scan scan = review::scan_path(then, path, rows, {}, band ? band->high : 0);
+  std::optional<review::BandFindings> zones;
+  if (band) zones = review::find_band(*band, rows, scan);
+  write_file(path + ".glb", review::path_gltf(then, file.up, rows, scan, zones, true));
+  write_file(path + ".csv", review::path_csv(then, rows, scan, zones));
 }
 
 }  // namespace
@@ -193,11 +196,13 @@ std::vector<std::string> order_files(const std::string& folder) {
   return {folder + "/order.csv", folder + "/order.dot", folder + "/order.html"};
 }
 
-void write_order(const SceneFile& file, const Disassembly& order, const std::string& folder) {
+void write_order(const SceneFile& file, const Disassembly& order, const std::optional<review::ClearanceBand>& band,
+                 const std::string& folder) {
   write_file(folder + "/order.csv", order_csv(file.scene, order));
   write_file(folder + "/order.dot", order_dot(file.scene, order));
   write_file(folder + "/order.html", order_html(file, order));
-  for (std::size_t i = 0; i < order.order.size(); ++i) write_step(file, order.order[i], folder + "/" + step_file(i));
+  for (std::size_t i = 0; i < order.order.size(); ++i)
+    write_step(file, order.order[i], band, folder + "/" + step_file(i));
 }
 
 std::string order_text(const Scene& scene, const Disassembly& order) {

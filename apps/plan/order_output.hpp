@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "plan/disassembly.hpp"
+#include "review/clearance_band.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 namespace tegotae::plan {
@@ -12,8 +14,9 @@ namespace tegotae::plan {
 std::vector<std::string> order_files(const std::string& folder);
 
 /// Writes order.csv, order.dot (for Graphviz), order.html and, for each step, step-NN.csv (poses) and step-NN.glb into
-/// `folder`. Throws Error.
-void write_order(const SceneFile& file, const Disassembly& order, const std::string& folder);
+/// `folder`; with a `band` the steps' files tell and show where they are to it. Throws Error.
+void write_order(const SceneFile& file, const Disassembly& order, const std::optional<review::ClearanceBand>& band,
+                 const std::string& folder);
 
 /// What came out, for a person.
 std::string order_text(const Scene& scene, const Disassembly& order);

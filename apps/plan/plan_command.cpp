@@ -66,6 +66,7 @@ void finish(PlanReport& r, const std::optional<review::ClearanceBand>& band, app
   r.tightest = found.clearances;
   if (band) r.band = review::find_band(*band, rows, scan);
   write_path(r.file, rows, scan, r.band, r.folder);
+  if (band) write_review(r, *band, progress);
   write_file(r.folder + "/plan.json", plan_json(r) + "\n");
 }
 
@@ -91,10 +92,10 @@ int run_all(const PlanCommand& o) {
     };
     status.say("building hierarchies");
     order = take_apart(file.scene, options);
-    write_order(file, order, o.folder);
+    write_order(file, order, o.band, o.folder);
   }
   std::cout << order_text(file.scene, order) << "order: " << o.folder << "/order.html" << std::endl;
-  return order.left.size() == 1 && order.together.empty() ? apps::kDone : apps::kRunFailed;
+  return order.left.size() == 1 && order.together.empty() && !order.interrupted ? apps::kDone : apps::kRunFailed;
 }
 
 }  // namespace
@@ -108,7 +109,7 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
   plan->add_flag("--out", o.out, "Out of all other parts (the default without --goal)")->excludes(goal);
   CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whatever part is held");
   apps::add_length_option(*plan, "--clearance", o.clearance, "Clearance that the path keeps at least");
-  CLI::Option* band = review::add_band_option(*plan, o.band);
+  review::add_band_option(*plan, o.band);
   plan->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same path")->type_name("N");
   plan->add_option("--iterations", o.iterations, "Most iterations of the search")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
@@ -119,7 +120,7 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
           ->type_name("S");
   plan->add_option("--to", o.folder, "Folder for the results")->capture_default_str()->type_name("DIR");
   CLI::Option* json = plan->add_flag("--json", o.json, "Print the result as one line of JSON");
-  for (CLI::Option* one : {goal, hold, seconds, json, band}) all->excludes(one);
+  for (CLI::Option* one : {goal, hold, seconds, json}) all->excludes(one);
   return plan;
 }
 
@@ -147,7 +148,7 @@ int run_plan(const PlanCommand& o) {
     std::cout << plan_json(r) << std::endl;
   else
     std::cout << plan_text(r) << std::flush;
-  return r.plan.found ? apps::kDone : apps::kRunFailed;
+  return r.plan.found && !r.plan.interrupted ? apps::kDone : apps::kRunFailed;
 }
 
 }  // namespace tegotae::plan

@@ -6,6 +6,7 @@
 #include "core/output_file.hpp"
 #include "loop/scene_parts.hpp"
 #include "review/path_exports.hpp"
+#include "review/review.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/record/recorder.hpp"
 
@@ -43,15 +44,30 @@ std::vector<RecordFrame> path_rows(const std::vector<Pose>& path, const Vec3& ce
 
 std::vector<std::string> path_files(const std::string& folder) {
   std::vector<std::string> out;
-  for (const char* name : {"/path.csv", "/path.glb", "/script.csv", "/recording.csv", "/recording.csv.info.json"})
+  for (const char* name :
+       {"/path.csv", "/path.glb", "/script.csv", "/recording.csv", "/recording.csv.info.json", "/review.html"})
     out.push_back(folder + name);
   return out;
+}
+
+void write_review(const PlanReport& r, const review::ClearanceBand& band, const review::Progress& progress) {
+  const std::string path = r.folder + "/recording.csv";
+  Recording recording = read_recording(path);
+  review::ReviewQuestions questions;
+  questions.goal = recording.frames.back().x;
+  questions.band = band;
+  review::Review shown = review::review_recording(path, std::move(recording), r.file, questions, progress);
+  if (!r.plan.found) {
+    shown.verdict.outcome = review::Outcome::open;
+    shown.verdict.headline = "No way was found: this one leads to the farthest pose";
+  }
+  write_file(r.folder + "/review.html", review::report_html(shown, progress));
 }
 
 void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
                 const std::optional<review::BandFindings>& band, const std::string& folder) {
   write_file(folder + "/path.csv", review::path_csv(file.scene, rows, scan, band));
-  write_file(folder + "/path.glb", review::path_gltf(file.scene, file.up, rows, true));
+  write_file(folder + "/path.glb", review::path_gltf(file.scene, file.up, rows, scan, band, true));
   write_file(folder + "/script.csv", review::path_script(file, rows, scan.center));
   RecordingInfo info;
   info.scene = file.path;

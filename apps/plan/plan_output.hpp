@@ -17,7 +17,7 @@ namespace tegotae::plan {
 /// mass of the held part (file frame, m), `radius` of it about that.
 std::vector<RecordFrame> path_rows(const std::vector<Pose>& path, const Vec3& center, double radius);
 
-/// The files that write_path() makes in `folder`.
+/// The files that write_path() and write_review() make in `folder`.
 std::vector<std::string> path_files(const std::string& folder);
 
 /// Writes path.csv, path.glb, script.csv and recording.csv into `folder`. Throws Error.
@@ -36,6 +36,11 @@ struct PlanReport {
   std::optional<review::BandFindings> band;     ///< of the band that was asked for
   std::string folder;
 };
+
+/// Writes review.html: the report on the recording that write_path() has written, with the zones of the band. Throws
+/// Error.
+void write_review(const PlanReport& report, const review::ClearanceBand& band, const review::Progress& progress);
+
 std::string plan_text(const PlanReport& report);
 std::string plan_json(const PlanReport& report);
 

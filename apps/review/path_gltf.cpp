@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,7 +14,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsigned = 5125, kVertices = 34962, kIndices = 34963;
+constexpr int kLines = 1;
 constexpr std::size_t kMaxKeys = 20000;
+// By BandZone, as the report has them (apps/web/src/review/colors.js).
+constexpr std::array<std::array<float, 3>, 3> kZoneColors = {{{200 / 255.f, 38 / 255.f, 38 / 255.f},
+                                                              {240 / 255.f, 178 / 255.f, 50 / 255.f},
+                                                              {44 / 255.f, 123 / 255.f, 182 / 255.f}}};
+
+/// glTF has colors of vertices in linear light.
+float linear(float srgb) {
+  return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
 
 /// What turns the scene's axis that is up to y, which is up in glTF; x, y, z, w.
 Json turned_up(UpAxis up) {
@@ -25,12 +36,14 @@ Json turned_up(UpAxis up) {
 /// Everything of the file but its container.
 class Gltf {
  public:
-  Gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows) {
+  Gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows, const Scan& scan,
+       const std::optional<BandFindings>& band) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "tegotae " TEGOTAE_VERSION_STRING}};
     json_["scene"] = 0;
     json_["scenes"] = Json::array({{{"nodes", {0}}}});
     json_["nodes"] = Json::array({{{"name", "world"}, {"rotation", turned_up(up)}}});
     for (const Part& part : scene.parts) add_part(part);
+    if (band) add_band(rows, scan, *band);
     animate(rows);
     json_["bufferViews"] = views_;
     json_["accessors"] = accessors_;
@@ -118,6 +131,27 @@ class Gltf {
     if (part.held) held_ = json_["nodes"].size() - 1;
   }
 
+  /// The way of the center of mass: a line from each row that was looked at to the next, in the color of the first.
+  void add_band(const std::vector<RecordFrame>& rows, const Scan& scan, const BandFindings& band) {
+    std::vector<float> positions, colors;
+    const std::vector<std::size_t> points = looked_at(scan.rows.size(), kMaxKeys);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const auto& color = kZoneColors[static_cast<std::size_t>(band.of_row[points[k - 1]])];
+      for (const std::size_t i : {points[k - 1], points[k]}) {
+        const Vec3 at = rows[scan.rows[i].row].x * scan.center;
+        for (const double x : at) positions.push_back(static_cast<float>(x));
+        for (const float c : color) colors.push_back(linear(c));
+      }
+    }
+    if (positions.empty()) return;
+    const std::size_t place = add(positions, "VEC3", 3, kVertices, true);
+    const std::size_t color = add(colors, "VEC3", 3, kVertices, false);
+    json_["meshes"].push_back(
+        {{"primitives", {{{"attributes", {{"POSITION", place}, {"COLOR_0", color}}}, {"mode", kLines}}}}});
+    json_["nodes"].push_back({{"name", "clearance"}, {"mesh", json_["meshes"].size() - 1}});
+    json_["nodes"][0]["children"].push_back(json_["nodes"].size() - 1);
+  }
+
   void animate(const std::vector<RecordFrame>& rows) {
     std::vector<float> times, places, turns;
     Quat last = rows.front().x.q;
@@ -158,8 +192,9 @@ class Gltf {
 
 }  // namespace
 
-std::string path_gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows, bool binary) {
-  Gltf gltf(scene, up, rows);
+std::string path_gltf(const Scene& scene, UpAxis up, const std::vector<RecordFrame>& rows, const Scan& scan,
+                      const std::optional<BandFindings>& band, bool binary) {
+  Gltf gltf(scene, up, rows, scan, band);
   return binary ? gltf.binary() : gltf.text();
 }
 

@@ -116,7 +116,8 @@ int run_review(const ReviewOptions& o) {
   }
   if (!o.script.empty()) write_file(o.script, path_script(r.file, rows, r.center));
   if (!o.gltf.empty())
-    write_file(o.gltf, path_gltf(r.file.scene, r.file.up, rows, std::filesystem::path(o.gltf).extension() == ".glb"));
+    write_file(o.gltf, path_gltf(r.file.scene, r.file.up, rows, r.scan, r.band,
+                                 std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
   const Verdict said = with_figures(r);
   if (o.json)

@@ -13,7 +13,8 @@ namespace {
 
 using Parts = std::vector<std::size_t>;
 
-constexpr std::size_t kPartners = 3;  // parts that stop one, with each of which it is tried as a group
+// Parts that stop one, with each of which it is tried as a group; and parts of a group at most.
+constexpr std::size_t kPartners = 3, kMaxGroup = 5;
 
 bool has(const Parts& parts, std::size_t part) {
   return std::find(parts.begin(), parts.end(), part) != parts.end();
@@ -32,7 +33,8 @@ class Taking {
   }
 
   Disassembly result() {
-    for (auto& [part, blocked] : blocked_) out_.blocked.push_back(std::move(blocked));
+    for (auto& [parts, blocked] : blocked_)
+      if (parts.size() == 1) out_.blocked.push_back(std::move(blocked));
     out_.interrupted = stopped();
     return std::move(out_);
   }
@@ -49,7 +51,7 @@ class Taking {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
 
-  /// Whether `parts` come out of what is `there`; then they are taken from it.
+  /// Whether `parts` come out of what is `there`; then they are taken from it. Else blocked_ has why, by the parts.
   bool try_out(Parts& there, const Parts& parts, std::int64_t iterations) {
     if (options_.progress) options_.progress(parts, there.size());
     PlanOptions options;
@@ -57,6 +59,7 @@ class Taking {
     options.seed = options_.seed;
     options.iterations = iterations;
     options.stop = options_.stop;
+    if (options_.progress) options.progress = [&](const PlanProgress&) { options_.progress(parts, there.size()); };
     Blocked why;
     why.part = parts.front();
     try {
@@ -74,7 +77,7 @@ class Taking {
     } catch (const Error& e) {
       why.error = e.what();  // told with the result: one part that overlaps another leaves the rest to be taken apart
     }
-    if (parts.size() == 1) blocked_[why.part] = std::move(why);
+    blocked_[parts] = std::move(why);
     return false;
   }
 
@@ -84,29 +87,49 @@ class Taking {
     return false;
   }
 
-  /// A part together with one that stops it.
+  /// The group with one more part, in order.
+  static Parts with(Parts group, std::size_t part) {
+    group.insert(std::upper_bound(group.begin(), group.end(), part), part);
+    return group;
+  }
+
+  /// A part together with one that stops it; where no two come out, with what stops both, and so on.
   bool take_group(Parts& there) {
     std::set<Parts> tried;
-    for (const std::size_t part : Parts(there)) {
-      Parts by = blocked_[part].by;
-      if (by.size() > kPartners) by.resize(kPartners);
-      for (const std::size_t partner : by) {
-        const Parts group = {std::min(part, partner), std::max(part, partner)};
-        // Two that are all there is come apart alone or not at all.
-        if (there.size() <= 2 || stopped() || !has(there, partner) || !tried.insert(group).second) continue;
-        if (!try_out(there, group, options_.iterations)) continue;
-        const Parts rest = take(group);
-        if (rest.size() > 1) out_.together.push_back(rest);
-        return true;
+    std::vector<Parts> stopped_groups;
+    for (const std::size_t part : there) stopped_groups.push_back({part});
+    // All that is there but one comes out as that one does.
+    for (std::size_t size = 2; size <= kMaxGroup && size < there.size(); ++size) {
+      std::vector<Parts> larger;
+      for (const Parts& group : stopped_groups) {
+        Parts by = blocked_[group].by;
+        // More partners than one are for a part alone: a group that grew by the wrong one has others beside it.
+        const std::size_t partners = size == 2 ? kPartners : 1;
+        if (by.size() > partners) by.resize(partners);
+        for (const std::size_t partner : by) {
+          const Parts grown = with(group, partner);
+          if (stopped() || !has(there, partner) || !tried.insert(grown).second) continue;
+          if (take_out(there, grown)) return true;
+          larger.push_back(grown);
+        }
       }
+      stopped_groups = std::move(larger);
     }
     return false;
+  }
+
+  /// Whether a group comes out; what does not come apart of it stays together.
+  bool take_out(Parts& there, const Parts& group) {
+    if (!try_out(there, group, options_.iterations)) return false;
+    const Parts rest = take(group);
+    if (rest.size() > 1) out_.together.push_back(rest);
+    return true;
   }
 
   const Scene& scene_;
   const DisassemblyOptions& options_;
   Disassembly out_;
-  std::map<std::size_t, Blocked> blocked_;
+  std::map<Parts, Blocked> blocked_;  // by what was tried
 };
 
 }  // namespace

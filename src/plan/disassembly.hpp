@@ -14,7 +14,7 @@ struct DisassemblyOptions {
   std::int64_t quick = 20;        ///< iterations of a first try with each part
   std::int64_t iterations = 500;  ///< of a second one, and with each group, where the first lets none out
   const std::atomic<bool>* stop = nullptr;
-  /// Told before each try: which parts, of how many that are left.
+  /// Told before each try, and ten times a second in it: which parts, of how many that are left.
   std::function<void(const std::vector<std::size_t>& parts, std::size_t left)> progress = {};
 };
 
@@ -40,9 +40,9 @@ struct Disassembly {
   bool interrupted = false;
 };
 
-/// Takes an assembly apart: tries part after part, and where none comes out a part with one that stops it, together. A
-/// group that is out is taken apart by itself. The same scene and options give the same order. Throws Error where there
-/// is no OMPL, and for fewer than two parts.
+/// Takes an assembly apart: tries part after part, and where none comes out a part with one that stops it, together,
+/// then such a pair with what stopped it most, up to five parts. A group that is out is taken apart by itself. The same
+/// scene and options give the same order. Throws Error where there is no OMPL, and for fewer than two parts.
 Disassembly take_apart(const Scene& scene, const DisassemblyOptions& options);
 
 /// The scene of a removal: `parts` as the held part (a group as one mesh, in the world's frame) among the others of

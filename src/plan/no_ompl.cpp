@@ -22,8 +22,7 @@ BaselineResult rrt_connect(const Scene&, const BaselineTask&) {
   throw Error(missing_planner());
 }
 
-std::vector<Pose> shorten(MotionWorld&, const std::vector<Pose>&, const WorldBox&, double, std::uint64_t,
-                          const std::function<bool()>&) {
+std::vector<Pose> shorten(MotionWorld&, const std::vector<Pose>&, const ShortenTask&) {
   throw Error(missing_planner());
 }
 

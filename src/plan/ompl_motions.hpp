@@ -1,6 +1,7 @@
 // The certificate of a MotionWorld as OMPL asks for it.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "plan/motion_world.hpp"
@@ -8,9 +9,9 @@
 
 namespace tegotae {
 
-/// What OMPL needs to know of `space`: a state or a motion is valid when it is proved to leave `clearance` (m). Keeps a
-/// reference to the world.
+/// What OMPL needs to know of `space`: a state or a motion is valid when it is proved to leave `clearance` (m), and
+/// none is once `stopped` says so. Keeps a reference to the world.
 ompl::base::SpaceInformationPtr space_information(const std::shared_ptr<PoseSpace>& space, MotionWorld& world,
-                                                  double clearance);
+                                                  double clearance, std::function<bool()> stopped);
 
 }  // namespace tegotae

@@ -25,7 +25,7 @@ SearchResult search(MotionWorld& world, const SearchTask& task) {
   world.complete();
   SearchResult result;
   const auto space = std::make_shared<PoseSpace>(world.center(), world.gyration(), task.room);
-  const auto si = space_information(space, world, world.clearance());
+  const auto si = space_information(space, world, world.clearance(), task.ended);
   const auto problem = std::make_shared<ob::ProblemDefinition>(si);
   ob::ScopedState<PoseSpace> start(space);
   space->set(start.get(), task.start);
@@ -44,14 +44,13 @@ SearchResult search(MotionWorld& world, const SearchTask& task) {
   return result;
 }
 
-std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, const WorldBox& room, double clearance,
-                          std::uint64_t seed, const std::function<bool()>& ended) {
+std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, const ShortenTask& task) {
   // Rounds until one takes off less than a hundredth.
   constexpr int kMaxRounds = 20;
   constexpr double kWorthwhile = 0.99;
-  seed_ompl(seed);
-  const auto space = std::make_shared<PoseSpace>(world.center(), world.gyration(), room);
-  const auto si = space_information(space, world, clearance);
+  seed_ompl(task.seed);
+  const auto space = std::make_shared<PoseSpace>(world.center(), world.gyration(), task.room);
+  const auto si = space_information(space, world, task.clearance, task.stopped);
   og::PathGeometric out(si);
   ob::ScopedState<PoseSpace> state(space);
   for (const Pose& X : path) {
@@ -59,11 +58,11 @@ std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, con
     out.append(state.get());
   }
   og::PathSimplifier simplifier(si);
-  for (int round = 0; round < kMaxRounds && !ended(); ++round) {
+  for (int round = 0; round < kMaxRounds && !task.ended(); ++round) {
     const double length = out.length();
     const std::size_t count = out.getStateCount();
     simplifier.reduceVertices(out);
-    if (ended()) break;
+    if (task.ended()) break;
     simplifier.shortcutPath(out);
     const bool fewer = static_cast<double>(out.getStateCount()) < kWorthwhile * static_cast<double>(count);
     if (out.length() > kWorthwhile * length && !fewer) break;

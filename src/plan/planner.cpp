@@ -25,16 +25,19 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kTellEvery = std::chrono::milliseconds(100);
 // Of the clearance that start and goal have: a path that was found is shortened with the first one asked for.
 constexpr double kShortenShare = 0.9;
-// A path with so much of it is searched for, the first that is found is taken; each time with at most as many motions
-// that the contact loop is led through as for the first path, and some more.
-constexpr double kWiderShares[] = {0.5, 0.1};
-constexpr std::int64_t kWiderMore = 30;
+// A wider path is searched for: one with so much of it first, then between what is known to be found and what was not
+// found, until those are so many times apart, or for so many widths in all.
+constexpr double kWidest = 0.5, kApart = 2;
+constexpr int kWidths = 5;
+// How long a search takes is luck, so each width has several, with random numbers of their own. A search ends after so
+// many motions that the contact loop was led through, or after as many as for the first path.
+constexpr int kWiderSearches = 3;
+constexpr std::int64_t kWiderLed = 150;
+constexpr std::uint64_t kSeedStride = 1000003;
 // Motions that are asked about to shorten a path, and for each of its poses.
 constexpr std::int64_t kShortenChecks = 200, kShortenTimes = 2;
 // How often the proof of a motion of the path is taken up again.
 constexpr int kProofs = 16;
-// A wider path is worth it when it leaves so many times as much.
-constexpr double kWorthwhile = 1.5;
 // Clearances are told to this share of them.
 constexpr double kClearanceStep = 0.02;
 
@@ -43,6 +46,22 @@ double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Whether a motion is proved to leave `clearance`, from either end: the poses are the same, and where the one proof
+/// gives up the other one may have come by.
+bool is_proved(MotionWorld& world, const Pose& from, const Pose& to, double clearance) {
+  constexpr double kOverlap = 1e-6;  // of the motion, that both have
+  const double there = world.free_share(from, to, clearance, kProofs);
+  if (there == 1) return true;
+  const double back = world.free_share(to, from, clearance, kProofs);
+  return back == 1 || there + back > 1 + kOverlap;
+}
+
+bool leaves(MotionWorld& world, const std::vector<Pose>& path, double clearance) {
+  for (std::size_t i = 0; i + 1 < path.size(); ++i)
+    if (!is_proved(world, path[i], path[i + 1], clearance)) return false;
+  return path.size() > 1 || world.free_share(path.front(), path.front(), clearance) == 1;
 }
 
 class Planning {
@@ -64,8 +83,7 @@ class Planning {
     plan.path = result.path;
     fill(result, plan);
     if (plan.found) improve(task, plan);
-    tell({"certifying", result.iterations, result.poses, result.way});
-    if (plan.clearance == 0) plan.clearance = certified(world_, plan.path);
+    plan.clearance = certified(plan.path);
     plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
     plan.interrupted = stopped();
@@ -79,10 +97,20 @@ class Planning {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool ended() const { return stopped() || (options_.search_ends && options_.search_ends()); }
 
-  void tell(const PlanProgress& progress) {
-    if (!options_.progress || Clock::now() < next_tell_) return;
-    options_.progress(progress);
+  void tell(const char* what) {
+    if (!options_.progress || (Clock::now() < next_tell_ && told_ == what)) return;
+    progress_.what = what;
+    told_ = what;
+    options_.progress(progress_);
     next_tell_ = Clock::now() + kTellEvery;
+  }
+
+  /// What a search tells of itself.
+  std::function<void(std::int64_t, std::size_t, double)> teller(const char* what) {
+    return [this, what](std::int64_t iterations, std::size_t poses, double way) {
+      progress_ = {what, iterations, poses, way};
+      tell(what);
+    };
   }
 
   std::string name(const std::optional<std::size_t>& part) const {
@@ -154,86 +182,115 @@ class Planning {
     task.seed = options_.seed;
     task.iterations = options_.iterations;
     task.ended = [this] { return ended(); };
-    task.progress = [this](std::int64_t iterations, std::size_t poses, double way) {
-      tell({"searching", iterations, poses, way});
-    };
+    task.progress = teller("searching");
     return task;
   }
 
-  static bool leaves(MotionWorld& world, const std::vector<Pose>& path, double clearance) {
-    for (std::size_t i = 0; i + 1 < path.size(); ++i)
-      if (world.free_share(path[i], path[i + 1], clearance, kProofs) < 1) return false;
-    return path.size() > 1 || world.free_share(path.front(), path.front(), clearance) == 1;
-  }
-
   /// The most that a path is proved to leave, to a hundredth or two; 0: not even what is asked for. In no order of
-  /// their own, few of its motions turn out to leave less than all before.
-  static double certified(MotionWorld& world, const std::vector<Pose>& path) {
+  /// their own, few of its motions turn out to leave less than all before. Once the plan is stopped no more than what
+  /// has to be proved is asked about.
+  double certified(const std::vector<Pose>& path) {
+    if (stopped() && proved_ > 0) return proved_;
     std::vector<std::size_t> order(std::max<std::size_t>(1, path.size() - 1));
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::shuffle(order.begin(), order.end(), std::mt19937(1));
-    double all = world.radius();
+    const double least = std::max(proved_, world_.clearance());
+    double all = world_.radius();
     bool first = true;
     for (const std::size_t i : order) {
+      tell("certifying");
       const Pose &from = path[i], &to = path[std::min(i + 1, path.size() - 1)];
-      const auto leaves = [&](double clearance) { return world.free_share(from, to, clearance, kProofs) == 1; };
-      if (!std::exchange(first, false) && leaves(all)) continue;
-      if (!leaves(world.clearance())) return 0;
+      const auto leaves = [&](double clearance) { return world_.free_share(from, to, clearance, kProofs) == 1; };
+      if (!std::exchange(first, false) && !stopped() && leaves(all)) continue;
+      if (proved_ == 0 && !is_proved(world_, from, to, least)) return 0;
       // From below: what is far beyond the truth takes the certificate long to refuse.
-      double low = world.clearance(), high = 2 * low;
-      while (high < all && leaves(high)) {
+      double low = least, high = 2 * low;
+      while (!stopped() && high < all && leaves(high)) {
         low = high;
         high *= 2;
       }
       high = std::min(high, all);
-      while (high > (1 + kClearanceStep) * low) {
+      while (!stopped() && high > (1 + kClearanceStep) * low) {
         const double middle = std::sqrt(low * high);
         (leaves(middle) ? low : high) = middle;
       }
       all = low;
     }
-    return all;
+    return proved_ = all;
+  }
+
+  /// What the part leaves where it stands.
+  double certified(const Pose& X) {
+    proved_ = 0;
+    return certified(std::vector<Pose>{X});
   }
 
   /// Shortens a path by motions that leave `clearance`; whether the whole path then does. Whatever a library makes of
   /// it: what is handed out is certified here, or is what the search proved.
   bool shorten_path(MotionWorld& world, const WorldBox& room, double clearance, std::vector<Pose>& path) {
-    tell({"shortening", 0, path.size(), 0});
     const std::int64_t most =
         world.counts().checked + kShortenChecks + kShortenTimes * static_cast<std::int64_t>(path.size());
-    std::vector<Pose> shorter = shorten(world, path, room, clearance, options_.seed,
-                                        [this, &world, most] { return stopped() || world.counts().checked > most; });
+    ShortenTask task;
+    task.room = room;
+    task.clearance = clearance;
+    task.seed = options_.seed;
+    task.ended = [this, &world, most] {
+      tell("shortening");
+      return stopped() || world.counts().checked > most;
+    };
+    task.stopped = [this] { return stopped(); };
+    std::vector<Pose> shorter = shorten(world, path, task);
     if (!leaves(world, shorter, clearance)) return false;
     path = std::move(shorter);
+    proved_ = clearance;
     return true;
   }
 
-  /// Shortens the path of a plan, and looks for one that leaves more; sets its clearance where that became known.
+  /// Shortens the path of a plan, and looks for one that leaves more.
   void improve(const SearchTask& task, Plan& plan) {
+    if (stopped()) return;
     const std::int64_t led = world_.counts().complied;
-    const double most = std::min(certified(world_, {plan.path.front()}), certified(world_, {plan.path.back()}));
+    const double most = std::min(certified(plan.path.front()), certified(plan.path.back()));
+    proved_ = 0;  // of the path
     if (kShortenShare * most > world_.clearance() && shorten_path(world_, task.room, kShortenShare * most, plan.path))
       return;
+    if (stopped()) return;
     world_.complete();
     shorten_path(world_, task.room, world_.clearance(), plan.path);
-    const double now = plan.clearance = certified(world_, plan.path);
-    for (const double share : kWiderShares) {
-      const double clearance = share * most;
-      // Of parts that hardly leave more than what is asked for there is no wider way to look for.
-      if (stopped() || clearance < kWorthwhile * std::max(now, world_.clearance())) return;
-      MotionWorld wider(world_.scene(), clearance);
-      SearchTask again = task;
-      again.ended = [this, &wider, most_led = led + kWiderMore] {
-        return stopped() || wider.counts().complied > most_led;
+    widen(task, kWidest * most, std::max(kWiderLed, led), plan);
+  }
+
+  /// Looks for a path that leaves more, up to `widest`. Each search leads the part `most_led` times.
+  void widen(const SearchTask& task, double widest, std::int64_t most_led, Plan& plan) {
+    double low = std::max(certified(plan.path), world_.clearance()), high = widest;
+    for (int i = 0; i < kWidths && high > kApart * low && !stopped(); ++i) {
+      const double width = i == 0 ? widest : std::sqrt(low * high);
+      const bool taken = take_wider(task, width, most_led, plan);
+      (taken ? low : high) = width;
+    }
+  }
+
+  /// Whether a path is found that leaves `clearance`; the plan then has it. Each search leads the part `most_led`
+  /// times.
+  bool take_wider(const SearchTask& task, double clearance, std::int64_t most_led, Plan& plan) {
+    MotionWorld wider(world_.scene(), clearance);
+    SearchTask again = task;
+    again.progress = teller("searching for a wider way");
+    bool taken = false;
+    for (int i = 0; i < kWiderSearches && !taken && !stopped(); ++i) {
+      again.seed = task.seed + static_cast<std::uint64_t>(i) * kSeedStride;
+      again.ended = [this, &wider, end = wider.counts().complied + most_led] {
+        return stopped() || wider.counts().complied > end;
       };
       SearchResult result = search(wider, again);
-      const bool taken = result.found && shorten_path(wider, task.room, clearance, result.path);
-      count(wider, plan);
+      taken = result.found &&
+              (shorten_path(wider, task.room, clearance, result.path) || leaves(wider, result.path, clearance));
       if (!taken) continue;
       plan.path = std::move(result.path);
-      plan.clearance = 0;  // of this one not known yet
-      return;
+      proved_ = clearance;
     }
+    count(wider, plan);
+    return taken;
   }
 
   static void count(const MotionWorld& world, Plan& plan) {
@@ -256,6 +313,9 @@ class Planning {
   PlanOptions options_;
   double cpu_began_;  // s
   Clock::time_point began_, next_tell_{};
+  PlanProgress progress_{"searching"};
+  std::string told_;   // what it was about last
+  double proved_ = 0;  ///< m, that the path as a whole is proved to leave; 0: not known yet
   MotionWorld world_;
   Exit exit_;
 };

@@ -14,7 +14,7 @@ namespace tegotae {
 
 /// How far a planner has come.
 struct PlanProgress {
-  const char* what;             ///< "searching", "shortening", "certifying"
+  const char* what;             ///< "searching", "shortening", "searching for a wider way", "certifying"
   std::int64_t iterations = 0;  ///< of the search, made
   std::size_t poses = 0;        ///< that are known to be within reach
   double way = 0;               ///< m, of the center of mass: the farthest of them from the start
@@ -28,7 +28,7 @@ struct PlanOptions {
   std::int64_t iterations = 20000;                         ///< of the search, at most
   std::function<bool()> search_ends = {};                  ///< asked in the search: whether to give it up; empty: no
   const std::atomic<bool>* stop = nullptr;                 ///< set it to end with what there is; null: disabled
-  std::function<void(const PlanProgress&)> progress = {};  ///< called ten times a second or less
+  std::function<void(const PlanProgress&)> progress = {};  ///< ten times a second or less, and where `what` is another
 };
 
 /// A part that stopped motions of the search.

@@ -39,8 +39,16 @@ struct SearchResult {
 /// pen is led on.
 SearchResult search(MotionWorld& world, const SearchTask& task);
 
-/// Shortens a path, by motions that leave `clearance` (m); what cannot be replaced stays.
-std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, const WorldBox& room, double clearance,
-                          std::uint64_t seed, const std::function<bool()>& ended);
+/// How a path is shortened.
+struct ShortenTask {
+  WorldBox room;         ///< as SearchTask::room
+  double clearance = 0;  ///< m, that motions leave which replace others
+  std::uint64_t seed = 1;
+  std::function<bool()> ended;    ///< whether to begin nothing new
+  std::function<bool()> stopped;  ///< whether to leave the path as it is at once: then no motion replaces others
+};
+
+/// Shortens a path; what cannot be replaced stays.
+std::vector<Pose> shorten(MotionWorld& world, const std::vector<Pose>& path, const ShortenTask& task);
 
 }  // namespace tegotae

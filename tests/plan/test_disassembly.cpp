@@ -1,4 +1,6 @@
 // Orders of disassembly that are known by construction.
+#include <set>
+
 #include "catch.hpp"
 #include "models/bricks.hpp"
 #include "path_check.hpp"
@@ -30,6 +32,15 @@ void add_rattle(Scene& scene, const std::string& name, double x) {
   scene.add_fixed(name + " cube", shapes::solid_of("cube", {brick(x - 4, -4, -4, x + 4, 4, 4)}));
   scene.add_fixed(name + " shell", shapes::solid_of("shell", {brick(x - 10, -10, -10, x + 10, 10, 10),
                                                               brick(x - 5, -5, -5, x + 5, 5, 5, false)}));
+}
+
+/// A cube in a closed box in a closed box at `x` mm: neither one nor two of them come out of the rest.
+void add_nested_rattle(Scene& scene, const std::string& name, double x) {
+  scene.add_fixed(name + " cube", shapes::solid_of("cube", {brick(x - 4, -4, -4, x + 4, 4, 4)}));
+  scene.add_fixed(name + " inner shell", shapes::solid_of("shell", {brick(x - 7, -7, -7, x + 7, 7, 7),
+                                                                    brick(x - 5, -5, -5, x + 5, 5, 5, false)}));
+  scene.add_fixed(name + " outer shell", shapes::solid_of("shell", {brick(x - 10, -10, -10, x + 10, 10, 10),
+                                                                    brick(x - 8, -8, -8, x + 8, 8, 8, false)}));
 }
 
 }  // namespace
@@ -71,6 +82,27 @@ TEST_CASE("what does not come apart comes out as a group") {
   REQUIRE(d.together.size() == 1);
   CHECK(d.together[0] == d.order[0].parts);
   CHECK(d.blocked.size() == 4);
+}
+
+TEST_CASE("where no two come out together three do") {
+  Scene scene;
+  add_nested_rattle(scene, "left", -15);
+  add_nested_rattle(scene, "right", 15);
+  DisassemblyOptions options;
+  options.quick = 13;
+  options.iterations = 15;
+  const Disassembly d = take_apart(scene, options);
+  REQUIRE(d.order.size() == 1);
+  const std::vector<std::size_t> left = {0, 1, 2}, right = {3, 4, 5};
+  const Removal& out = d.order[0];
+  CHECK((out.parts == left || out.parts == right));
+  CHECK(d.left == (out.parts == left ? right : left));
+  REQUIRE(d.together.size() == 1);
+  CHECK(std::set<std::size_t>(d.together[0].begin(), d.together[0].end()) ==
+        std::set<std::size_t>(out.parts.begin(), out.parts.end()));
+  CHECK(d.blocked.size() == 6);
+  const FclOracle oracle(removal_scene(scene, out.there, out.parts));
+  CHECK(check_path(oracle, out.plan.path, out.plan.center, 0.03).intersecting == 0);
 }
 
 TEST_CASE("a part that overlaps another one is named, and the others come apart") {

@@ -1,6 +1,11 @@
 // `tegotae plan`: what it writes, and what it says.
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
@@ -24,6 +29,66 @@ const TempFolder& models() {
 
 std::string scene(const std::string& name) {
   return models() / ("puzzles/" + name + ".toml");
+}
+
+/// What a page has in its element "data".
+std::string page_data(const std::string& page) {
+  const std::size_t begin = page.find("id=\"data\"");
+  REQUIRE(begin != std::string::npos);
+  const std::size_t text = page.find('>', begin) + 1;
+  return page.substr(text, page.find("</script>", text) - text);
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t out;
+  std::memcpy(&out, bytes.data() + at, 4);
+  return out;
+}
+
+std::string from_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  std::uint32_t bits = 0;
+  int known = 0;
+  for (const char c : text) {
+    const std::size_t digit = digits.find(c);
+    if (digit == std::string::npos) continue;
+    bits = (bits << 6) | static_cast<std::uint32_t>(digit);
+    if ((known += 6) < 8) continue;
+    known -= 8;
+    out += static_cast<char>((bits >> known) & 0xff);
+  }
+  return out;
+}
+
+/// How many poses of a review's page are in each zone.
+std::map<std::uint32_t, std::size_t> zones_of_page(const std::string& page) {
+  const std::string bundle = from_base64(page_data(page));
+  const std::size_t arrays = 4 + word_at(bundle, 0);
+  const json band = json::parse(bundle.substr(4, arrays - 4)).at("band");
+  CHECK(band.at("low") == 0.05e-3);
+  CHECK(band.at("high") == 0.5e-3);
+  const auto at = band.at("zones").at("at").get<std::size_t>(), count = band.at("zones").at("count").get<std::size_t>();
+  std::map<std::uint32_t, std::size_t> out;
+  for (std::size_t i = 0; i < count; ++i) ++out[word_at(bundle, arrays + 4 * (at + i))];
+  return out;
+}
+
+json glb_json(const std::string& path) {
+  const std::string bytes = read_text(path);
+  REQUIRE(bytes.size() > 20);
+  return json::parse(bytes.substr(20, word_at(bytes, 12)));
+}
+
+/// The numbers of a buffer view.
+std::vector<float> glb_floats(const std::string& path, const json& view_number) {
+  const std::string bytes = read_text(path);
+  const json view = glb_json(path).at("bufferViews").at(view_number.get<std::size_t>());
+  std::vector<float> out(view.at("byteLength").get<std::size_t>() / 4);
+  const std::size_t begin = 28 + word_at(bytes, 12) + view.at("byteOffset").get<std::size_t>();
+  REQUIRE(begin + 4 * out.size() <= bytes.size());
+  std::memcpy(out.data(), bytes.data() + begin, 4 * out.size());
+  return out;
 }
 
 }  // namespace
@@ -122,14 +187,68 @@ TEST_CASE("an assembly is taken apart") {
   CHECK_THAT(stays.out, Contains("Did not come apart: key, lock") && Contains("key was stopped by lock"));
   // The graph: two parts, and who stops whom.
   const std::string page = read_text(folder / "in" + "/order.html");
-  const std::size_t begin = page.find("id=\"data\">") + 10;
-  const json report = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  const json report = json::parse(page_data(page));
   const json graph = report.at("sections").back().at("graph");
   CHECK(graph.at("nodes").size() == 2);
   CHECK(graph.at("nodes").at(0).at("text") == "key");
   // Each of two that do not come apart stops the other.
   const std::set<json> arrows(graph.at("arrows").begin(), graph.at("arrows").end());
   CHECK(arrows == std::set<json>{json::parse("[0, 1]"), json::parse("[1, 0]")});
+}
+
+TEST_CASE("a plan with a band tells and shows where its path is to it") {
+  const TempFolder folder;
+  const std::string to = folder / "out";
+  // In its hole the peg has 0.1 mm on each side, and outside of it more.
+  const Output o = run_program("tegotae", "plan " + scene("straight") + " --seed 1 --band 0.05mm 0.5mm --to " + to);
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("clearance of 50 µm to 0.5 mm: below 0.00 s and 0.00 mm, inside "));
+  const json band = json::parse(read_text(to + "/plan.json")).at("band");
+  CHECK(band.at("low_m") == 0.05e-3);
+  CHECK(band.at("high_m") == 0.5e-3);
+  CHECK(band.at("below").at("way_m") == 0);
+  CHECK(band.at("inside").at("way_m").get<double>() > 0.01);
+  CHECK(band.at("above").at("way_m").get<double>() > 0);
+  // The column, by the clearance beside it.
+  std::istringstream csv(read_text(to + "/path.csv"));
+  std::string line;
+  std::getline(csv, line);
+  CHECK(line == "t,px,py,pz,qw,qx,qy,qz,clearance,part,force,torque,band");
+  std::size_t inside = 0, above = 0;
+  while (std::getline(csv, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 13);
+    const bool wide = std::stod(cells[8]) > 0.5e-3;
+    CHECK(cells[12] == (wide ? "above" : "inside"));
+    ++(wide ? above : inside);
+  }
+  CHECK(inside > 10);
+  CHECK(above > 1);
+  // The page has the same zones.
+  CHECK(zones_of_page(read_text(to + "/review.html")) == std::map<std::uint32_t, std::size_t>{{1, inside}, {2, above}});
+  // Red below, yellow inside, blue above: two ends of a line for each row but the last.
+  const json gltf = glb_json(to + "/path.glb");
+  const json& lines = gltf.at("meshes").back().at("primitives").at(0);
+  CHECK(lines.at("mode") == 1);
+  const json& colors = gltf.at("accessors").at(lines.at("attributes").at("COLOR_0").get<std::size_t>());
+  CHECK(colors.at("count") == 2 * (inside + above - 1));
+  CHECK(gltf.at("nodes").back().at("name") == "clearance");
+  const std::vector<float> rgb = glb_floats(to + "/path.glb", colors.at("bufferView"));
+  CHECK(rgb[2] < rgb[0]);                   // it begins in its hole
+  CHECK(rgb.back() > rgb[rgb.size() - 3]);  // and ends outside
+
+  const Output none = run_program("tegotae", "plan " + scene("straight") + " --seed 1 --to " + (folder / "none"));
+  CHECK(none.code == 0);
+  CHECK(read_text(folder / "none/review.html").empty());
+  CHECK(glb_json(folder / "none/path.glb").at("meshes").size() == 2);
+  const Output all =
+      run_program("tegotae", "plan " + scene("straight") + " --all --band 0.05mm 0.5mm --to " + (folder / "all"));
+  CHECK(all.code == 0);
+  CHECK_THAT(read_text(folder / "all/step-01.csv"), Contains(",band\n") && Contains(",inside\n"));
+  CHECK(glb_json(folder / "all/step-01.glb").at("nodes").back().at("name") == "clearance");
 }
 
 TEST_CASE("what cannot be planned is an error of one line") {

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "broadphase/bounding_spheres.hpp"
 #include "catch.hpp"
@@ -165,6 +167,50 @@ TEST_CASE("a plan is ended from outside with what there is") {
   CHECK(plan.interrupted);
   CHECK(plan.iterations < 300);
   CHECK(plan.path.size() > 1);
+}
+
+TEST_CASE("a plan that is stopped after its way was found keeps it, proved as far as it had come") {
+  const shapes::Puzzle p = shapes::puzzle("l-shaped");
+  const std::string at =
+      GENERATE(std::string("shortening"), std::string("certifying"), std::string("searching for a wider way"));
+  CAPTURE(at);
+  std::atomic<bool> stop{false};
+  PlanOptions options;
+  options.stop = &stop;
+  std::string last;
+  int told = 0, told_after = 0;
+  options.progress = [&](const PlanProgress& now) {
+    if (stop) told_after += now.what == last ? 0 : 1;
+    last = now.what;
+    stop = stop || (now.what == at && ++told == 1);
+  };
+  const Plan plan = plan_path(p.scene(), options);
+  CHECK(told == 1);
+  CHECK(plan.found);
+  CHECK(plan.interrupted);
+  // What is left to do is to prove what there is.
+  CHECK(told_after <= 1);
+  CHECK((last == "certifying" || last == at));
+  judge(p.scene(), plan);
+  const Exit exit(p.scene(), plan.center, radius_about(p.held, plan.center));
+  CHECK(exit.is_out(plan.path.back()));
+}
+
+TEST_CASE("how wide the way of a plan is hardly depends on the seed") {
+  // Of what its fit leaves on each side: l-shaped 0.1 mm, bent-bar 0.5 mm.
+  const auto [name, play] =
+      GENERATE(std::pair<std::string, double>("l-shaped", 0.1e-3), std::pair<std::string, double>("bent-bar", 0.5e-3));
+  CAPTURE(name);
+  const Scene scene = shapes::puzzle(name).scene();
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    CAPTURE(seed);
+    PlanOptions options;
+    options.seed = seed;
+    const Plan plan = plan_path(scene, options);
+    REQUIRE(plan.found);
+    CHECK(plan.clearance > 0.2 * play);
+    CHECK(plan.clearance < play);
+  }
 }
 
 TEST_CASE("goals and scenes that cannot be are refused") {
