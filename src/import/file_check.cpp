@@ -36,8 +36,9 @@ std::string read_bytes(const std::string& path) {
 
 void require_file(const std::string& path) {
   std::error_code status;
-  if (!std::filesystem::exists(path, status)) refuse(path, "no such file");
-  if (!std::filesystem::is_regular_file(path, status)) refuse(path, "not a file");
+  const bool there = std::filesystem::exists(path, status);
+  if (there && std::filesystem::is_regular_file(path, status)) return;
+  throw Error(ErrorKind::file, path + (there ? ": not a file" : ": no such file"), {path, 0, {}, {}});
 }
 
 std::string lower_extension(const std::string& path) {

@@ -56,7 +56,11 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", seeds, "All families at so many seeds")->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "Only what fails, and the sum");
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
   setlinebuf(stdout);
   if (p.family.empty() == (!daily && seeds == 0)) {
     std::fprintf(stderr, "families: say one of --family, --daily and --seeds\n");

@@ -55,7 +55,11 @@ int main(int argc, char** argv) {
   app.add_option("--budget", options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
   app.add_option("--record", options.record, "Folder for a scene file and a recording of each script");
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
   setlinebuf(stdout);
   try {
     if (friction > 0) resolver = "qp";
