@@ -1,7 +1,8 @@
-// Scenes of a few cubes whose answers are known.
+// Scenes of a few cubes whose answers are known, and how `tegotae study` is run on them.
 #pragma once
 
 #include "apps/run_program.hpp"
+#include "catch.hpp"
 
 namespace tegotae::test {
 
@@ -29,6 +30,14 @@ inline void write_niche(const TempFolder& folder) {
   add("above", "0, 0, 0.0101");
   add("back", "0, -0.0101, 0");
   folder.write("niche.toml", text);
+}
+
+/// Runs `tegotae study` and checks its exit code.
+inline Output run_study(const std::string& arguments, int code = 0) {
+  const Output o = run_program("tegotae", "study " + arguments);
+  INFO(arguments << "\n" << o.out << o.err);
+  CHECK(o.code == code);
+  return o;
 }
 
 }  // namespace tegotae::test

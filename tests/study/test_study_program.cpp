@@ -17,13 +17,6 @@ using nlohmann::json;
 
 namespace {
 
-Output study(const std::string& arguments, int code = 0) {
-  const Output o = run_program("tegotae", "study " + arguments);
-  INFO(arguments << "\n" << o.out << o.err);
-  CHECK(o.code == code);
-  return o;
-}
-
 json summary_in(const std::string& folder) {
   return json::parse(read_text(folder + "/summary.json"));
 }
@@ -44,8 +37,8 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
       "scenes = [\"m/peg_in_hole_0.94.toml\"]\nseconds = 4\nrepeats = 2\n[parameters]\noperator = [\"hasty\"]\n"
       "[[parameters.inward]]\npart = \"peg\"\nby = [-7e-4, -2e-4, 1e-4]\n");
   const std::string file = folder / "study.toml", out = folder / "study";
-  study(file + " --jobs 2");
-  study("merge " + file);
+  run_study(file + " --jobs 2");
+  run_study("merge " + file);
   const json by = summary_in(out).at("by_inward peg");
   CHECK(by.at("-7e-04").at("reached") == 0);
   CHECK(by.at("-7e-04").at("cases") == 2);
@@ -58,7 +51,7 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   CHECK_THAT(read_text(out + "/report.html"), Contains("case-2/replay.html"));
 
   // The written case has the peg's size, and its recording a verdict in the review.
-  const Output again = study("case " + file + " 2 --to " + folder / "c");
+  const Output again = run_study("case " + file + " 2 --to " + folder / "c");
   CHECK_THAT(again.out, Contains("case 2: reached the goal"));
   for (const Part& part : load_scene(folder / "c/scene.toml").scene.parts) {
     double x = 0;
@@ -71,12 +64,12 @@ TEST_CASE("a peg that is larger than its hole never goes in, a loose one always"
   CHECK_THAT(review.out, Contains("It goes in"));
   CHECK_THAT(read_text(folder / "c/replay.html"), Contains("</html>"));
   // Where the report's links lead, of several at once.
-  study("case " + file + " 0 2");
+  run_study("case " + file + " 0 2");
   CHECK_THAT(read_text(out + "/case-0/replay.html"), Contains("</html>"));
   CHECK_THAT(read_text(out + "/case-2/replay.html"), Contains("</html>"));
-  const Output none = study("case " + file + " 2 999", 2);
+  const Output none = run_study("case " + file + " 2 999", 2);
   CHECK_THAT(none.err, Contains("has no case 999; its cases are 0 to "));
-  const Output fails = study("case " + file + " 0 --to " + folder / "d");
+  const Output fails = run_study("case " + file + " 0 --to " + folder / "d");
   CHECK_THAT(fails.out, Contains("case 0: FAILED: blocked by hole at ("));
   CHECK_THAT(run_program("tegotae", "review " + folder / "d/recording.mcap").out, Contains("It does not go in"));
 }
@@ -133,8 +126,8 @@ TEST_CASE("an order that takes the lid first goes, the other way round does not"
       "study.toml",
       "scenes = [\"closed.toml\"]\ngoal = \"out\"\nseconds = 8\n[parameters]\noperator = [\"hasty\"]\n"
       "[[parameters.order]]\nparts = [\"front\", \"block\"]\n[[parameters.order]]\nparts = [\"block\", \"front\"]\n");
-  study(folder / "study.toml");
-  study("merge " + folder / "study.toml");
+  run_study(folder / "study.toml");
+  run_study("merge " + folder / "study.toml");
   const json by = summary_in(folder / "study").at("by_order");
   CHECK(by.at("front, block").at("reached") == 1);
   CHECK(by.at("block, front").at("reached") == 0);
@@ -146,24 +139,24 @@ TEST_CASE("parts of a study that do not belong together are refused, with file a
   const std::string text = "scenes = [\"scene.toml\"]\ngoal = \"0,0,0.0195\"\nseconds = 0.8\nrepeats = 6\n";
   folder.write("study.toml", text);
   const std::string file = folder / "study.toml", out = folder / "study";
-  study(file + " --shard 1/2");
-  CHECK_THAT(study("merge " + file, 1).err, Contains("3 of 6 cases are missing: 1, 3, 5"));
+  run_study(file + " --shard 1/2");
+  CHECK_THAT(run_study("merge " + file, 1).err, Contains("3 of 6 cases are missing: 1, 3, 5"));
   CHECK_FALSE(std::filesystem::exists(out + "/cases.csv"));
-  study(file + " --shard 2/2");
-  study("merge " + file);
+  run_study(file + " --shard 2/2");
+  run_study("merge " + file);
   const std::string table = read_text(out + "/cases.csv"), report = read_text(out + "/report.html");
   // However it is cut, and more than once.
-  study(file + " --shard 2/3");
-  study("merge " + file);
+  run_study(file + " --shard 2/3");
+  run_study("merge " + file);
   CHECK(read_text(out + "/cases.csv") == table);
   std::filesystem::remove_all(out);
-  for (const char* shard : {"4/4", "2/4", "3/4", "1/4"}) study(file + " --shard " + std::string(shard));
-  study("merge " + file);
+  for (const char* shard : {"4/4", "2/4", "3/4", "1/4"}) run_study(file + " --shard " + std::string(shard));
+  run_study("merge " + file);
   CHECK(read_text(out + "/cases.csv") == table);
   CHECK(read_text(out + "/report.html") == report);
 
   const auto refused = [&](const std::string& why) {
-    const Output o = study("merge " + file, 2);
+    const Output o = run_study("merge " + file, 2);
     CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
     CHECK_THAT(o.err, Contains(why));
   };
@@ -171,11 +164,11 @@ TEST_CASE("parts of a study that do not belong together are refused, with file a
                                    text + "seed = 2\n", text + "[parameters]\nmu = [0]\n"}) {
     folder.write("study.toml", other);
     refused("shards/1-of-4.csv:1: holds cases of another");
-    study(file + " --shard 1/4", 2);
+    run_study(file + " --shard 1/4", 2);
   }
   // The number of repeats and comments change no case.
   folder.write("study.toml", "# again\n" + replaced(text, "repeats = 6", "repeats = 5"));
-  study("merge " + file);
+  run_study("merge " + file);
   CHECK(std::count(table.begin(), table.end(), '\n') == 8);
   folder.write("study.toml", text);
   const std::string shard = out + "/shards/1-of-4.csv", rows = read_text(shard);
@@ -195,7 +188,7 @@ TEST_CASE("bad commands of study are one line") {
   write_blocks(folder);
   folder.write("study.toml", "scenes = [\"scene.toml\"]\ngoal = \"0,0,0.0195\"\nseconds = 0.2\n");
   const auto refused = [&](const std::string& arguments, const std::string& why) {
-    const Output o = study(arguments, 2);
+    const Output o = run_study(arguments, 2);
     CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
     CHECK_THAT(o.err, Contains(why));
   };

@@ -15,13 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Output study(const std::string& arguments, int code = 0) {
-  const Output o = run_program("tegotae", "study " + arguments);
-  INFO(arguments << "\n" << o.out << o.err);
-  CHECK(o.code == code);
-  return o;
-}
-
 std::string quoted(const std::string& path) {
   return "'" + path + "'";
 }
@@ -67,8 +60,8 @@ TEST_CASE("the links of a report lead to replays: some at once, any by the comma
   const TempFolder folder;
   write_six(folder, "a b/study.toml");
   const std::string file = folder / "a b/study.toml", out = folder / "some where/out";
-  study(quoted(file) + " --out " + quoted(out));
-  study("merge " + quoted(file) + " --replays 2 --out " + quoted(out));
+  run_study(quoted(file) + " --out " + quoted(out));
+  run_study("merge " + quoted(file) + " --replays 2 --out " + quoted(out));
   const json cases = cases_in(out);
   const json& rows = cases.at("tables").front().at("rows");
   REQUIRE(rows.size() == 6);
@@ -85,9 +78,9 @@ TEST_CASE("the links of a report lead to replays: some at once, any by the comma
   }
   REQUIRE(there.size() == 2);
   CHECK_THAT(cases.at("text").get<std::string>(), Contains("The replays of " + there[0] + ", " + there[1] + " are"));
-  study(arguments_of(absent.back(), out));
+  run_study(arguments_of(absent.back(), out));
   CHECK_THAT(read_text(out + "/" + absent.front().at("href").get<std::string>()), Contains("</html>"));
-  study("merge " + quoted(file) + " --replays 0 --out " + quoted(out));
+  run_study("merge " + quoted(file) + " --replays 0 --out " + quoted(out));
   CHECK_THAT(cases_in(out).at("text").get<std::string>(), !Contains("The replays of"));
 }
 
@@ -95,10 +88,10 @@ TEST_CASE("a report is the same bytes however the paths of its study are spelled
   const TempFolder folder;
   const Surroundings restored;
   write_six(folder, "a/study.toml");
-  study(folder / "a/study.toml" + " --out " + folder / "a/out");
+  run_study(folder / "a/study.toml" + " --out " + folder / "a/out");
   const auto merged = [&](const std::string& file, const std::string& out) {
     fs::remove(folder / "a/out/report.html");
-    study("merge " + file + " --replays 0 --out " + out);
+    run_study("merge " + file + " --replays 0 --out " + out);
     return read_text(folder / "a/out/report.html") + read_text(folder / "a/out/summary.json");
   };
   const std::string bytes = merged(folder / "a/study.toml", folder / "a/out");
@@ -122,7 +115,7 @@ TEST_CASE("Ctrl-C ends study run and what its driver started; the same command c
   fs::permissions(folder / "bin/hs", fs::perms::owner_all);
   ::setenv("PATH", ((folder / "bin") + ":" + restored.path).c_str(), 1);
   const std::string command = "run " + folder / "a/study.toml" + " --shards 3 --replays 0";
-  const Output o = study(command, 1);
+  const Output o = run_study(command, 1);
   CHECK_THAT(o.out, Contains("interrupted; the same command continues"));
   CHECK(o.err.empty());
   CHECK_FALSE(fs::exists(folder / "a/study/report.html"));
@@ -131,7 +124,7 @@ TEST_CASE("Ctrl-C ends study run and what its driver started; the same command c
   const std::string stat = read_text("/proc/" + std::to_string(std::stoi(worker)) + "/stat");
   CHECK((stat.empty() || stat.find(") Z ") != std::string::npos));  // where nobody waits for it it stays as a zombie
 
-  CHECK_THAT(study(command).out, Contains(" of 6 cases reached the goal"));
+  CHECK_THAT(run_study(command).out, Contains(" of 6 cases reached the goal"));
   const std::string tasks = read_text(folder / "a/study/driver/tasks");
   CHECK(std::count(tasks.begin(), tasks.end(), '\n') == 2);  // what was done is not asked again
   CHECK(cases_in(folder / "a/study").at("tables").front().at("rows").size() == 6);
