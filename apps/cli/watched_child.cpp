@@ -51,22 +51,16 @@ std::string last_line(int fd, double seconds, bool& late) {
   }
 }
 
-/// The message of a child without memory, made while there is some.
-std::string& out_of_memory() {
-  static std::string text;
-  return text;
-}
-
 /// So that a file that wants all memory ends this process and not others. Whoever asks for more ends it here: readers
 /// that catch what `new` throws would tell of another reason.
 void bound_memory(const std::string& file, double megabytes) {
 #ifndef TEGOTAE_SANITIZED  // sanitizers reserve terabytes of address space
   if (megabytes <= 0)
     megabytes = 0.75e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  out_of_memory() = "tegotae: " + file + ": not read: it takes more than " + fixed_text(megabytes, 0) +
-                    " MB of memory; tegotae import has --megabytes\n";
+  static std::string text;  // made while there is memory
+  text = "tegotae: " + file + ": not read: it takes more than " + fixed_text(megabytes, 0) +
+         " MB of memory; tegotae import has --megabytes\n";
   std::set_new_handler([] {
-    const std::string& text = out_of_memory();
     [[maybe_unused]] const ssize_t n = write(STDERR_FILENO, text.data(), text.size());
     _exit(kBadInput);
   });
