@@ -1,9 +1,8 @@
 #include <cmath>
 
 #include "bench/results.hpp"
-#include "shared/format.hpp"
-
 #include "core/number_text.hpp"
+#include "shared/format.hpp"
 
 namespace tegotae::bench {
 namespace {

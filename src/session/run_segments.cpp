@@ -29,7 +29,8 @@ std::string names_of_filtered(const InitialContactReport& start, const Scene& sc
   return names;
 }
 
-std::string number_text(double x) {
+/// The fewest digits that read back as `x`.
+std::string exact_text(double x) {
   char number[32];
   return {number, std::to_chars(number, number + sizeof number, x).ptr};
 }
@@ -38,7 +39,7 @@ std::string number_text(double x) {
 std::string goal_text(const Pose& X) {
   std::string text;
   for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()})
-    text += (text.empty() ? "" : ",") + number_text(x);
+    text += (text.empty() ? "" : ",") + exact_text(x);
   return text;
 }
 
@@ -130,10 +131,10 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
 void RunSegments::name_goal(const RunSegment& segment, RecordingInfo& info) const {
   if (!(script_length(file_) > 0) || segment.held != held_part(file_.scene).name) return;
   info.goal = goal_text(goal_.end());
-  info.goal_tolerance = number_text(goal_.tolerance());
+  info.goal_tolerance = exact_text(goal_.tolerance());
   // A person who leads the pen or the script's hand ends where they like.
   if (!settings_.device.empty() || settings_.guide != nullptr) return;
-  info.judged_after = number_text(follows_script(settings_) ? script_length(file_) : 0);
+  info.judged_after = exact_text(follows_script(settings_) ? script_length(file_) : 0);
 }
 
 bool RunSegments::follow() noexcept {
