@@ -3,14 +3,20 @@
 #include <StepData_UndefinedEntity.hxx>
 #include <cctype>
 
+#include "import/step_lists.hpp"
+
 namespace tegotae {
 
 std::string step_name(const Handle(Standard_Transient) & entity) {
   std::string name;
   auto unknown = Handle(StepData_UndefinedEntity)::DownCast(entity);
   if (!unknown.IsNull()) {
-    for (; !unknown.IsNull(); unknown = unknown->Next())
-      name += (name.empty() ? "" : "+") + std::string(unknown->StepType());
+    for (; !unknown.IsNull(); unknown = unknown->Next()) {
+      const std::string kind = unknown->StepType();
+      if (kind.compare(0, kUnfilled.size(), kUnfilled) == 0)
+        return kind.substr(kUnfilled.size()) + " with an empty list";
+      name += (name.empty() ? "" : "+") + kind;
+    }
     return name;
   }
   const std::string type = entity->DynamicType()->Name();  // "StepShape_RightCircularCylinder"

@@ -72,9 +72,8 @@ std::string check_step(const std::string& path) {
   if (std::none_of(schemas.begin(), schemas.end(), known_schema))
     throw Error(path + ": unknown STEP schema " + schemas.front() +
                 " (known: AP203, AP214, AP242); export one of these");
-  require_lists(path, bytes);
   bytes.erase(end + 16, semicolon - end - 16);  // OpenCASCADE wants the two together
-  return bytes;
+  return rename_unfilled(path, std::move(bytes));
 }
 
 }  // namespace tegotae

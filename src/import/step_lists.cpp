@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <vector>
 
 #include "import/check_text.hpp"
 #include "import/step_entities.hpp"
@@ -85,34 +86,44 @@ bool has_empty_list(std::string_view text) {
   return false;
 }
 
-void require_filled(const std::string& path, std::uint64_t id, std::string_view kind, std::string_view values) {
-  if (!std::binary_search(kFilled.begin(), kFilled.end(), kind) || !has_empty_list(values)) return;
-  const bool vowel = is_one_of(kind.front(), "AEIOU");
-  refuse(path, "damaged: #" + std::to_string(id) + " is " + (vowel ? "an " : "a ") + std::string(kind) +
-                   " with an empty list");
+/// Whether OpenCASCADE cannot have an empty list in `values` of an entity of this kind.
+bool is_unfilled(std::string_view kind, std::string_view values) {
+  return std::binary_search(kFilled.begin(), kFilled.end(), kind) && has_empty_list(values);
+}
+
+/// The kind of `s` of which `is_unfilled` holds, as a part of its text; empty when there is none.
+std::string_view unfilled_kind(const std::string& path, const StepStatement& s) {
+  StepCursor at(path, s.id, s.value);
+  const std::string_view kind = at.word();
+  if (!kind.empty()) return is_unfilled(kind, at.rest()) ? kind : std::string_view();
+  at.expect('(');
+  while (!at.take(')')) {
+    const std::string_view part = at.word();
+    if (part.empty()) at.damaged("has no kind");
+    const std::string_view values = at.rest();
+    at.list([&] { at.skip(); });
+    if (is_unfilled(part, values.substr(0, values.size() - at.rest().size()))) return part;
+  }
+  return {};
 }
 
 }  // namespace
 
-void require_lists(const std::string& path, std::string_view bytes) {
-  if (!has_empty_list(bytes)) return;
+std::string rename_unfilled(const std::string& path, std::string bytes) {
+  if (!has_empty_list(bytes)) return bytes;
+  std::vector<std::size_t> kinds;  // where they begin
   for (const StepStatement& s : step_statements(path, bytes)) {
     if (s.id == 0 || !has_empty_list(s.value)) continue;
-    StepCursor at(path, s.id, s.value);
-    const std::string_view kind = at.word();
-    if (!kind.empty()) {
-      require_filled(path, s.id, kind, at.rest());
-      continue;
-    }
-    at.expect('(');
-    while (!at.take(')')) {
-      const std::string_view part = at.word();
-      if (part.empty()) at.damaged("has no kind");
-      const std::string_view values = at.rest();
-      at.list([&] { at.skip(); });
-      require_filled(path, s.id, part, values.substr(0, values.size() - at.rest().size()));
-    }
+    const std::string_view kind = unfilled_kind(path, s);
+    if (!kind.empty()) kinds.push_back(static_cast<std::size_t>(kind.data() - bytes.data()));
   }
+  std::string out;
+  std::size_t from = 0;
+  for (const std::size_t at : kinds) {
+    out.append(bytes, from, at - from).append(kUnfilled);
+    from = at;
+  }
+  return out.append(bytes, from);
 }
 
 }  // namespace tegotae

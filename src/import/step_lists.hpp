@@ -5,8 +5,12 @@
 
 namespace tegotae {
 
-/// Throws Error with the number of an entity that has an empty list where ISO 10303 wants none, in kinds of which
-/// OpenCASCADE then follows null pointers, or takes a point for the origin.
-void require_lists(const std::string& path, std::string_view bytes);
+/// What `rename_unfilled` puts before a kind.
+constexpr std::string_view kUnfilled = "UNFILLED_";
+
+/// The text of a STEP file in which entities that have an empty list where ISO 10303 wants none are of kinds that
+/// OpenCASCADE does not know, where it would follow null pointers or take a point for the origin. So what no shape is
+/// made of does no harm, and what one is made of is refused as all unknown kinds are. Throws Error on a damaged entity.
+std::string rename_unfilled(const std::string& path, std::string bytes);
 
 }  // namespace tegotae

@@ -32,8 +32,9 @@ std::vector<Seed> seeds() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string path = "input.step", bytes(reinterpret_cast<const char*>(data), size);
   try {
-    require_lists(path, bytes);
-    const PlainStep plain = take_triangles(path, bytes);
+    const std::string renamed = rename_unfilled(path, bytes);
+    require(rename_unfilled(path, renamed) == renamed, "what was renamed is left alone");
+    const PlainStep plain = take_triangles(path, renamed);
     std::size_t triangles = 0;
     for (const StepTriangles& shape : plain.shapes) {
       triangles += shape.mesh.triangles.size();
