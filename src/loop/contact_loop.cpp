@@ -67,6 +67,8 @@ constexpr double kStiction = 1e-6;
 constexpr int kMaxStillTicks = 250;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
 constexpr double kFeltLag = 0.05;
+// Contacts explain a lag where steps that open gaps take back this share of what the others bring.
+constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.7;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
@@ -137,7 +139,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   held_by_contacts_ = false;
   known_.clear();
   allowed_ = wanted;
-  made_ = 0;
+  made_ = gained_ = lost_ = 0;
   if (near_.empty()) {
     X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
     if (wanted <= travel) X_ = Y;
@@ -315,7 +317,8 @@ LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   end.bound = lag_bound(at_.radius);
   end.contacts = report.contacts;
   end.held_by_contacts = held_by_contacts_;
-  end.allowed = allowed_;
+  // What the contacts allow and take back again is no way to the pen.
+  end.allowed = lost_ > kTakenBack * gained_ ? 0 : allowed_;
   end.late = late();
   end.moved = moved_ > kRest;
   return lag_reason(end);
@@ -351,8 +354,9 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   // even grows: near the end of the way such steps would swing to and fro for ever.
   const Vec6 step = metric_.whiten(trial.d);
   const double promised = error.squaredNorm() - (error - step).squaredNorm();
-  if (promised <= 0) return true;  // a step that only opens gaps
   const double made = error.squaredNorm() - metric_.whiten(displacement(trial.X, Y, center_)).squaredNorm();
+  (made > 0 ? gained_ : lost_) += std::abs(made);
+  if (promised <= 0) return true;  // a step that only opens gaps
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, substep_cap_);
   return made > kStiction * still_ticks_ * error.squaredNorm();

@@ -53,6 +53,8 @@ class ContactLoop final : public ProxyLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One program over the constraints: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
+  /// Whether `motion` leads farther away from the pen, which is `wanted` away, than gaps are worth that recover.
+  bool is_long_way_back(const Vec6& motion, const Vec6& wanted) const;
   /// Of a shorter way a program that does not project may bring a part nearer to its pen than of the whole, of which it
   /// makes `motion`: the best of some.
   bool try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
@@ -126,6 +128,8 @@ class ContactLoop final : public ProxyLoop {
   double trust_;
   double moved_ = 0;     ///< of X in the last tick, m
   double made_ = 0;      ///< sub-steps of this tick, m
+  double gained_ = 0;    ///< of the squared error, by sub-steps of this tick
+  double lost_ = 0;      ///< the same, by those that led away
   int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
   double margin_;        ///< gap that contacts keep, m, between the next two
   double min_margin_, max_margin_;

@@ -31,7 +31,9 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     // would leave nearly nothing of their recovery.
     const Vec6 scaled = (cap / length) * motion;
     motion = scaled;
-    if (!rubs && !at_.contacts->constraints().empty() && !solve(scaled, report, motion)) motion = scaled;
+    if (!rubs && !at_.contacts->constraints().empty() &&
+        (!solve(scaled, report, motion) || is_long_way_back(motion, wanted)))
+      motion = scaled;
   }
   // The rest of a longer motion would see no load and so no friction; its gaps are recovered without friction.
   if (rubs) recover_gaps(report, motion);
@@ -72,9 +74,7 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
     motion = r.motion;
     if (only_stands && (r.status != ResolveStatus::solved || motion.norm() < kAlongShare * wanted.norm())) break;
     if (r.status != ResolveStatus::solved) continue;
-    // Gaps between nearly parallel constraints may ask for a long way, even back out of a hole: they are not worth it.
-    const bool away = r.motion.squaredNorm() > 2 * wanted.dot(r.motion);
-    if (recovery != 0 && away && size(metric_.unwhiten(r.motion)) >= kMaxRecovery * margin_) continue;
+    if (recovery != 0 && is_long_way_back(r.motion, wanted)) continue;
     only_stands = recovery == 0 && slack == 0 && resolver_->projects() && motion.norm() < kRest &&
                   wanted.norm() > kRest && wedged();
     if (only_stands) continue;
@@ -86,6 +86,12 @@ bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {
   report.status = ResolveStatus::solved;
   mark_carriers(motion);
   return true;
+}
+
+bool ContactLoop::is_long_way_back(const Vec6& motion, const Vec6& wanted) const {
+  // Gaps between nearly parallel constraints may ask for a long way, even back out of a hole: they are not worth it.
+  const bool away = motion.squaredNorm() > 2 * wanted.dot(motion);
+  return away && size(metric_.unwhiten(motion)) >= kMaxRecovery * margin_;
 }
 
 void ContactLoop::mark_carriers(const Vec6& motion) {

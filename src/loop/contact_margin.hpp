@@ -17,7 +17,7 @@ inline constexpr double kRecoverBelow = 0.8;
 /// although the surfaces have clearance.
 inline constexpr double kRecoverWedged = 0.98;
 /// To recover gaps a part moves no farther away from the pen than this many margins.
-inline constexpr double kMaxRecovery = 30;
+inline constexpr double kMaxRecovery = 10;
 /// Normals are known to some 1e-11 rad (rounding of coordinates over a gap of a micrometer), so between walls without
 /// room no motion may keep all gaps to the last bit. Where there is none, gaps may be lost by this share of the wanted
 /// motion.
