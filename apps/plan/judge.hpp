@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ struct JudgeOptions {
   double seconds = 10;  ///< of processor time for a search
 };
 
-/// Both planners on one scene, by turns.
-JudgedFigures judge(const JudgedScene& scene, const JudgeOptions& options);
+/// Both planners on one scene, by turns; `progress` is told what is done next.
+JudgedFigures judge(const JudgedScene& scene, const JudgeOptions& options,
+                    const std::function<void(int seed, const char* what)>& progress);
 
 }  // namespace tegotae::plan

@@ -4,13 +4,14 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/number_text.hpp"
 #include "core/output_file.hpp"
 #include "plan/judge.hpp"
+#include "plan/judge_rows.hpp"
 #include "plan/planner.hpp"
 #include "shared/format.hpp"
 #include "shared/guarded_main.hpp"
@@ -69,43 +70,40 @@ Page read_page(const std::string& path) {
   return {text.substr(0, inside), text.substr(inside, end - inside), text.substr(end)};
 }
 
-/// The row of a scene in a table; empty: it has none.
-std::string row_in(const std::string& table, const JudgedScene& scene) {
-  const std::size_t begin = table.find("\n" + first_cell(scene) + "|");
-  return begin == std::string::npos ? "" : table.substr(begin + 1, table.find('\n', begin + 1) - begin);
-}
-
 struct Options {
   JudgeOptions judge;
   std::vector<std::string> scenes;
-  std::string parts, markdown;
+  std::string parts, rows, markdown;
 };
 
 bool wanted(const Options& o, const JudgedScene& scene) {
   return o.scenes.empty() || std::find(o.scenes.begin(), o.scenes.end(), scene.name) != o.scenes.end();
 }
 
-/// The command that makes the complete table, as the file shows it.
+/// The command that makes the table, as the file shows it.
 std::string command(const Options& o) {
+  const auto option = [](const char* name, const std::string& value) {
+    return value.empty() ? "" : std::string(" ") + name + " " + value;
+  };
   return "Command: `plan_judge --seeds " + std::to_string(o.judge.seeds) + " --seconds " +
-         number_text(o.judge.seconds, 6) + (o.parts.empty() ? "" : " --parts " + o.parts) + " --markdown " +
-         o.markdown + "` (with `--scene NAME` a row of it)\n\n";
+         number_text(o.judge.seconds, 6) + option("--parts", o.parts) + option("--rows", o.rows) +
+         option("--markdown", o.markdown) + "`\n\n";
 }
 
-/// Rows that were made replace those of the table, if it is of the same command; a run of all scenes makes it anew
-/// where it is of another one.
-void write_table(const Options& o, const std::vector<JudgedScene>& scenes,
-                 const std::map<std::string, std::string>& rows) {
+void write_table(const Options& o, const std::string& rows) {
   const Page page = read_page(o.markdown);
-  const bool same = page.generated.find(command(o)) == 0;
-  if (!o.scenes.empty() && !same)
-    throw Error(o.markdown + ": its table is not of " + command(o).substr(0, command(o).find('\n')));
-  std::string table = command(o) + kHead;
-  for (const JudgedScene& scene : scenes) {
-    const auto made = rows.find(scene.name);
-    table += made != rows.end() ? made->second : same ? row_in(page.generated, scene) : "";
-  }
-  replace_file(o.markdown, page.before + table + page.after);
+  replace_file(o.markdown, page.before + command(o) + kHead + rows + page.after);
+}
+
+JudgedFigures figures(const Options& o, const JudgedScene& scene, JudgeRows& kept) {
+  const std::string from = judged_from(scene, o.judge);
+  if (const std::optional<JudgedFigures> known = kept.find(scene.name, from)) return *known;
+  apps::StatusLine status;
+  const JudgedFigures made = judge(scene, o.judge, [&](int seed, const char* what) {
+    status.say(scene.name + format(", seed %d of %d: ", seed, o.judge.seeds) + what);
+  });
+  kept.keep(scene.name, from, made);
+  return made;
 }
 
 /// Exit code 1 when a path of ours intersects, or one is found where there is none.
@@ -115,21 +113,18 @@ int run(const Options& o) {
   for (const std::string& name : o.scenes)
     if (std::none_of(scenes.begin(), scenes.end(), [&](const JudgedScene& s) { return s.name == name; }))
       throw Error("no scene \"" + name + "\"");
-  std::map<std::string, std::string> rows;
+  JudgeRows kept(o.rows);
+  if (!o.markdown.empty()) read_page(o.markdown);  // that it cannot be written is said before hours of work
+  std::string rows;
   bool clean = true;
   for (const JudgedScene& scene : scenes) {
     if (!wanted(o, scene)) continue;
-    JudgedFigures f;
-    {
-      apps::StatusLine status;
-      status.say(scene.name);
-      f = judge(scene, o.judge);
-    }
+    const JudgedFigures f = figures(o, scene, kept);
     clean = clean && f.ours.intersecting == 0 && (scene.comes_out || f.ours.found == 0);
-    rows[scene.name] = row(scene, f, o.judge.seeds);
-    std::cout << rows[scene.name] << std::flush;
-    if (!o.markdown.empty()) write_table(o, scenes, rows);
+    rows += row(scene, f, o.judge.seeds);
+    std::cout << row(scene, f, o.judge.seeds) << std::flush;
   }
+  if (!o.markdown.empty()) write_table(o, rows);
   return clean ? apps::kDone : apps::kRunFailed;
 }
 
@@ -144,8 +139,13 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", o.judge.seconds, "Processor time of a search, at most")
       ->check(CLI::Range(0.1, 1e5))
       ->capture_default_str();
-  app.add_option("--scene", o.scenes, "Only this one (may be repeated)")->type_name("NAME");
+  CLI::Option* scene = app.add_option("--scene", o.scenes, "Only this one (may be repeated)")->type_name("NAME");
   app.add_option("--parts", o.parts, "Folder of real parts, with pairs.json")->type_name("DIR");
-  app.add_option("--markdown", o.markdown, "Also replace the generated part of this file")->type_name("FILE");
+  app.add_option("--rows", o.rows,
+                 "Keeps figures here; a scene whose program, options and parts are the same is taken from it")
+      ->type_name("FILE.json");
+  app.add_option("--markdown", o.markdown, "Also replace the generated part of this file, when all scenes are done")
+      ->excludes(scene)
+      ->type_name("FILE");
   return apps::guarded_main(app, argc, argv, [&] { return run(o); });
 }

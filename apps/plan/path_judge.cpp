@@ -17,8 +17,9 @@ constexpr double kStep = 20e-6;  // m
 // Steps that one job asks about.
 constexpr int kRun = 500;
 // A distance takes FCL several times as long as a collision. It is asked for after so many steps, twice as many each
-// time that it spares fewer steps than kWorth, and beyond the longest way that it is to spare (m) it is not needed.
-constexpr int kPatience = 8, kMaxPatience = 256, kWorth = 8;
+// time that it spares fewer than kWorth, and at once where the last one was worth it. Beyond the longest way that it is
+// to spare (m) it is not needed.
+constexpr int kPatience = 8, kMaxPatience = 256, kWorth = 3;
 constexpr double kFarthest = 5e-3;
 // FCL rounds distances.
 constexpr double kShare = 0.9;
@@ -33,6 +34,22 @@ std::array<double, 14> key_of(const Pose& from, const Pose& to) {
   return key;
 }
 
+/// When a distance is asked for.
+class Patience {
+ public:
+  bool is_over() { return ++since_ > patience_; }
+  void learn(double spared) {
+    if (spared >= kWorth)
+      patience_ = 0;
+    else
+      patience_ = std::clamp(2 * patience_, kPatience, kMaxPatience);
+    since_ = 0;
+  }
+
+ private:
+  int patience_ = kPatience, since_ = 0;
+};
+
 }  // namespace
 
 /// FCL of one thread about a pose of the held part among the others.
@@ -41,6 +58,7 @@ class PathJudge::Asked {
   explicit Asked(const Scene& scene) : scene_(scene), held_(held_part(scene)) {}
 
   bool intersects(const Pose& X) {
+    ++count;
     return std::any_of(scene_.parts.begin(), scene_.parts.end(), [&](const Part& part) {
       return !part.held && fcl_.intersect(*held_.mesh, *part.mesh, part.pose.inverse() * X);
     });
@@ -48,6 +66,7 @@ class PathJudge::Asked {
 
   /// Of surfaces that do not intersect, m; kFarthest when it is more.
   double distance(const Pose& X) {
+    ++count;
     double least = kFarthest;
     FclPairs::Faces faces;
     for (const Part& part : scene_.parts)
@@ -55,6 +74,8 @@ class PathJudge::Asked {
         least = std::min(least, fcl_.distance_below(least, *held_.mesh, *part.mesh, part.pose.inverse() * X, faces));
     return least;
   }
+
+  std::int64_t count = 0;  ///< of both questions
 
  private:
   const Scene& scene_;
@@ -70,11 +91,13 @@ PathJudge::PathJudge(const Scene& scene, const Vec3& center) : scene_(scene), ce
 
 PathJudge::~PathJudge() = default;
 
+std::int64_t PathJudge::asked() const {
+  std::int64_t sum = 0;
+  for (const auto& fcl : fcl_) sum += fcl->count;
+  return sum;
+}
+
 PathVerdict PathJudge::ask(const std::vector<Pose>& path) {
-  struct Run {
-    Motion* motion;
-    int first, last;
-  };
   std::vector<Run> runs;
   std::vector<const Motion*> motions;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -87,14 +110,16 @@ PathVerdict PathJudge::ask(const std::vector<Pose>& path) {
     for (int first = 1; first <= m.steps; first += kRun)
       runs.push_back({&m, first, std::min(first + kRun - 1, m.steps)});
   }
-  std::vector<std::int64_t> found(runs.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&](int processor) {
     for (std::size_t i = next++; i < runs.size(); i = next++)
-      found[i] = intersecting(*runs[i].motion, runs[i].first, runs[i].last, *fcl_[static_cast<std::size_t>(processor)]);
+      look_at(runs[i], *fcl_[static_cast<std::size_t>(processor)]);
   };
   parallel_for(static_cast<int>(fcl_.size()), 0, work, {});
-  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].motion->intersecting += found[i];
+  for (const Run& run : runs) {
+    run.motion->intersecting += run.intersecting;
+    clear_.insert(clear_.end(), run.clear.begin(), run.clear.end());
+  }
   PathVerdict out;
   for (const Motion* m : motions) {
     out.poses += m->steps;
@@ -113,23 +138,48 @@ PathJudge::Motion PathJudge::motion(const Pose& from, const Pose& to) const {
   return m;
 }
 
-std::int64_t PathJudge::intersecting(const Motion& m, int first, int last, Asked& fcl) const {
-  std::int64_t found = 0;
-  int patience = kPatience, since = 0;
-  for (int k = first; k <= last; ++k) {
-    const Pose X = displaced(m.from, center_, static_cast<double>(k) / m.steps * m.d);
-    if (fcl.intersects(X)) {
-      ++found;
-      continue;
+double PathJudge::spared(const Vec3& center, const Mat3& turn, std::size_t& near) const {
+  for (std::size_t i = 0; i < clear_.size(); ++i) {
+    // Paths go by in their order: the one that was near, and those after it, come first.
+    const std::size_t at = (near + i) % clear_.size();
+    const Clear& known = clear_[at];
+    const Vec3 gone = center - known.center;
+    if (gone.norm() >= known.reach) continue;
+    const Mat3 turned = turn - known.turn;
+    double farthest = 0;
+    for (const Vec3& p : points_) {
+      farthest = std::max(farthest, (gone + turned * p).norm());
+      if (farthest >= known.reach) break;
     }
-    if (++since < patience) continue;
-    since = 0;
-    // As long as no point has gone that far, nothing is met.
-    const int spared = static_cast<int>(kShare * fcl.distance(X) / (m.way / m.steps));
-    patience = spared < kWorth ? std::min(2 * patience, kMaxPatience) : kPatience;
-    k += spared;
+    if (farthest >= known.reach) continue;
+    near = at;
+    return known.reach - farthest;
   }
-  return found;
+  return 0;
+}
+
+void PathJudge::look_at(Run& run, Asked& fcl) const {
+  const Motion& m = *run.motion;
+  Patience patience;
+  std::size_t near = 0;
+  for (int k = run.first; k <= run.last; ++k) {
+    const Pose X = displaced(m.from, center_, static_cast<double>(k) / m.steps * m.d);
+    const Vec3 center = X * center_;
+    const Mat3 turn = X.q.toRotationMatrix();
+    double left = spared(center, turn, near);
+    if (left == 0 && patience.is_over()) {
+      const double distance = kShare * fcl.distance(X);
+      patience.learn(distance / kStep);
+      // Of less than a step it may be rounding: whether triangles meet there, the collision says.
+      if (distance >= kStep) {
+        left = distance;
+        run.clear.push_back({center, turn, left});
+      }
+    }
+    if (left == 0 && fcl.intersects(X)) ++run.intersecting;
+    // As long as no point has gone that far, nothing is met.
+    if (left > 0 && m.way > 0) k += static_cast<int>(std::min(left * m.steps / m.way, 1.0 * m.steps));
+  }
 }
 
 }  // namespace tegotae::plan

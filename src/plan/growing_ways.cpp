@@ -8,12 +8,14 @@ namespace {
 // What a tree is grown towards, at first: any pose of the room, the other tree, what led to a pose once more, else a
 // shift, turn or screw of it.
 constexpr double kAnywhere = 0.3, kOtherTree = 0.15, kRepeat = 0.15;
+// A path that is known is worth as much as all others.
+constexpr double kKnownPath = 1;
 // The share of the past in what is known of a way, and the least that is thought of it.
 constexpr double kPast = 0.9, kMinHope = 0.05, kFirstHope = 0.5;
 
 }  // namespace
 
-GrowingWays::GrowingWays()
+GrowingWays::GrowingWays(bool known)
     : ways_{{GrowingMotion::anywhere, 0, 1, kAnywhere, kFirstHope},
             {GrowingMotion::other_tree, 0, 1, kOtherTree, kFirstHope},
             {GrowingMotion::repeat, 0, 1, kRepeat, kFirstHope}} {
@@ -23,6 +25,7 @@ GrowingWays::GrowingWays()
       for (const double sign : {1.0, -1.0}) own.push_back({motion, axis, sign, 0, kFirstHope});
   for (GrowingWay& way : own) way.share = (1 - kAnywhere - kOtherTree - kRepeat) / static_cast<double>(own.size());
   ways_.insert(ways_.end(), own.begin(), own.end());
+  if (known) ways_.push_back({GrowingMotion::known_path, 0, 1, kKnownPath, kFirstHope});
 }
 
 GrowingWay& GrowingWays::choose(double at) {

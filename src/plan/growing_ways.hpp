@@ -5,9 +5,9 @@
 
 namespace tegotae {
 
-/// How a tree of poses is grown: towards a pose of the room, of the other tree, by what led to a pose, or by a motion
-/// about or along an axis: any, or one of the world or of the part.
-enum class GrowingMotion : std::uint8_t { anywhere, other_tree, repeat, shift, turn, screw };
+/// How a tree of poses is grown: towards a pose of the room, of the other tree, of a path that is known, by what led to
+/// a pose, or by a motion about or along an axis: any, or one of the world or of the part.
+enum class GrowingMotion : std::uint8_t { anywhere, other_tree, known_path, repeat, shift, turn, screw };
 
 struct GrowingWay {
   GrowingMotion motion;
@@ -20,7 +20,8 @@ struct GrowingWay {
 /// All of them. Ways that led on lately are chosen more often.
 class GrowingWays {
  public:
-  GrowingWays();
+  /// `known`: whether there is a path that is known.
+  explicit GrowingWays(bool known);
   /// The one at `at`, from 0 to 1, of all shares.
   GrowingWay& choose(double at);
   /// What came of an iteration that went a way.

@@ -56,6 +56,8 @@ struct Aim {
 };
 
 struct Tree {
+  explicit Tree(bool known) : ways(known) {}
+
   std::deque<Node> nodes;
   std::unique_ptr<ompl::NearestNeighborsGNAT<Node*>> near;
   GrowingWays ways;
@@ -70,7 +72,9 @@ class CompliantConnect final : public ob::Planner {
         world_(world),
         task_(task),
         result_(result),
-        range_(kRange * world.radius()) {
+        range_(kRange * world.radius()),
+        from_start_(!task.known.empty()),
+        from_goals_(!task.known.empty()) {
     sampler_ = si->allocStateSampler();
     for (Tree* tree : {&from_start_, &from_goals_}) {
       tree->near = std::make_unique<ompl::NearestNeighborsGNAT<Node*>>();
@@ -83,7 +87,7 @@ class CompliantConnect final : public ob::Planner {
     add(from_start_, nullptr, task_.start, {});
     for (const Pose& goal : task_.goals) add(from_goals_, nullptr, goal, {});
     if (arrived(from_start_, from_start_.nodes.front())) return finish();
-    if (follow_axes(ended)) return finish();
+    if (follow_axes(ended) || follow_known(ended)) return finish();
     for (const Pose& goal : task_.goals) {
       if (ended || result_.iterations >= task_.iterations) break;
       if (iterate(from_start_, {&from_start_.nodes.front(), goal, {}}, ended)) return finish();
@@ -142,6 +146,11 @@ class CompliantConnect final : public ob::Planner {
       const Pose& X = random_node(other(tree)).X;
       return {&nearest(tree, X), X, {}};
     }
+    if (way.motion == GrowingMotion::known_path) {
+      const int at = rng_.uniformInt(0, static_cast<int>(task_.known.size()) - 1);
+      const Pose& X = task_.known[static_cast<std::size_t>(at)];
+      return {&nearest(tree, X), X, {}};
+    }
     Node* node = &tree.nodes.back();
     if (rng_.uniform01() >= kNewest)
       for (int i = 0; i < kContest; ++i) {
@@ -188,6 +197,15 @@ class CompliantConnect final : public ob::Planner {
     }
     if (task_.progress) task_.progress(result_.iterations, result_.poses, result_.way);
     return done;
+  }
+
+  /// Leads the part along the path that is known: where that is too near to something it slides beside it.
+  bool follow_known(const ob::PlannerTerminationCondition& ended) {
+    for (const Pose& X : task_.known) {
+      if (ended || result_.iterations >= task_.iterations) return false;
+      if (iterate(from_start_, {&nearest(from_start_, X), X, {}}, ended)) return true;
+    }
+    return false;
   }
 
   /// Moves the part along what it has in common with others: a screw comes out by turning on with the rise of its

@@ -275,6 +275,7 @@ class Planning {
   bool take_wider(const SearchTask& task, double clearance, std::int64_t most_led, Plan& plan) {
     MotionWorld wider(world_.scene(), clearance);
     SearchTask again = task;
+    again.known = plan.path;
     again.progress = teller("searching for a wider way");
     bool taken = false;
     for (int i = 0; i < kWiderSearches && !taken && !stopped(); ++i) {

@@ -16,6 +16,8 @@ struct SearchTask {
   std::vector<Pose> goals;     ///< one of them is to be reached; all free
   const Exit* exit = nullptr;  ///< whatever is out by this has arrived too; null: the goals alone
   WorldBox room;               ///< for the center of mass, m
+  /// A path from the start that is known, of less clearance than the world's: trees grow along it too. Empty: none.
+  std::vector<Pose> known;
   std::uint64_t seed = 1;
   std::int64_t iterations = 0;
   std::function<bool()> ended;  ///< whether to stop at once

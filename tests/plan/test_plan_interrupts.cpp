@@ -126,27 +126,36 @@ TEST_CASE("Ctrl-C while an assembly is taken apart keeps the steps that were fou
   CHECK(!std::filesystem::exists(p.to + "/step-03.csv"));
 }
 
-TEST_CASE("the judge keeps the rows of a table that it makes anew until they are made") {
+TEST_CASE("a judge that was ended goes on with the scenes that it has not done") {
   const TempFolder folder;
-  const std::string table = folder / "table.md";
-  const auto write = [&](const std::string& seconds) {
-    folder.write("table.md", "before\n<!-- begin generated -->\nCommand: `plan_judge --seeds 1 --seconds " + seconds +
-                                 " --markdown " + table +
-                                 "` (with `--scene NAME` a row of it)\n\n| scene |\n|---|\n| loose | old |\n"
-                                 "| screw | old |\n<!-- end generated -->\nafter\n");
+  const std::string rows = folder / "rows.json", table = folder / "table.md";
+  folder.write("table.md", "before\n<!-- begin generated -->\nold\n<!-- end generated -->\nafter\n");
+  const auto begin = [&](const std::string& seconds, const std::vector<std::string>& more) {
+    std::vector<std::string> command = {TEGOTAE_BIN_DIR "/plan_judge", "--seeds", "1", "--seconds", seconds};
+    command.insert(command.end(), {"--rows", rows});
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
   };
-  const auto begin = [&] {
-    Program judge({TEGOTAE_BIN_DIR "/plan_judge", "--seeds", "1", "--seconds", "0.1", "--markdown", table});
+  {
+    Program judge(begin("0.1", {"--markdown", table}));
     CHECK_THAT(judge.line(), Contains("| loose | 1 of 1"));
-    CHECK_THAT(judge.line(), Contains("| straight | 1 of 1"));  // the first row is in the table then
+    CHECK_THAT(judge.line(), Contains("| straight | 1 of 1"));
     judge.end(SIGKILL);
-    return read_text(table);
+  }
+  CHECK_THAT(read_text(table), Contains("\nold\n"));  // a table is of all scenes
+  json kept = json::parse(read_text(rows));
+  CHECK(kept.at("loose").at("ours").at("found") == 1);
+  // Figures that no search makes: those of "straight" are taken, the others are made.
+  kept.at("straight").at("ours").at("clearance") = 77e-6;
+  kept.erase("loose");
+  folder.write("rows.json", kept.dump());
+  const auto run = [&](const std::string& seconds) {
+    Program judge(begin(seconds, {"--scene", "straight", "--scene", "loose"}));
+    const std::string first = judge.line(), out = first + "\n" + judge.line();
+    judge.end(SIGKILL);
+    return out;
   };
-  write("0.1");
-  const std::string same = begin();
-  CHECK_THAT(same, Contains("| loose | 1 of 1") && Contains("| screw | old |") && !Contains("| loose | old |"));
-  CHECK_THAT(same, Contains("before\n") && Contains("after\n"));
-  // Rows of other searches are not mixed.
-  write("5");
-  CHECK_THAT(begin(), Contains("| loose | 1 of 1") && !Contains("old"));
+  CHECK_THAT(run("0.1"), Contains("| loose | 1 of 1") && Contains("| straight | 1 of 1") && Contains("| 77 |"));
+  // Of other searches they are not taken.
+  CHECK_THAT(run("0.2"), Contains("| straight | 1 of 1") && !Contains("| 77 |"));
 }
