@@ -1,6 +1,7 @@
 #include "plan/order_output.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -190,6 +191,14 @@ void write_step(const SceneFile& file, const Removal& step, const std::optional<
   write_file(path + ".csv", review::path_csv(then, rows, scan, zones));
 }
 
+/// Steps of an earlier order that had more than this one.
+void remove_steps_from(std::size_t step, const std::string& folder) {
+  for (bool any = true; any; ++step) {
+    any = false;
+    for (const char* kind : {".glb", ".csv"}) any |= std::filesystem::remove(folder + "/" + step_file(step) + kind);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> order_files(const std::string& folder) {
@@ -203,6 +212,7 @@ void write_order(const SceneFile& file, const Disassembly& order, const std::opt
   write_file(folder + "/order.html", order_html(file, order));
   for (std::size_t i = 0; i < order.order.size(); ++i)
     write_step(file, order.order[i], band, folder + "/" + step_file(i));
+  remove_steps_from(order.order.size(), folder);
 }
 
 std::string order_text(const Scene& scene, const Disassembly& order) {

@@ -14,7 +14,8 @@ namespace tegotae::plan {
 std::vector<std::string> order_files(const std::string& folder);
 
 /// Writes order.csv, order.dot (for Graphviz), order.html and, for each step, step-NN.csv (poses) and step-NN.glb into
-/// `folder`; with a `band` the steps' files tell and show where they are to it. Throws Error.
+/// `folder`; with a `band` the steps' files tell and show where they are to it. Steps of an earlier order that are more
+/// are removed. Throws Error.
 void write_order(const SceneFile& file, const Disassembly& order, const std::optional<review::ClearanceBand>& band,
                  const std::string& folder);
 

@@ -5,10 +5,7 @@
 #include <iostream>
 #include <limits>
 
-#include "broadphase/bounding_spheres.hpp"
-#include "core/output_file.hpp"
 #include "core/same_file.hpp"
-#include "loop/scene_parts.hpp"
 #include "plan/disassembly.hpp"
 #include "plan/order_output.hpp"
 #include "plan/plan_output.hpp"
@@ -46,28 +43,6 @@ PlanOptions plan_options(const PlanCommand& o, const Scene& scene, apps::StatusL
                             static_cast<long long>(p.iterations), p.poses, 1e3 * p.way));
   };
   return options;
-}
-
-/// Measures the path, and writes it.
-void finish(PlanReport& r, const std::optional<review::ClearanceBand>& band, apps::StatusLine& status) {
-  held_part(r.file.scene).pose = r.plan.path.front();
-  const review::Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
-    status.show(what, done, total);
-  };
-  // The scan reports the part's center as the contact loop has it; radius and rows only set the pace.
-  const Sphere ball = bounding_sphere(*held_part(r.file.scene).mesh);
-  const std::vector<RecordFrame> rows = path_rows(r.plan.path, r.plan.center, ball.radius);
-  const review::Scan scan = review::scan_path(r.file.scene, r.file.path, rows, progress, band ? band->high : 0);
-  std::vector<StylusScript::Key> keys = {{0, rows.front().x}, {1, rows.back().x}};
-  r.file.script = StylusScript(std::move(keys));
-  const review::Findings found = review::find(r.file, rows, scan, scan.center);
-  r.way = found.way;
-  r.turn = found.turn;
-  r.tightest = found.clearances;
-  if (band) r.band = review::find_band(*band, rows, scan);
-  write_path(r.file, rows, scan, r.band, r.folder);
-  if (band) write_review(r, *band, progress);
-  write_file(r.folder + "/plan.json", plan_json(r) + "\n");
 }
 
 /// `--all`.
@@ -132,22 +107,23 @@ int run_plan(const PlanCommand& o) {
   how.load = o.load;
   PlanReport r(apps::load_with_progress(o.scene, how));
   r.to_goal = !o.goal.empty();
-  r.folder = o.folder;
   apps::print_notes(r.file.scene);
-  std::vector<std::string> outputs = path_files(o.folder);
-  outputs.push_back(o.folder + "/plan.json");
-  refuse_to_replace(outputs, r.file.files);
+  refuse_to_replace(plan_files(o.folder), r.file.files);
   std::filesystem::create_directories(o.folder);
   {
     apps::StatusLine status;
     status.say("building hierarchies");
     r.plan = plan_path(r.file.scene, plan_options(o, r.file.scene, status));
-    finish(r, o.band, status);
+    const review::Progress progress = [&](const char* what, std::size_t done, std::size_t total) {
+      status.show(what, done, total);
+    };
+    measure(r, o.band, progress);
+    write_plan(r, o.folder, progress);
   }
   if (o.json)
     std::cout << plan_json(r) << std::endl;
   else
-    std::cout << plan_text(r) << std::flush;
+    std::cout << plan_text(r, o.folder) << std::flush;
   return r.plan.found && !r.plan.interrupted ? apps::kDone : apps::kRunFailed;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "broadphase/bounding_spheres.hpp"
 #include "core/output_file.hpp"
 #include "loop/scene_parts.hpp"
 #include "review/path_exports.hpp"
@@ -15,6 +17,21 @@ namespace {
 
 constexpr double kSpeed = 0.02;  // m/s
 constexpr double kRow = 0.01;    // s
+
+/// The report on the recording, with the zones of the band.
+void write_review(const PlanReport& r, const std::string& folder, const review::Progress& progress) {
+  const std::string path = folder + "/recording.csv";
+  Recording recording = read_recording(path);
+  review::ReviewQuestions questions;
+  questions.goal = recording.frames.back().x;
+  questions.band = r.band->band;
+  review::Review shown = review::review_recording(path, std::move(recording), r.file, questions, progress);
+  if (!r.plan.found) {
+    shown.verdict.outcome = review::Outcome::open;
+    shown.verdict.headline = "No way was found: this one leads to the farthest pose";
+  }
+  write_file(folder + "/review.html", review::report_html(shown, progress));
+}
 
 }  // namespace
 
@@ -42,40 +59,46 @@ std::vector<RecordFrame> path_rows(const std::vector<Pose>& path, const Vec3& ce
   return rows;
 }
 
-std::vector<std::string> path_files(const std::string& folder) {
+std::vector<std::string> plan_files(const std::string& folder) {
   std::vector<std::string> out;
-  for (const char* name :
-       {"/path.csv", "/path.glb", "/script.csv", "/recording.csv", "/recording.csv.info.json", "/review.html"})
+  for (const char* name : {"/path.csv", "/path.glb", "/script.csv", "/recording.csv", "/recording.csv.info.json",
+                           "/review.html", "/plan.json"})
     out.push_back(folder + name);
   return out;
 }
 
-void write_review(const PlanReport& r, const review::ClearanceBand& band, const review::Progress& progress) {
-  const std::string path = r.folder + "/recording.csv";
-  Recording recording = read_recording(path);
-  review::ReviewQuestions questions;
-  questions.goal = recording.frames.back().x;
-  questions.band = band;
-  review::Review shown = review::review_recording(path, std::move(recording), r.file, questions, progress);
-  if (!r.plan.found) {
-    shown.verdict.outcome = review::Outcome::open;
-    shown.verdict.headline = "No way was found: this one leads to the farthest pose";
-  }
-  write_file(r.folder + "/review.html", review::report_html(shown, progress));
+void measure(PlanReport& r, const std::optional<review::ClearanceBand>& band, const review::Progress& progress) {
+  held_part(r.file.scene).pose = r.plan.path.front();
+  // The scan reports the part's center as the contact loop has it; radius and rows only set the pace.
+  const Sphere ball = bounding_sphere(*held_part(r.file.scene).mesh);
+  r.rows = path_rows(r.plan.path, r.plan.center, ball.radius);
+  r.scan = review::scan_path(r.file.scene, r.file.path, r.rows, progress, band ? band->high : 0);
+  r.file.script = StylusScript({{0, r.rows.front().x}, {1, r.rows.back().x}});
+  const review::Findings found = review::find(r.file, r.rows, r.scan, r.scan.center);
+  r.way = found.way;
+  r.turn = found.turn;
+  r.tightest = found.clearances;
+  if (band) r.band = review::find_band(*band, r.rows, r.scan);
 }
 
-void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
-                const std::optional<review::BandFindings>& band, const std::string& folder) {
-  write_file(folder + "/path.csv", review::path_csv(file.scene, rows, scan, band));
-  write_file(folder + "/path.glb", review::path_gltf(file.scene, file.up, rows, scan, band, true));
-  write_file(folder + "/script.csv", review::path_script(file, rows, scan.center));
+void write_plan(const PlanReport& r, const std::string& folder, const review::Progress& progress) {
+  const SceneFile& file = r.file;
+  write_file(folder + "/path.csv", review::path_csv(file.scene, r.rows, r.scan, r.band));
+  write_file(folder + "/path.glb", review::path_gltf(file.scene, file.up, r.rows, r.scan, r.band, true));
+  write_file(folder + "/script.csv", review::path_script(file, r.rows, r.scan.center));
   RecordingInfo info;
   info.scene = file.path;
   info.held = held_part(file.scene).name;
   info.program = "tegotae " TEGOTAE_VERSION_STRING;
   Recorder recorder(folder + "/recording.csv", RecordMode::synchronous, info);
-  for (const RecordFrame& row : rows) recorder.push(row);
+  for (const RecordFrame& row : r.rows) recorder.push(row);
   recorder.close();
+  // A report on another path is no neighbor of this one.
+  if (r.band)
+    write_review(r, folder, progress);
+  else
+    std::filesystem::remove(folder + "/review.html");
+  write_file(folder + "/plan.json", plan_json(r) + "\n");
 }
 
 }  // namespace tegotae::plan

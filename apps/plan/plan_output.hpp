@@ -17,13 +17,6 @@ namespace tegotae::plan {
 /// mass of the held part (file frame, m), `radius` of it about that.
 std::vector<RecordFrame> path_rows(const std::vector<Pose>& path, const Vec3& center, double radius);
 
-/// The files that write_path() and write_review() make in `folder`.
-std::vector<std::string> path_files(const std::string& folder);
-
-/// Writes path.csv, path.glb, script.csv and recording.csv into `folder`. Throws Error.
-void write_path(const SceneFile& file, const std::vector<RecordFrame>& rows, const review::Scan& scan,
-                const std::optional<review::BandFindings>& band, const std::string& folder);
-
 /// What is said of a plan: for a person, and as JSON (docs/planning.md).
 struct PlanReport {
   explicit PlanReport(SceneFile read) : file(std::move(read)) {}
@@ -31,17 +24,25 @@ struct PlanReport {
   SceneFile file;  ///< the held part where the path begins
   bool to_goal = false;
   Plan plan;
+  std::vector<RecordFrame> rows;                ///< the path in time
+  review::Scan scan;                            ///< what is near to it
   double way = 0, turn = 0;                     ///< that the path goes and turns, m, rad
   std::vector<review::PartClearance> tightest;  ///< along the path, by part
   std::optional<review::BandFindings> band;     ///< of the band that was asked for
-  std::string folder;
 };
 
-/// Writes review.html: the report on the recording that write_path() has written, with the zones of the band. Throws
-/// Error.
-void write_review(const PlanReport& report, const review::ClearanceBand& band, const review::Progress& progress);
+/// Looks at the path that `report` has, and fills in what follows from it. Throws Error.
+void measure(PlanReport& report, const std::optional<review::ClearanceBand>& band, const review::Progress& progress);
 
-std::string plan_text(const PlanReport& report);
+/// The files that write_plan() makes in `folder`.
+std::vector<std::string> plan_files(const std::string& folder);
+
+/// Writes them; review.html only with a band: the report on the recording, with its zones. What an earlier plan wrote
+/// and this one does not is removed. Throws Error.
+void write_plan(const PlanReport& report, const std::string& folder, const review::Progress& progress);
+
+/// `folder` has the files.
+std::string plan_text(const PlanReport& report, const std::string& folder);
 std::string plan_json(const PlanReport& report);
 
 }  // namespace tegotae::plan

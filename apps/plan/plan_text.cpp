@@ -99,12 +99,12 @@ Json band_json(const review::BandFindings& found, const Scene& scene) {
 
 }  // namespace
 
-std::string plan_text(const PlanReport& r) {
+std::string plan_text(const PlanReport& r, const std::string& folder) {
   std::string text = r.plan.found ? found_text(r) : not_found_text(r);
   text += format("  searched: %lld iterations, %zu poses, %lld motions checked, %lld led along contacts, %.2f s\n",
                  static_cast<long long>(r.plan.iterations), r.plan.poses, static_cast<long long>(r.plan.motions),
                  static_cast<long long>(r.plan.complied), r.plan.seconds);
-  text += (r.plan.found ? "path: " : "the way to the farthest pose: ") + r.folder + "\n";
+  text += (r.plan.found ? "path: " : "the way to the farthest pose: ") + folder + "\n";
   return text;
 }
 

@@ -111,4 +111,14 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   return r;
 }
 
+Verdict verdict_with_figures(const Review& r) {
+  Verdict v = r.verdict;
+  const auto add = [&v](const std::vector<std::string>& lines) {
+    for (const std::string& text : lines) v.evidence.push_back({Evidence::Kind::plain, text});
+  };
+  add(assembly_force_text(r.assembly));
+  if (r.band) add(band_text(*r.band, r.findings.clearances, r.file.scene));
+  return v;
+}
+
 }  // namespace tegotae::review

@@ -34,6 +34,9 @@ struct ReviewQuestions {
 Review review_recording(const std::string& path, Recording recording, SceneFile file, const ReviewQuestions& questions,
                         const Progress& progress);
 
+/// The verdict, with what else is said of forces and of the band.
+Verdict verdict_with_figures(const Review& review);
+
 /// The report, self-contained HTML.
 std::string report_html(const Review& review, const Progress& progress);
 

@@ -35,17 +35,6 @@ ForceBand parse_band(const std::string& text) {
   return band;
 }
 
-/// The verdict and what else is said of forces and clearances.
-Verdict with_figures(const Review& r) {
-  Verdict v = r.verdict;
-  const auto add = [&v](const std::vector<std::string>& lines) {
-    for (const std::string& text : lines) v.evidence.push_back({Evidence::Kind::plain, text});
-  };
-  add(assembly_force_text(r.assembly));
-  if (r.band) add(band_text(*r.band, r.findings.clearances, r.file.scene));
-  return v;
-}
-
 void print(const Verdict& verdict, const std::string& report) {
   std::cout << verdict.headline << "\n";
   for (const Evidence& e : verdict.evidence) std::cout << "  " << e.text << "\n";
@@ -119,7 +108,7 @@ int run_review(const ReviewOptions& o) {
     write_file(o.gltf, path_gltf(r.file.scene, r.file.up, rows, r.scan, r.band,
                                  std::filesystem::path(o.gltf).extension() == ".glb"));
   status.say("");
-  const Verdict said = with_figures(r);
+  const Verdict said = verdict_with_figures(r);
   if (o.json)
     std::cout << verdict_json(said).dump() << std::endl;
   else

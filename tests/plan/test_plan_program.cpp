@@ -240,15 +240,22 @@ TEST_CASE("a plan with a band tells and shows where its path is to it") {
   CHECK(rgb[2] < rgb[0]);                   // it begins in its hole
   CHECK(rgb.back() > rgb[rgb.size() - 3]);  // and ends outside
 
-  const Output none = run_program("tegotae", "plan " + scene("straight") + " --seed 1 --to " + (folder / "none"));
+  const Output none = run_program("tegotae", "plan " + scene("straight") + " --seed 2 --to " + to);
   CHECK(none.code == 0);
-  CHECK(read_text(folder / "none/review.html").empty());
-  CHECK(glb_json(folder / "none/path.glb").at("meshes").size() == 2);
+  CHECK(!std::filesystem::exists(to + "/review.html"));  // the one that was there is about another path
+  CHECK(glb_json(to + "/path.glb").at("meshes").size() == 2);
+  // An order of two steps was there, and something else.
+  std::filesystem::create_directories(folder / "all");
+  for (const char* file : {"step-01.csv", "step-02.csv", "step-02.glb", "step-2.csv"})
+    folder.write(std::string("all/") + file, "old\n");
   const Output all =
       run_program("tegotae", "plan " + scene("straight") + " --all --band 0.05mm 0.5mm --to " + (folder / "all"));
   CHECK(all.code == 0);
   CHECK_THAT(read_text(folder / "all/step-01.csv"), Contains(",band\n") && Contains(",inside\n"));
   CHECK(glb_json(folder / "all/step-01.glb").at("nodes").back().at("name") == "clearance");
+  CHECK(!std::filesystem::exists(folder / "all/step-02.csv"));
+  CHECK(!std::filesystem::exists(folder / "all/step-02.glb"));
+  CHECK(read_text(folder / "all/step-2.csv") == "old\n");
 }
 
 TEST_CASE("what cannot be planned is an error of one line") {
