@@ -24,9 +24,14 @@ void parallel_for(int n, int threads, const std::function<void(int)>& job, const
         next = n;
       }
       const std::lock_guard<std::mutex> lock(mutex);
-      if (thrown && !failure) failure = thrown;
       ++count;
-      if (done) done(count);
+      try {
+        if (done) done(count);
+      } catch (...) {
+        if (!thrown) thrown = std::current_exception();
+        next = n;
+      }
+      if (thrown && !failure) failure = thrown;
     }
   };
   const int wanted = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());

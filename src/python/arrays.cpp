@@ -1,7 +1,6 @@
 #include "python/arrays.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "tegotae/core/error.hpp"
 
@@ -89,15 +88,6 @@ nb::object row_type(const std::vector<Field>& fields, std::size_t size) {
   type["offsets"] = offsets;
   type["itemsize"] = size;
   return nb::module_::import_("numpy").attr("dtype")(type);
-}
-
-nb::object row_array(nb::handle type, const void* rows, std::size_t count, std::size_t size) {
-  nb::object array = nb::module_::import_("numpy").attr("empty")(count, type);
-  Py_buffer block;
-  if (PyObject_GetBuffer(array.ptr(), &block, PyBUF_WRITABLE) != 0) throw nb::python_error();
-  if (count > 0) std::memcpy(block.buf, rows, count * size);
-  PyBuffer_Release(&block);
-  return array;
 }
 
 }  // namespace tegotae::python

@@ -4,6 +4,7 @@
 #include <nanobind/ndarray.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -68,7 +69,14 @@ struct Field {
 
 /// numpy.dtype of rows of `size` bytes.
 nb::object row_type(const std::vector<Field>& fields, std::size_t size);
-/// A structured array with a copy of `rows`, `size` bytes each.
-nb::object row_array(nb::handle type, const void* rows, std::size_t count, std::size_t size);
+/// A structured array that owns `rows`, whose dtype is `type`.
+template <class Row>
+nb::object row_array(nb::handle type, std::vector<Row> rows) {
+  auto* kept = new std::vector<Row>(std::move(rows));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
+  const std::size_t size = kept->size() * sizeof(Row);
+  nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>> bytes(kept->data(), {size}, owner);
+  return nb::cast(bytes).attr("view")(type);
+}
 
 }  // namespace tegotae::python

@@ -10,5 +10,7 @@ void bind_scenes(nanobind::module_& m);
 void bind_pens(nanobind::module_& m);
 void bind_rig(nanobind::module_& m);
 void bind_runs(nanobind::module_& m);
+void bind_reviews(nanobind::module_& m);
+void bind_plans(nanobind::module_& m);
 
 }  // namespace tegotae::python

@@ -53,6 +53,8 @@ NB_MODULE(_tegotae, m) {
   bind_pens(m);
   bind_rig(m);
   bind_runs(m);
+  bind_reviews(m);
+  bind_plans(m);
   // Threads of rigs that still run would ask for an interpreter that is gone.
   nanobind::module_::import_("atexit").attr("register")(nanobind::cpp_function(&stop_all_running));
 }

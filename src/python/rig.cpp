@@ -67,14 +67,14 @@ ContactRow row_of(const ContactPoint& c, bool began) {
 nb::object contacts(const PythonRig& rig) {
   std::vector<ContactRow> rows;
   for (const ContactPoint& c : rig.at_rest().contacts()) rows.push_back(row_of(c, c.ticks == 0));
-  return row_array(contact_type(), rows.data(), rows.size(), sizeof(ContactRow));
+  return row_array(contact_type(), std::move(rows));
 }
 
 nb::object events(const PythonRig& rig) {
   std::vector<ContactRow> rows;
   for (const ContactEvent& e : rig.at_rest().contact_events())
     rows.push_back(row_of(e.contact, e.kind == ContactEvent::Kind::began));
-  return row_array(contact_type(), rows.data(), rows.size(), sizeof(ContactRow));
+  return row_array(contact_type(), std::move(rows));
 }
 
 /// TickReport, a copy.

@@ -141,7 +141,7 @@ nb::object forces_of(const Recording& recording) {
       rows.push_back(row);
     }
   }
-  return row_array(type, rows.data(), rows.size(), sizeof(ForceRow));
+  return row_array(type, std::move(rows));
 }
 
 /// One value of each row.

@@ -47,10 +47,14 @@ int add(Scene& scene, const std::string& name, const Mesh& mesh, nb::handle pose
   return static_cast<int>(scene.parts.size()) - 1;
 }
 
+}  // namespace
+
 void hold(Scene& scene, const std::string& name) {
   find(scene, name);
   for (Part& part : scene.parts) part.held = part.name == name;
 }
+
+namespace {
 
 /// A number of the scene: read and written.
 template <class Class, class Get>

@@ -48,7 +48,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
       "feature", "contact", "resolve", "loop", "import", "record", "scene_file"}},
     // The door for Python.
     {"python",
-     {"core", "device", "servo", "transport", "mesh", "resolve", "loop", "import", "record", "scene_file", "session"}}};
+     {"core", "device", "servo", "transport", "mesh", "resolve", "loop", "plan", "import", "record", "scene_file",
+      "session"}}};
 
 std::string included(const std::string& line) {
   static const std::regex pattern(R"(^\s*#\s*include\s*["<]([^">]+)[">].*)");

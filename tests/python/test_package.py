@@ -153,8 +153,18 @@ def test_a_peg_goes_into_its_hole_and_no_pose_intersects(tmp_path):
     np.testing.assert_array_equal(rows["gap"], read.gap)
 
 
-# What `tegotae review --forces` has, but for docs/review.md nobody says it to both.
-FORCES = ["depth_mm", "insertion_n", "insertion_peak_n", "friction_n", "seating_n", "pull_out_n", "pull_out_peak_n", "low_n", "high_n"]
+FORCES = ["depth", "insertion", "insertion_peak", "friction", "seating", "pull_out", "pull_out_peak"]
+
+
+def columns(path):
+    """What a program wrote, read by numpy: numbers alone."""
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+def owned(array, shape, dtype="f8"):
+    """One block, nobody else's, as it came from C++."""
+    assert array.shape == shape and array.dtype == dtype and array.flags.c_contiguous and array.flags.writeable
+    return array
 
 
 def test_review_says_whether_it_goes(tmp_path):
@@ -165,14 +175,40 @@ def test_review_says_whether_it_goes(tmp_path):
     assert there.goes and there.verdict and there.evidence and (tmp_path / "report.html").exists()
     assert there.path.shape == (len(there.t), 4, 4) and np.all(np.diff(there.t) > 0)
     np.testing.assert_allclose(there.path[-1], read.part[-1], atol=1e-6)
-    assert np.nanmin(there.clearance) > 0 and set(there.nearest) <= {"hole", ""}
+    assert there.clearance.min() > 0 and {there.parts[k] for k in there.part if k >= 0} == {"hole"}
     assert there.outcome == "goes"
     # The script's end, 45 mm farther, is not where it was after 0.4 s, before that end.
     cut = tegotae.review(record)
     assert not cut.goes and cut.outcome == "open" and "before its script does" in cut.verdict
-    assert all(name + "`" in tegotae.Review.__doc__ for name in FORCES)
-    with pytest.raises(tegotae.Error, match="peg.csv"):
-        tegotae.review(record, forces=True)  # CSV has none
+    assert cut.assembly_force is None  # CSV has no contacts
+
+
+def test_a_review_has_the_numbers_of_the_program(tmp_path):
+    record, csv, forces = (str(tmp_path / name) for name in ("peg.mcap", "path.csv", "forces.csv"))
+    tegotae.run(MODELS + "/peg_in_hole_0.99.toml", record=record)
+    before = sorted(os.listdir(tmp_path))
+    file = tegotae.load_scene(MODELS + "/peg_in_hole_0.99.toml")
+    made = tegotae.review(record, file)
+    assert sorted(os.listdir(tmp_path)) == before
+    program = ["tegotae", "review", record, "--out", str(tmp_path / "r.html"), "--csv", csv, "--forces", forces]
+    assert subprocess.run(program, stdout=subprocess.DEVNULL).returncode == 0
+    rows, n = columns(csv), len(made.t)
+    for name, array in (("t", made.t), ("clearance", made.clearance), ("force", made.force), ("torque", made.torque)):
+        np.testing.assert_array_equal(owned(array, (n,)), rows[name])
+    owned(made.part, (n,), "i4")
+    np.testing.assert_array_equal(owned(made.path, (n, 4, 4))[:, :3, 3], np.stack([rows["px"], rows["py"], rows["pz"]], 1))
+    table, force = columns(forces), made.assembly_force
+    assert list(force.dtype.names) == FORCES and all("`%s`" % name in tegotae.Review.__doc__ for name in FORCES)
+    assert force.base is not None and len(force) == len(table) == 200
+    np.testing.assert_allclose(force["depth"], 1e-3 * table["depth_mm"], rtol=1e-4)
+    for name in FORCES[1:]:
+        np.testing.assert_allclose(force[name], table[name + "_n"], rtol=1e-4, atol=1e-6)
+    held = force["insertion"]
+    del made, force
+    gc.collect()
+    junk = [np.full(200 * 9, 7.0) for _ in range(1000)]
+    np.testing.assert_allclose(held, table["insertion_n"], rtol=1e-4, atol=1e-6)
+    assert len(junk) == 1000
 
 
 def test_plan_finds_the_way_in(tmp_path):
@@ -184,13 +220,71 @@ def test_plan_finds_the_way_in(tmp_path):
     # The peg's radius is 9.4 mm in a hole of 10: down there its axis is within the play, less what is to be left.
     deep = way.path[way.path[:, 2, 3] < -0.005]
     assert len(deep) and np.hypot(deep[:, 0, 3], deep[:, 1, 3]).max() <= 0.6e-3 - 1e-4
-    assert way.clearance >= 1e-4 and np.nanmin(way.distance) >= way.clearance - 1e-9
-    again = tegotae.plan(scene, goal=goal, clearance=1e-4)
+    assert way.clearance >= 1e-4 and way.distance.min() >= way.clearance - 1e-9
+    # What was written is the same path.
+    rows, n = columns(tmp_path / "path.csv"), len(way.t)
+    np.testing.assert_array_equal(owned(way.t, (n,)), rows["t"])
+    np.testing.assert_array_equal(owned(way.distance, (n,)), rows["clearance"])
+    np.testing.assert_array_equal(owned(way.path, (n, 4, 4))[:, 2, 3], rows["pz"])
+    assert {way.parts[k] for k in owned(way.part, (n,), "i4") if k >= 0} == {"hole"}
+    # In memory it is the same too, and the scene is left as it was.
+    memory = tegotae.load_scene(scene).scene
+    before = memory.pose("peg")
+    again = tegotae.plan(memory, goal=goal, clearance=1e-4)
     np.testing.assert_array_equal(again.path, way.path)
+    np.testing.assert_array_equal(memory.pose("peg"), before)
+    assert tegotae.plan(memory, hold="hole").summary["held"] == "hole" and memory.held == "peg"
+    with pytest.raises(tegotae.Error, match="this scene has none"):
+        tegotae.plan(memory, to=tmp_path)
+    with pytest.raises(tegotae.Error, match="goal: the shape is"):
+        tegotae.plan(memory, goal=np.eye(3))
     with pytest.raises(tegotae.Error):
         tegotae.plan(scene, goal=goal, clearance=1e-3)  # more than the play
     with pytest.raises(tegotae.Error, match="hole, peg"):
         tegotae.plan(scene, hold="pig")
+
+
+def locked():
+    """A cube in a closed box: it never comes out."""
+    v, t = box(0.01)
+    inner, outer = box(0.012)[0], box(0.02)[0]
+    scene = tegotae.Scene()
+    scene.add_fixed("box", tegotae.Mesh(np.concatenate([outer, inner]), np.concatenate([t, t[:, ::-1] + 8])))
+    scene.add_held("cube", tegotae.Mesh(v, t))
+    return scene
+
+
+def test_ctrl_c_ends_a_plan_and_the_next_one_works(tmp_path):
+    code = (
+        "import sys, threading, time, tegotae\n"
+        "sys.path.insert(0, %r)\n"
+        "import test_package as here\n"
+        "ticks = []\n"
+        "threading.Thread(target=lambda: [(ticks.append(0), time.sleep(0.01)) for _ in range(50)], daemon=True).start()\n"
+        "threading.Timer(1, lambda: __import__('_thread').interrupt_main()).start()\n"
+        "began = time.monotonic()\n"
+        "try:\n"
+        "    tegotae.plan(here.locked(), seconds=1e5)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted', len(ticks) > 10)\n"
+        "print(tegotae.plan(here.locked(), iterations=5).found)\n"
+    ) % os.path.dirname(os.path.abspath(__file__))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=240)
+    assert done.stdout.split() == ["interrupted", "True", "False"], done.stderr
+
+
+def test_plans_of_two_threads_are_those_of_one():
+    goal, scene = pose(z=-0.01), MODELS + "/peg_in_hole_0.94.toml"
+    alone = tegotae.plan(scene, goal=goal, seed=3).path
+    made = []
+    threads = [threading.Thread(target=lambda: made.append(tegotae.plan(scene, goal=goal, seed=3).path)) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(made) == 2
+    for path in made:
+        np.testing.assert_array_equal(path, alone)
 
 
 def test_units_that_nobody_said_are_asked_for(tmp_path):

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._programs import call
-from ._tables import number, pose_text, poses_of, read_table
+from ._tegotae import Scene, SceneFile, _plan
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a planner found.
+    """What a planner found. Arrays are in the order of C, may be written, and belong to nobody else.
 
     Attributes
     ----------
@@ -32,8 +30,10 @@ class Plan:
         m: the whole path is proved to leave this much to every other part; 0 without a solution.
     distance : (n,) float64
         m, measured: from the pose to the nearest part.
-    nearest : (n,) str
-        Name of that part.
+    part : (n,) int32
+        Number of that part, index into `parts`; -1: there is none.
+    parts : list of str
+        Names of the scene's parts, by their numbers.
     in_the_way : dict of str to int
         How many motions of the search each part stopped, those that stopped most first.
     summary : dict
@@ -45,13 +45,14 @@ class Plan:
     t: NDArray[np.float64]
     clearance: float
     distance: NDArray[np.float64]
-    nearest: NDArray[np.str_]
+    part: NDArray[np.int32]
+    parts: list[str]
     in_the_way: dict[str, int]
     summary: dict[str, Any]
 
 
 def plan(
-    scene: str | os.PathLike[str],
+    scene: str | os.PathLike[str] | SceneFile | Scene,
     *,
     hold: str | None = None,
     goal: ArrayLike | None = None,
@@ -61,14 +62,15 @@ def plan(
     seconds: float | None = None,
     to: str | os.PathLike[str] | None = None,
 ) -> Plan:
-    """Looks for a path of the held part, as `tegotae plan` does, in a process of its own.
+    """Looks for a path of the held part, as `tegotae plan` does.
 
-    Other Python threads go on meanwhile; Ctrl-C ends it.
+    The planner is in this process and no file is written without `to`. Other Python threads go on meanwhile; plans of
+    several threads are made one after the other. Ctrl-C ends it with KeyboardInterrupt.
 
     Parameters
     ----------
-    scene : str or os.PathLike
-        Scene file.
+    scene : str, os.PathLike, SceneFile or Scene
+        A scene file, or a scene in memory, which stays as it is.
     hold : str, optional
         Name of the part that is to move; None: the scene's held one.
     goal : (4, 4) array of float, optional
@@ -78,11 +80,12 @@ def plan(
     seed : int
         The same seed, scene and build give the same path, unless `seconds` ends the search.
     iterations : int, optional
-        Of the search, at most; None: 20 000.
+        Of the search, at most; None: 20 000, or any number where `seconds` is given.
     seconds : float, optional
         s, that the search may take; None: only iterations end it.
     to : str or os.PathLike, optional
-        Folder that keeps what the program writes: path.csv, path.glb, script.csv, recording.csv, plan.json.
+        Folder that gets what the program writes: path.csv, path.glb, script.csv, recording.csv, plan.json. The scene is
+        then one of a file, which the recording names.
 
     Returns
     -------
@@ -94,24 +97,16 @@ def plan(
     Error
         The scene or the goal cannot be used, or this build has no planner.
     """
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = os.fspath(to) if to is not None else temporary
-        command = ["plan", os.fspath(scene), "--json", "--to", folder, "--seed", str(seed)]
-        command += ["--clearance", "%.17gm" % clearance]
-        command += ["--hold", hold] if hold is not None else []
-        command += ["--goal=" + pose_text(goal)] if goal is not None else []
-        command += ["--iterations", str(iterations)] if iterations is not None else []
-        command += ["--seconds", repr(float(seconds))] if seconds is not None else []
-        _, out = call(command)
-        summary = json.loads(out)
-        table = read_table(os.path.join(folder, "path.csv"))
-        return Plan(
-            found=summary["found"],
-            path=poses_of(table),
-            t=np.array(table["t"], float),
-            clearance=summary["clearance_m"],
-            distance=np.array([number(v) for v in table["clearance"]]),
-            nearest=np.array(table["part"]),
-            in_the_way={one["part"]: one["stops"] for one in summary["in_the_way"]},
-            summary=summary,
-        )
+    found = _plan(scene, hold or "", goal, clearance, seed, iterations, seconds, to)
+    summary = json.loads(found["summary"])
+    return Plan(
+        found=summary["found"],
+        path=found["path"],
+        t=found["t"],
+        clearance=summary["clearance_m"],
+        distance=found["clearance"],
+        part=found["part"],
+        parts=found["parts"],
+        in_the_way={one["part"]: one["stops"] for one in summary["in_the_way"]},
+        summary=summary,
+    )

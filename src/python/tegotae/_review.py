@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._programs import call
-from ._tables import number, pose_text, poses_of, read_table
+from ._tegotae import SceneFile, _review
 
 
 @dataclass(frozen=True)
 class Review:
     """Does the part go, along which way, how close to what, with how much force.
+
+    Arrays are in the order of C, may be written, and belong to nobody else.
 
     Attributes
     ----------
@@ -35,17 +35,18 @@ class Review:
         X, m: where the held part's own frame was.
     clearance : (n,) float64
         m, distance to the nearest part.
-    nearest : (n,) str
-        Name of that part.
+    part : (n,) int32
+        Number of that part, index into `parts`; -1: there is none.
+    parts : list of str
+        Names of the scene's parts, by their numbers.
     force, torque : (n,) float64
         N and N m, felt.
     assembly_force : (m,) structured or None
-        Of the assembly over depth (`forces=True`), a row for each of 200 segments of the way; nan where the part was not
-        seen moving so. Fields, float64: `depth_mm`, mm along the way, the segment's middle; and in N, positive against
-        the motion: `insertion_n` and `insertion_peak_n`, mean and largest as it went on; `friction_n`, what of
-        `insertion_n` is friction; `seating_n`, mean as it stood at the deepest; `pull_out_n` and `pull_out_peak_n`, mean
-        and largest as it came back; `low_n` and `high_n`, `insertion_n` with the least and the most friction of `--mu`
-        (nan here).
+        Of the assembly over depth, a row for each of 200 segments of the way; nan where the part was not seen moving
+        so. None: the recording has no contact forces (MCAP has those of "qp"). Fields, float64: `depth`, m along the
+        way, the segment's middle; and in N, positive against the motion: `insertion` and `insertion_peak`, mean and
+        largest as it went on; `friction`, what of `insertion` is friction; `seating`, mean as it stood at the deepest;
+        `pull_out` and `pull_out_peak`, mean and largest as it came back.
     report : str or None
         Path of the HTML report, where one was asked for.
     """
@@ -57,70 +58,56 @@ class Review:
     t: NDArray[np.float64]
     path: NDArray[np.float64]
     clearance: NDArray[np.float64]
-    nearest: NDArray[np.str_]
+    part: NDArray[np.int32]
+    parts: list[str]
     force: NDArray[np.float64]
     torque: NDArray[np.float64]
     assembly_force: NDArray[np.void] | None
     report: str | None
 
 
-def _forces(path: str) -> NDArray[np.void]:
-    table = read_table(path)
-    rows = np.empty(len(next(iter(table.values()))), dtype=[(name, "f8") for name in table])
-    for name, values in table.items():
-        rows[name] = [number(v) for v in values]
-    return rows
-
-
 def review(
     recording: str | os.PathLike[str],
-    scene: str | os.PathLike[str] | None = None,
+    scene: str | os.PathLike[str] | SceneFile | None = None,
     *,
     goal: ArrayLike | None = None,
-    forces: bool = False,
     report: str | os.PathLike[str] | None = None,
 ) -> Review:
-    """Reports on a recording, as `tegotae review` does, in a process of its own.
+    """Reports on a recording, as `tegotae review` does.
+
+    It is made in this process on all processors, and no file is written without `report`. Other Python threads go on
+    meanwhile; Ctrl-C ends it with KeyboardInterrupt.
 
     Parameters
     ----------
     recording : str or os.PathLike
         CSV or MCAP, of a run of a scene file.
-    scene : str or os.PathLike, optional
-        Its scene file; None: the one that the recording names.
+    scene : str, os.PathLike or SceneFile, optional
+        Its scene file, or that in memory; None: the one that the recording names.
     goal : (4, 4) array of float, optional
         Where the held part's own frame was to go, m; None: where the scene's script ends.
-    forces : bool
-        Also the force of the assembly over depth, of a recording in MCAP with "qp".
     report : str or os.PathLike, optional
-        Also keep the HTML report here.
+        Also write the HTML report here.
 
     Raises
     ------
     Error
         The recording or its scene cannot be used.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path, page, force = (os.path.join(folder, name) for name in ("path.csv", "report.html", "forces.csv"))
-        command = ["review", "--json", os.fspath(recording)]
-        command += [os.fspath(scene)] if scene is not None else []
-        command += ["--out", os.fspath(report) if report is not None else page, "--csv", path]
-        command += ["--goal=" + pose_text(goal)] if goal is not None else []
-        command += ["--forces", force] if forces else []
-        _, out = call(command)
-        table = read_table(path)
-        said = json.loads(out)
-        return Review(
-            goes=said["outcome"] == "goes",
-            outcome=said["outcome"],
-            verdict=said["headline"],
-            evidence=[line["text"] for line in said["evidence"]],
-            t=np.array(table["t"], float),
-            path=poses_of(table),
-            clearance=np.array([number(v) for v in table["clearance"]]),
-            nearest=np.array(table["part"]),
-            force=np.array(table["force"], float),
-            torque=np.array(table["torque"], float),
-            assembly_force=_forces(force) if forces else None,
-            report=os.fspath(report) if report is not None else None,
-        )
+    found = _review(recording, scene, goal, report)
+    said = json.loads(found["said"])
+    return Review(
+        goes=said["outcome"] == "goes",
+        outcome=said["outcome"],
+        verdict=said["headline"],
+        evidence=[one["text"] for one in said["evidence"]],
+        t=found["t"],
+        path=found["path"],
+        clearance=found["clearance"],
+        part=found["part"],
+        parts=found["parts"],
+        force=found["force"],
+        torque=found["torque"],
+        assembly_force=found["assembly_force"],
+        report=os.fspath(report) if report is not None else None,
+    )
