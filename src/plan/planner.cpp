@@ -26,9 +26,10 @@ constexpr auto kTellEvery = std::chrono::milliseconds(100);
 // Of the clearance that start and goal have: a path that was found is shortened with the first one asked for.
 constexpr double kShortenShare = 0.9;
 // A wider path is searched for: one with so much of it first, then between what is known to be found and what was not
-// found, until those are so many times apart, or for so many widths in all.
+// found, until those are so many times apart, or so many widths were not found. What is found leads to what was not
+// found before: that is asked for once more.
 constexpr double kWidest = 0.5, kApart = 2;
-constexpr int kWidths = 5;
+constexpr std::size_t kFailures = 5;
 // How long a search takes is luck, so each width has several, with random numbers of their own. A search ends after so
 // many motions that the contact loop was led through, or after as many as for the first path.
 constexpr int kWiderSearches = 3;
@@ -262,11 +263,21 @@ class Planning {
 
   /// Looks for a path that leaves more, up to `widest`. Each search leads the part `most_led` times.
   void widen(const SearchTask& task, double widest, std::int64_t most_led, Plan& plan) {
-    double low = std::max(certified(plan.path), world_.clearance()), high = widest;
-    for (int i = 0; i < kWidths && high > kApart * low && !stopped(); ++i) {
-      const double width = i == 0 ? widest : std::sqrt(low * high);
-      const bool taken = take_wider(task, width, most_led, plan);
-      (taken ? low : high) = width;
+    double low = std::max(certified(plan.path), world_.clearance()), width = widest;
+    if (width <= kApart * low) return;
+    std::vector<double> failed;  // those that are still to be found, the least last
+    for (std::size_t failures = 0; failures < kFailures && !stopped();) {
+      if (take_wider(task, width, most_led, plan)) {
+        low = width;
+        if (failed.empty() || failed.back() <= kApart * low) return;
+        width = failed.back();
+        failed.pop_back();
+      } else {
+        ++failures;
+        failed.push_back(width);
+        if (width <= kApart * low) return;
+        width = std::sqrt(low * width);
+      }
     }
   }
 
