@@ -184,7 +184,6 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   timed_out_ = report.flags.timed_out;
   report_forces(Y, report);
   report_slip(moved, report.forces);
-  report.flags.timed_out |= late();  // forces with friction may have run out of time
   // The time that the tick leaves over prepares for the first touch.
   if (!near_.empty() && deadline_ns_ != kNoDeadline && report.gap > kNearGap) {
     const Displacement to_pen = displacement(X_, Y, center_);

@@ -56,7 +56,7 @@ class ContactLoop final : public ProxyLoop {
   /// Whether `motion` leads farther away from the pen, which is `wanted` away, than gaps are worth that recover.
   bool is_long_way_back(const Vec6& motion, const Vec6& wanted) const;
   /// Of a shorter way a program that does not project may bring a part nearer to its pen than of the whole, of which it
-  /// makes `motion`: the best of some.
+  /// makes `motion`: the best of some, whichever of them have an answer. False when none of them has one.
   bool try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
   /// The last forces of a sub-step, as forces of the contacts that are tracked now.
   const std::vector<FrictionForce>& known_forces();

@@ -19,10 +19,12 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   bool rubs = false;
   if (!at_.contacts->constraints().empty()) {
     rubs = friction_.fill(at_.contacts->constraints(), metric_);
-    if (!(rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion))) return false;
+    const bool solved = rubs ? solve_with_friction(wanted, report, motion) : solve(wanted, report, motion);
     // Cutting planes between triangles that do not touch explain no lag.
-    if (only_contacts()) allowed_ = size(metric_.unwhiten(motion));
-    if (!resolver_->projects() && !try_shorter_ways(wanted, cap, report, motion)) return false;
+    if (solved && only_contacts()) allowed_ = size(metric_.unwhiten(motion));
+    if (!solved) motion.setZero();
+    const bool shorter = !resolver_->projects() && try_shorter_ways(wanted, cap, report, motion);
+    if (!solved && !shorter) return false;
   }
   trial.d = metric_.unwhiten(motion);
   const double length = size(trial.d);
@@ -45,13 +47,15 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
   const double far = size(metric_.unwhiten(wanted));
   Vec6 best = motion;
+  bool any = false;
   for (double way = std::min(cap, far); way > margin_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
        way *= kShorter) {
-    if (!solve((way / far) * wanted, report, motion)) return false;
+    if (!solve((way / far) * wanted, report, motion)) continue;
+    any = true;
     if (motion.dot(wanted) > best.dot(wanted)) best = motion;
   }
   motion = best;
-  return true;
+  return any;
 }
 
 bool ContactLoop::solve(const Vec6& wanted, TickReport& report, Vec6& motion) {

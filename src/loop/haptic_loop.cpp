@@ -60,8 +60,9 @@ struct HapticLoop::State {
   /// Where the pen's springs and the load have the part: as far off the pen as the load stretches them.
   Pose target() const noexcept { return loaded(Y, now->mass.center, now->coupling, now->scale, load()); }
 
-  /// Ends a tick: how far X is behind the pen, and for how long it has been so without a contact.
-  const TickReport& finish() noexcept {
+  /// Ends a tick that began at `now_ns`: how far X is behind the pen, and for how long it has been so without a
+  /// contact.
+  const TickReport& finish(std::int64_t now_ns) noexcept {
     const auto size = [this](const Displacement& d) { return d.dp.norm() + now->radius * d.dr.norm(); };
     const double moved = size(displacement(last_X, report.proxy.X, now->mass.center));
     last_X = report.proxy.X;
@@ -69,14 +70,16 @@ struct HapticLoop::State {
     report.lag = size(displacement(report.proxy.X, target(), now->mass.center));
     lag.add(report.lag, moved, tegotae::lag_bound(now->radius), report.lag_reason);
     report.unexplained_lag_ticks = lag.ticks();
+    // The last look at the clock: whatever a tick has done before, it hides no lateness.
+    report.flags.timed_out |= past(deadline(now_ns, now->settings.tick_budget));
     return report;
   }
 
   /// The tick that goes over to another held part does not follow the pen, which is still where the old one was.
-  const TickReport& suspend() noexcept {
+  const TickReport& suspend(std::int64_t now_ns) noexcept {
     report.flags.scene_changed = report.flags.part_changed = true;
     report.lag_reason = LagReason::suspended;
-    return finish();
+    return finish(now_ns);
   }
 
   /// The report before the first tick with a held part.
@@ -124,7 +127,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   State& s = *state_;
   const std::int64_t now_ns = monotonic_ns();
   const std::uint64_t before = s.changes->in_force();
-  if (s.adopt(now_ns)) return s.suspend();
+  if (s.adopt(now_ns)) return s.suspend(now_ns);
   reset(s.report);
   s.report.flags.scene_changed = s.changes->in_force() != before;
   const bool placed = is_valid(Y), timed = proper_time(dt);
@@ -134,7 +137,7 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (!placed) s.report.lag_reason = LagReason::suspended;
   s.contacts.update(s.now->loop->constraints(), s.report, s.report.proxy.X * s.now->mass.center);
   s.tell();
-  return s.finish();
+  return s.finish(now_ns);
 }
 
 SceneChange HapticLoop::change(

@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
       auto& [sum, cpu] = results[name];
       const StressResult one = run_stress_script(stress_scene(name, seed + i), seed + i, options, cpu);
       if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());
+      if (!one.first_late.empty()) std::printf("LATE: %s\n", one.first_late.c_str());
       if (one.infeasible + one.stalled > 0)
         std::printf("UNSOLVED: %s seed %u resolver %s\n", name.c_str(), seed + i, options.resolver.c_str());
       if (i % 100 == 99) std::printf("%d scripts\n", i + 1);

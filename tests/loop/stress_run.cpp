@@ -26,6 +26,19 @@ std::int64_t cpu_ns() {
   return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
+/// Names a tick of a script, as one runs it again.
+std::string place(const StressScene& stress, unsigned seed, const StressOptions& options, int tick) {
+  return stress.name + " seed " + std::to_string(seed) + " resolver " + options.resolver + " tick " +
+         std::to_string(tick);
+}
+
+/// Counts a tick that took `took` ns and does not say that it was late.
+void count_late(StressResult& result, const TickReport& r, std::int64_t took, double budget, const std::string& where) {
+  if (!(budget > 0) || r.flags.timed_out || 1e-9 * static_cast<double>(took - kAfterLastLook) <= budget) return;
+  ++result.late_unreported;
+  if (result.first_late.empty()) result.first_late = where + ", " + std::to_string(took / 1000) + " us";
+}
+
 double radius(const TriangleMesh& mesh, const Vec3& center) {
   double r = 0;
   for (const Vec3& v : mesh.vertices) r = std::max(r, (v - center).norm());
@@ -40,6 +53,7 @@ void StressResult::add(const StressResult& o) {
   out_of_time += o.out_of_time, out_of_capacity += o.out_of_capacity, unexplained += o.unexplained;
   late_unreported += o.late_unreported, seconds_loop += o.seconds_loop, seconds_check += o.seconds_check;
   if (first_intersecting.empty()) first_intersecting = o.first_intersecting;
+  if (first_late.empty()) first_late = o.first_late;
 }
 
 StressResult run_stress_script(const StressScene& stress, unsigned seed, const StressOptions& options,
@@ -64,8 +78,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
     if (names.empty()) return;
     ++result.intersecting;
     if (!result.first_intersecting.empty()) return;
-    result.first_intersecting = stress.name + " seed " + std::to_string(seed) + " resolver " + options.resolver +
-                                " tick " + std::to_string(tick) + " (" + where + ") with " + names.front();
+    result.first_intersecting = place(stress, seed, options, tick) + " (" + where + ") with " + names.front();
   };
   for (int tick = 0; tick < options.ticks; ++tick) {
     const Pose Y = script.next();
@@ -84,8 +97,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
       result.out_of_time += r.lag_reason == LagReason::time;
       result.out_of_capacity += r.lag_reason == LagReason::capacity;
     }
-    result.late_unreported +=
-        options.budget > 0 && !r.flags.timed_out && 1e-9 * static_cast<double>(took - kAfterLastLook) > options.budget;
+    count_late(result, r, took, options.budget, place(stress, seed, options, tick));
     result.seconds_loop += 1e-9 * static_cast<double>(took);
     const std::int64_t checking = cpu_ns();
     for (const Pose& X : r.substeps) {

@@ -27,7 +27,7 @@ struct StressResult {
   std::int64_t out_of_time = 0, out_of_capacity = 0;  ///< ticks with a lag over the bound, by LagReason
   std::int64_t unexplained = 0;                       ///< TickReport::unexplained_lag_ticks
   std::int64_t late_unreported = 0;  ///< ticks whose CPU time passed the budget but that are not reported as cut
-  std::string first_intersecting;    ///< where
+  std::string first_intersecting, first_late;  ///< where
   double seconds_loop = 0, seconds_check = 0;
 
   void add(const StressResult& other);

@@ -1,7 +1,9 @@
 // Ticks with little time: what is cut is said to be cut, and X stays free. How long ticks take is not tested here: it
 // depends on what else the machine does.
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "stress_run.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -23,4 +25,29 @@ TEST_CASE("within any budget X stays free, and ticks that ran out of it say so",
   CHECK(sum.late_unreported <= 1 + sum.ticks / 1000);
   // No machine searches a peg in its hole within a microsecond.
   if (options.budget == 1e-6 && name != "knots") CHECK(sum.cut > 0);
+}
+
+TEST_CASE("a tick that ends after its budget says so, whatever it did", "[budget]") {
+  const std::string resolver = GENERATE("qp", "lp", "impulse", "penalty");
+  const auto cube = shared(box({0.02, 0.02, 0.02}));
+  Scene scene;
+  scene.contact.resolver = resolver_kind(resolver);
+  scene.contact.tick_budget = 1e-9;  // no tick is as short
+  scene.parts = {{"fixed", cube, Pose()}, {"held", cube, {Quat::Identity(), {0, 0, 0.03}}, true}};
+  HapticLoop loop(scene);
+  const auto step = [&loop](double z) { return loop.step({Quat::Identity(), {0, 0, z}}, 1e-3).flags; };
+  CAPTURE(resolver);
+  for (const double z : {0.3, 0.03, 0.019}) {  // far off, near, pressed
+    CAPTURE(z);
+    CHECK(step(z).timed_out);
+  }
+  CHECK(loop.step({Quat::Identity(), {NAN, 0, 0}}, 1e-3).flags.timed_out);
+  // One that holds another part from then on follows no pen.
+  scene.parts[0].held = true;
+  scene.parts[1].held = false;
+  scene.parts[1].pose.p.z() = 0.5;
+  loop.change(scene);
+  const TickFlags changed = step(0.3);
+  CHECK(changed.part_changed);
+  CHECK(changed.timed_out);
 }

@@ -45,7 +45,37 @@ class Liar final : public Resolver {
   std::minstd_rand rng_{3};
 };
 
+/// The paper's program, that gives up where the way is far.
+class Shortsighted final : public Resolver {
+ public:
+  explicit Shortsighted(int capacity) : paper_(make_resolver(ResolverKind::lp, capacity)) {}
+  Resolution resolve(const LowRankMatrix& rows, const double* bounds, const Vec6& wanted) noexcept override {
+    if (wanted.norm() > kFar) return {Vec6::Zero(), ResolveStatus::stalled, 0, nullptr};
+    return paper_->resolve(rows, bounds, wanted);
+  }
+  bool projects() const override { return false; }
+
+ private:
+  static constexpr double kFar = 1e-3;  // m
+  std::unique_ptr<Resolver> paper_;
+};
+
 }  // namespace
+
+TEST_CASE("a part goes on by shorter ways where a program has no answer for the whole", "[resolver]") {
+  Scene scene;
+  scene.contact.tick_budget = INFINITY;
+  scene.contact.custom_resolver = [](int most) { return std::make_unique<Shortsighted>(most); };
+  scene.parts.push_back({"floor", shared(box(Vec3(0.2, 0.2, 0.01))), {Quat::Identity(), Vec3(0, 0, -0.005)}});
+  scene.parts.push_back({"block", shared(box(Vec3(0.02, 0.02, 0.02))), {Quat::Identity(), Vec3(0, 0, 0.0101)}, true});
+  HapticLoop loop(scene);
+  for (int i = 0; i < 100; ++i) loop.step({Quat::Identity(), Vec3(0, 0, 0.01)}, 1e-3);
+  CHECK(loop.report().contacts > 0);
+  // 30 mm along the floor, at once.
+  for (int i = 0; i < 200; ++i) loop.step({Quat::Identity(), Vec3(0.03, 0, 0.01)}, 1e-3);
+  CHECK(loop.report().proxy.X.p.x() == Approx(0.03).margin(1e-6));
+  CHECK(loop.report().unexplained_lag_ticks == 0);
+}
 
 TEST_CASE("a custom resolver that answers nonsense cannot make parts intersect", "[resolver]") {
   const int kind = GENERATE(0, 1, 2, 3, 4);

@@ -48,6 +48,21 @@ inline Contacts wedged_box(Random& random, int planes, const Vec3& h) {
   return c;
 }
 
+/// A round peg of `facets` facets that leans by `tilt` (rad) between the rim of its hole and the wall at its tip, with
+/// gaps of at most `clearance` all around.
+inline Contacts leaning_peg(Random& random, int facets, double tilt, double clearance) {
+  Contacts c;
+  const double rim = -0.025 + random.uniform(0.001, 0.02);
+  for (int f = 0; f < facets; ++f) {
+    const double angle = 2 * M_PI * f / facets;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    const Vec3 leaning = Eigen::AngleAxisd(tilt, Vec3::UnitY()) * out;
+    c.add(-leaning, 0.01 * out + Vec3(0, 0, rim), random.uniform(0, clearance));
+    c.add(-out, 0.01 * leaning + Vec3(0, 0, -0.025), random.uniform(0, clearance));
+  }
+  return c;
+}
+
 /// Contact-like programs of many kinds; all have an answer, by the lemma of section 3.
 inline Program held_body(Random& random, int kind) {
   const double l_min = std::pow(10.0, random.uniform(-6, -4));

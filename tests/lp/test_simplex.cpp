@@ -89,6 +89,22 @@ TEST_CASE("Well-separated normals: optimal to rounding", "[lp]") {
   }
 }
 
+TEST_CASE("Round pegs that lean in their holes: an answer with however many facets", "[lp]") {
+  Random random(18);
+  LpSolver solver(1024);
+  int pivots = 0;
+  for (const int facets : {16, 64, 176, 256, 512})
+    for (const double tilt : {1e-3, 1.2e-2, 5e-2})
+      for (int i = 0; i < 5; ++i) {
+        const Program p = program(leaning_peg(random, facets, tilt, 2e-6), Body{}, wanted(random), 2e-6);
+        const LpResult& r = solver.solve(p.matrix(), p.d.data());
+        CAPTURE(facets, tilt, i, r.iterations);
+        require_optimal(p, r, 1e-6);
+        pivots = std::max(pivots, r.iterations);
+      }
+  CHECK(pivots > 512);  // these do take long
+}
+
 TEST_CASE("Slots whose walls agree to 1e-8 to 1e-16 rad: never a wrong verdict", "[lp]") {
   Random random(13);
   LpSolver solver(64);

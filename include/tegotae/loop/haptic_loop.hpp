@@ -22,7 +22,8 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Events of a tick that its user may want to know.
 struct TickFlags {
-  bool timed_out = false;      ///< time or work ran out before the tick decided on the wanted motion
+  /// time or work ran out before the tick decided on the wanted motion, or the tick ended after its budget
+  bool timed_out = false;
   bool overflow = false;       ///< a capacity was exceeded; the motion is still free
   bool input_ignored = false;  ///< the tick ignored an invalid pen pose or time (see HapticLoop::step)
   bool scene_changed = false;  ///< first tick in a changed scene
