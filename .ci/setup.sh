@@ -23,8 +23,7 @@ for _ in 1 2; do
     --demo)
       packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-dev)
       preset=demo
-      options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF
-               -DTEGOTAE_FEW_UNITS=ON)
+      options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF)
       set -- demo
       break ;;
     --browser)

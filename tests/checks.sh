@@ -128,11 +128,11 @@ check_headers() {
   "$tool" -std=c++23 "${flags[@]}" build/headers.txt
 }
 
-# In $tool: clang.
+# In $tool: clang. Each source for itself: each must have what it needs.
 configure_clang() {
   # shellcheck disable=SC2046
   CC=$tool CXX=${tool/clang/clang++} configure -S . -B build/clang $(new_tree build/clang) -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTEGOTAE_UNITY=OFF
 }
 
 check_clang() {

@@ -15,7 +15,7 @@ using namespace tegotae::programs;
 // sqrt(k_t / k) of the coupling's defaults, m.
 constexpr double kRadius = 0.0194;
 // How far the part is pulled into its contacts: m, rad.
-constexpr double kPull = 2e-3, kTurn = 0.1;
+constexpr double kPull = 2e-3, kPullTurn = 0.1;
 constexpr int kCases = 10000, kQuickCases = 200;
 
 struct Case {
@@ -48,7 +48,7 @@ Case wedged(Random& random, int contacts) {
     c.mu.push_back(mu);
   }
   const Vec6 pull = random.vec6();
-  c.wanted << kPull * pull.head<3>(), kRadius * kTurn * pull.tail<3>();
+  c.wanted << kPull * pull.head<3>(), kRadius * kPullTurn * pull.tail<3>();
   return c;
 }
 

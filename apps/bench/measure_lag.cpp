@@ -7,8 +7,8 @@
 namespace tegotae::bench {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
-constexpr double kPulls = 1e-3;   // N
+constexpr double kLagPeriod = 1e-3;  // s
+constexpr double kPulls = 1e-3;      // N
 
 const Part& held_part_of(const Scene& scene) {
   return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
@@ -31,7 +31,7 @@ LagFigures measure_lag(const BenchScene& scene, HapticLoop& unlimited, const Loo
   double force2 = 0, error2 = 0;
   std::size_t pulls = 0;
   for (const LoopTrace::Tick& tick : trace.ticks) {
-    const Pose X = unlimited.step(tick.Y, kPeriod).proxy.X;
+    const Pose X = unlimited.step(tick.Y, kLagPeriod).proxy.X;
     const Displacement d = displacement(X, tick.X, center);
     off.push_back(d.dp.norm() + radius * d.dr.norm());
     const double force = stiffness * (X * center - tick.Y * center).norm(), error = stiffness * d.dp.norm();

@@ -8,12 +8,12 @@
 namespace tegotae::bench {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
+constexpr double kSeatPeriod = 1e-3;  // s
 // Above its seat by at most this much (m) a part is there: what is kept between parts, and the sagittas of facets.
 constexpr double kThere = 60e-6;
 // A part that lags by less (m) follows the pen.
 constexpr double kFollows = 0.3e-3;
-constexpr double kRest = 0.5, kWait = 0.3;  // s: at rest, and before and after the lift
+constexpr double kSeatRest = 0.5, kSeatWait = 0.3;  // s: at rest, and before and after the lift
 // Of the rest that counts as such: its second half. Of poses, one in as many is kept for the check.
 constexpr double kSettled = 0.5;
 constexpr std::size_t kStride = 10;
@@ -27,12 +27,12 @@ struct Phases {
 Phases phases(const SeatPen& pen) {
   Phases t{};
   t.down = (pen.above + pen.below) / kHandSpeed.linear;
-  t.rest = t.down + kRest;
+  t.rest = t.down + kSeatRest;
   t.slide = t.rest + pen.slide.norm() / kSlideSpeed;
   t.back = t.slide + pen.slide.norm() / kSlideSpeed;
-  t.settled = t.back + kWait;
+  t.settled = t.back + kSeatWait;
   t.up = t.settled + (pen.above + pen.below) / kHandSpeed.linear;
-  t.end = t.up + kWait;
+  t.end = t.up + kSeatWait;
   return t;
 }
 
@@ -95,7 +95,7 @@ SeatFigures measure_seat(const BenchScene& scene, HapticLoop& loop, LoopTrace& t
   const Phases t = phases(pen);
   const StylusScript way = script(pen, t);
   SeatFigures f;
-  f.ticks = static_cast<std::size_t>(std::ceil(t.end / kPeriod)) + 1;
+  f.ticks = static_cast<std::size_t>(std::ceil(t.end / kSeatPeriod)) + 1;
   std::vector<std::int64_t> rest, moving;
   rest.reserve(f.ticks);
   moving.reserve(f.ticks);
@@ -103,15 +103,15 @@ SeatFigures measure_seat(const BenchScene& scene, HapticLoop& loop, LoopTrace& t
   on_measuring_thread([&] {
     Rest pause;
     for (std::size_t k = 0; k < f.ticks; ++k) {
-      const double now = kPeriod * static_cast<double>(k);
+      const double now = kSeatPeriod * static_cast<double>(k);
       const Pose Y = way.pose(now);
       pause.pause_if_due();
       const std::int64_t start = monotonic_ns();
-      const TickReport& r = loop.step(Y, kPeriod);
+      const TickReport& r = loop.step(Y, kSeatPeriod);
       const std::int64_t took = monotonic_ns() - start;
       watch.look(now, Y, r.proxy.X);
       f.cut += r.flags.timed_out;
-      if (now > t.rest - kSettled * kRest && now <= t.rest)
+      if (now > t.rest - kSettled * kSeatRest && now <= t.rest)
         rest.push_back(took);
       else if (r.contacts > 0 || r.flags.timed_out)
         moving.push_back(took);

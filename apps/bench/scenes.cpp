@@ -7,13 +7,12 @@
 #include "bench/path.hpp"
 #include "bench/seat_scenes.hpp"
 #include "bench/thread_scenes.hpp"
+#include "core/numbers.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::bench {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Divisions around and along a cylindrical wall.
 struct Divisions {

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.hpp"
 #include "models/gear.hpp"
 #include "models/threaded.hpp"
 
 namespace tegotae::bench {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kTurn = 0.5;  // turns of a nut a second
+constexpr double kTurnsPerSecond = 0.5;  // turns of a nut a second
 constexpr int kFclPoses = 100;
 constexpr double kRamp = 0.1;  // s, in which a pen begins to press
 const char* const kNut = "nut16";
@@ -44,7 +44,7 @@ BenchScene make_nut(const std::string& name) {
     bench.jam_poses.push_back(X);
   }
   // Down, 2.5 turns.
-  const auto free = [=](double t) { return on_thread(start, pitch, -kTurn * t); };
+  const auto free = [=](double t) { return on_thread(start, pitch, -kTurnsPerSecond * t); };
   if (name == kNut) {
     bench.targets = {30, 300, 150};
     bench.pen = free;

@@ -17,7 +17,7 @@ namespace {
 
 // Busy 20 ms, then 3 ms rest: 87 %.
 constexpr std::int64_t kBusyNs = 20'000'000;
-constexpr std::chrono::milliseconds kRest(3);
+constexpr std::chrono::milliseconds kPause(3);
 
 std::int64_t cpu_ns(clockid_t clock) noexcept {
   timespec t;
@@ -66,7 +66,7 @@ void Rest::pause_if_due() {
   const std::int64_t now = monotonic_ns();
   if (since_ns_ == 0) since_ns_ = now;
   if (now - since_ns_ < kBusyNs) return;
-  std::this_thread::sleep_for(kRest);
+  std::this_thread::sleep_for(kPause);
   since_ns_ = monotonic_ns();
 }
 

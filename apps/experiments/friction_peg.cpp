@@ -10,7 +10,7 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHalf = 0.5 * kPegLength;
+constexpr double kHalfPeg = 0.5 * kPegLength;
 
 /// A contact of the planar peg: the hole's rim on the peg's side, or the peg's tip on the hole's wall; +1: the wall is
 /// at +x.
@@ -33,7 +33,7 @@ struct PlanarPeg {
 /// How far the surface of that contact still is from the wall, m.
 double gap(const PlanarPeg& peg, const Planar& p, const PlanarContact& c) {
   if (c.rim) return kPegRadius - peg.radius / std::cos(p.tilt) - c.side * (p.x + peg.rim * std::tan(p.tilt));
-  return kPegRadius - peg.radius * std::cos(p.tilt) - c.side * (p.x - kHalf * std::sin(p.tilt));
+  return kPegRadius - peg.radius * std::cos(p.tilt) - c.side * (p.x - kHalfPeg * std::sin(p.tilt));
 }
 
 /// What a unit of the contact's force does in the world: along x, along z, and about the center.
@@ -42,7 +42,7 @@ Vec3 action(const PlanarPeg& peg, const Planar& p, const PlanarContact& c, doubl
   // Forces in the peg's frame: the rim's is across the peg's side, the tip's across the hole's wall.
   const double fx = c.rim ? -c.side : -c.side * cosine - mu * sine;
   const double fz = c.rim ? mu : mu * cosine - c.side * sine;
-  const double arm = c.rim ? (c.side * kPegRadius - p.x) * sine + peg.rim * cosine : -kHalf;
+  const double arm = c.rim ? (c.side * kPegRadius - p.x) * sine + peg.rim * cosine : -kHalfPeg;
   return {fx * cosine + fz * sine, fz * cosine - fx * sine, arm * fx - c.side * peg.radius * fz};
 }
 
@@ -116,7 +116,7 @@ std::vector<JamPoint> jam_map(double lambda, double mu, int grid) {
       // About the center, which is half the peg's length over the tip.
       const auto load = [&](double push) {
         const Vec3 force(p.side * kPush, 0, -push);
-        return Wrench{force, Vec3(0, -p.moment * kPegRadius * kPush, 0) + Vec3(0, 0, -kHalf).cross(force)};
+        return Wrench{force, Vec3(0, -p.moment * kPegRadius * kPush, 0) + Vec3(0, 0, -kHalfPeg).cross(force)};
       };
       LoadRig rig(peg_in_hole(depth, kPlay, mu));
       p.slid = slides(rig, load(0), load(kPush));
@@ -126,7 +126,7 @@ std::vector<JamPoint> jam_map(double lambda, double mu, int grid) {
 }
 
 double insertion_force(const PegLead& lead, double depth) {
-  const PlanarPeg peg{kPegRadius - lead.play, depth - kHalf};
+  const PlanarPeg peg{kPegRadius - lead.play, depth - kHalfPeg};
   constexpr PlanarContact kAll[] = {{true, 1}, {true, -1}, {false, 1}, {false, -1}};
   // Of all sets of up to two contacts the one whose forces push and which no other surface cuts through.
   std::vector<std::vector<PlanarContact>> sets = {{}};

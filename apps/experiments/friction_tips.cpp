@@ -10,8 +10,8 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHair = 5e-6;  // m of the tips above their plates
-constexpr double kLoad = 1;     // N
+constexpr double kTipHair = 5e-6;  // m of the tips above their plates
+constexpr double kLoad = 1;        // N
 constexpr double kFlankAngle = M_PI / 6;
 // Torques begin with none, so that the tips come down where their plates are tangent, and end at so many times what is
 // expected.
@@ -45,7 +45,7 @@ Scene standing(int tips, double radius, double lean, double rise, double mu) {
                            std::make_shared<const TriangleMesh>(shapes::box({0.003, 0.003, kThick})),
                            {Quat::FromTwoVectors(Vec3::UnitZ(), n), tip - 0.5 * kThick * n},
                            false});
-    add_tip(tip + kHair * n, n, held);
+    add_tip(tip + kTipHair * n, n, held);
   }
   scene.parts.push_back({"held", std::make_shared<const TriangleMesh>(std::move(held)), Pose(), true});
   return scene;

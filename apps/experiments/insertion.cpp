@@ -12,12 +12,12 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kVibrationHz = 30;
+constexpr double kForceVibrationHz = 30;
 // Stalled: slower than this (m/s, over so many ticks) while the pen is at least so far ahead (m).
 constexpr double kStallSpeed = 1e-3, kAhead = 0.5e-3;
 constexpr std::size_t kStallTicks = 20;
-constexpr double kTip = 0.025;    // from the peg's center to its tip, m
-constexpr double kBottom = 0.04;  // depth of the hole, m
+constexpr double kTip = 0.025;       // from the peg's center to its tip, m
+constexpr double kHoleDepth = 0.04;  // depth of the hole, m
 
 struct Run {
   std::vector<Sample> samples;
@@ -44,12 +44,12 @@ Run measure(const SceneFile& file, const std::string& resolver) {
     if (std::isnan(at_surface)) continue;
     center.push_back(s.center);
     force.push_back(s.wrench.force);
-    if (i < kStallTicks || tip(s) < -kBottom + 1e-3) continue;
+    if (i < kStallTicks || tip(s) < -kHoleDepth + 1e-3) continue;
     const double way = r.samples[i - kStallTicks].center.z() - s.center.z();
     if (way < kStallSpeed * 1e-3 * kStallTicks && s.X.p.z() - s.Y.p.z() > kAhead) r.stalled += 1e-3;
   }
-  r.vibration = rms_above(center, 1e-3, kVibrationHz);
-  r.force_vibration = rms_above(force, 1e-3, kVibrationHz);
+  r.vibration = rms_above(center, 1e-3, kForceVibrationHz);
+  r.force_vibration = rms_above(force, 1e-3, kForceVibrationHz);
   r.speed = kTip / (center_in - at_surface);
   r.depth = -tip(r.samples.back());
   r.intersecting = count_intersecting(scene, r.samples, 400);

@@ -11,8 +11,8 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kHole = 0.02;  // m
-constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
+constexpr double kLadderHole = 0.02;  // m
+constexpr double kLadderGiveUp = 15;  // s after the tip's reaching the surface
 
 // Every so many of the starts are tried with a baseline too: a wedged impulse run takes forty times as long as one of
 // `qp`.
@@ -60,7 +60,7 @@ Plan plan(const Work& work) {
 }
 
 double clearance_um(double ratio) {
-  return 1e6 * kHole * (1 - ratio);
+  return 1e6 * kLadderHole * (1 - ratio);
 }
 
 template <typename F>
@@ -92,7 +92,7 @@ std::vector<Attempt> try_all(const Work& work, const Plan& p) {
     const PegTask& peg = pegs[j.resolver * p.ratios.size() + j.rung];
     Attempt& a = attempts[static_cast<std::size_t>(i)];
     a = attempt(peg, operator_profiles()[j.person], peg.tilted_task(j.person, j.start, p.starts),
-                static_cast<std::uint64_t>(j.start), kGiveUp, false);
+                static_cast<std::uint64_t>(j.start), kLadderGiveUp, false);
     a.samples = {};
   });
   return attempts;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.hpp"
 #include "experiments/statistics.hpp"
 #include "models/shapes.hpp"
 #include "peg_in_hole/peg_scene.hpp"
@@ -12,7 +13,6 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const shapes::Block kBlock;
 const shapes::Peg kPeg;
 
@@ -129,7 +129,6 @@ double PegTask::block_vertices_in_peg(const Pose& X) const {
 
 Attempt attempt(const PegTask& peg, const OperatorProfile& profile, const InsertionTask& task, std::uint64_t seed,
                 double seconds, bool to_surface) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Operator op(profile, task, seed);
   const Scene scene = peg.scene_at(op.start());
   SimulatedDeviceSettings pen;

@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <unsupported/Eigen/FFT>
+
+#include "core/numbers.hpp"
 
 namespace tegotae::experiments {
 namespace {
@@ -19,7 +20,6 @@ double sum_of(const std::vector<double>& values) {
 }  // namespace
 
 Spread spread(const std::vector<double>& values) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   if (values.empty()) return {kNan, kNan, kNan, kNan};
   const double n = static_cast<double>(values.size());
   Spread s;

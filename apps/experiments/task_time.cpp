@@ -10,12 +10,12 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kGiveUp = 15;  // s after the tip's reaching the surface
+constexpr double kTaskGiveUp = 15;  // s after the tip's reaching the surface
 constexpr double kNoTrend = 0.05;
 
 struct Result {
   bool reached;
-  double time;  // s; kGiveUp when the operator gave up
+  double time;  // s; kTaskGiveUp when the operator gave up
   double vibration;
 };
 
@@ -72,8 +72,8 @@ Outcome task_time(const Work& work) {
   work.each("task-time", n, [&](int i) {
     const std::size_t seed = static_cast<std::size_t>(i) % n_seeds, rest = static_cast<std::size_t>(i) / n_seeds;
     const std::size_t person = rest % people.size(), which = rest / people.size();
-    const Attempt a = attempt(pegs[which], people[person], pegs[which].task(), 1000 * person + seed, kGiveUp, true);
-    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kGiveUp,
+    const Attempt a = attempt(pegs[which], people[person], pegs[which].task(), 1000 * person + seed, kTaskGiveUp, true);
+    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kTaskGiveUp,
                                                                        a.vibration};
   });
 

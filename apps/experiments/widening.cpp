@@ -10,12 +10,12 @@
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kRatio = 0.99, kHole = 0.02;  // diametral clearance 0.2 mm
-constexpr double kForce = 2;                   // with which the peg is pushed to either side, N
-constexpr double kDepthShare = 0.95;           // of the hole: the push goes through the middle of what touches
+constexpr double kRatio = 0.99, kPegHole = 0.02;  // diametral clearance 0.2 mm
+constexpr double kForce = 2;                      // with which the peg is pushed to either side, N
+constexpr double kDepthShare = 0.95;              // of the hole: the push goes through the middle of what touches
 // Pegs larger than the hole (diameter by the hole's), and what an operator has to press them in.
 constexpr double kOversize[] = {1.002, 1.005, 1.01};
-constexpr double kGiveUp = 3;  // s
+constexpr double kPegGiveUp = 3;  // s
 // Around peg and hole: for the play so fine that facets are 3 µm high.
 constexpr int kSegments = 128, kOversizeSegments = 64;
 
@@ -44,7 +44,7 @@ struct Entry {
 Entry try_in(double ratio, const std::string& resolver, double stiffness) {
   PegTask peg(ratio, resolver, kOversizeSegments);
   peg.set_penalty_stiffness(stiffness);
-  const Attempt a = attempt(peg, operator_profile("average"), peg.task(), 1, kGiveUp, false);
+  const Attempt a = attempt(peg, operator_profile("average"), peg.task(), 1, kPegGiveUp, false);
   return {resolver, ratio, a.completed, -(a.samples.back().X * peg.tip()).z()};
 }
 
@@ -55,7 +55,7 @@ Outcome widening(const Work& work) {
   const bool quick = work.options.quick;
   const std::vector<double> stiffnesses =
       quick ? std::vector<double>{500, 20000} : std::vector<double>{200, 500, 1000, 2000, 5000, 1e4, 5e4};
-  const double clearance = kHole * (1 - kRatio), standard = PenaltySettings().stiffness;
+  const double clearance = kPegHole * (1 - kRatio), standard = PenaltySettings().stiffness;
   std::vector<Point> points(stiffnesses.size() + 1);
   work.each("widening", static_cast<int>(points.size()), [&](int i) {
     const std::size_t k = static_cast<std::size_t>(i);
@@ -102,7 +102,7 @@ Outcome widening(const Work& work) {
   }
   plot.series = {penalty, mine, truth};
   Table pegs{"Pegs larger than their hole, pressed by the operator \"average\" for " +
-                 std::to_string(static_cast<int>(kGiveUp)) + " s",
+                 std::to_string(static_cast<int>(kPegGiveUp)) + " s",
              {"peg by hole", "resolver", "at the bottom", "tip below the surface (mm)"}};
   int entered = 0;
   for (const Entry& e : entries) {

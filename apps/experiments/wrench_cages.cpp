@@ -19,8 +19,8 @@ namespace tegotae::experiments {
 namespace {
 
 constexpr int kPlanes = 6;
-constexpr double kPlay = 1e-4;  // m, of every corner from its plane
-constexpr double kGap = 2e-6;   // m, what contacts keep
+constexpr double kCagePlay = 1e-4;  // m, of every corner from its plane
+constexpr double kGap = 2e-6;       // m, what contacts keep
 constexpr double kFlat = 0.05;  // a corner is the only one near a plane when the others are so much of the size farther
 constexpr int kMaxSteps = 100;
 constexpr double kMinForce = 0.3;  // N
@@ -90,7 +90,7 @@ std::optional<Pose> rest(const TriangleMesh& mesh, const std::vector<Wall>& wall
     if (d->norm() > 1e-12) continue;
     for (const Wall& w : walls)
       for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        if (i != w.corner && w.n.dot(X * mesh.vertices[i]) < w.height + kPlay / 2) return std::nullopt;
+        if (i != w.corner && w.n.dot(X * mesh.vertices[i]) < w.height + kCagePlay / 2) return std::nullopt;
     return X;
   }
   return std::nullopt;
@@ -107,7 +107,7 @@ std::vector<Wall> random_walls(const TriangleMesh& mesh, double size, std::mt199
     bool alone = true;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
       alone &= i == lowest || n.dot(mesh.vertices[i] - mesh.vertices[lowest]) > kFlat * size;
-    if (alone) walls.push_back({lowest, n, n.dot(mesh.vertices[lowest]) - kPlay});
+    if (alone) walls.push_back({lowest, n, n.dot(mesh.vertices[lowest]) - kCagePlay});
   }
   return walls;
 }
@@ -159,7 +159,7 @@ WrenchScene cage(const std::string& name, const TriangleMesh& shape, double size
     // A slab whose face is the plane, wide enough for the part wherever it goes.
     const double side = 8 * size, thick = size;
     const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), walls[i].n);
-    const Vec3 foot = mesh.vertices[walls[i].corner] - kPlay * walls[i].n;
+    const Vec3 foot = mesh.vertices[walls[i].corner] - kCagePlay * walls[i].n;
     w.scene.parts.push_back({"plane" + std::to_string(i),
                              std::make_shared<const TriangleMesh>(weld(shapes::box({side, side, thick}, {1, 1, 1}))),
                              {q, foot - 0.5 * thick * walls[i].n},

@@ -4,13 +4,13 @@
 #include <memory>
 #include <utility>
 
+#include "core/numbers.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/import/load.hpp"
 
 namespace tegotae::experiments {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPlay = 1e-4;  // from the middle to either side, m
 // Pushed farther than ρ² by the contact's distance from the center (ρ² = k_t / k; 37 mm for the sphere, 17 mm for the
 // cone) a part on its tip or facet falls over, like a ball on a ball: the pushes below stay under that.

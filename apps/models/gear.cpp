@@ -5,13 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double involute(double angle) {
   return std::tan(angle) - angle;

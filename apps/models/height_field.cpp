@@ -3,13 +3,12 @@
 #include <cmath>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Corners of the grid, row by row along y for each x.
 class Corners {

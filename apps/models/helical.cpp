@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
 namespace {
 
-constexpr double kTurn = 2 * 3.14159265358979323846;
+constexpr double kTurn = 2 * kPi;
 
 void check(const WavyThread& t) {
   if (!(t.depth > 0 && t.radius > t.depth && t.pitch > 0 && t.low < t.high && t.segments >= 3 && t.rings >= 2))

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/numbers.hpp"
 #include "models/bricks.hpp"
 #include "models/helical.hpp"
 #include "models/shapes.hpp"
@@ -11,7 +12,7 @@ namespace tegotae::shapes {
 namespace {
 
 constexpr double kMm = 1e-3;
-constexpr double kTurn = 2 * 3.14159265358979323846;
+constexpr double kWholeTurn = 2 * kPi;
 
 Brick brick(const Vec3& low, const Vec3& high, bool solid = true) {
   return {kMm * low, kMm * high, solid};
@@ -74,13 +75,13 @@ Puzzle screw_in_nut() {
   for (int i = 0; i <= sixths; ++i) {
     const double turns = i / 6.0;
     Pose X;
-    X.q = Quat(Eigen::AngleAxisd(kTurn * turns, Vec3::UnitZ()));
+    X.q = Quat(Eigen::AngleAxisd(kWholeTurn * turns, Vec3::UnitZ()));
     X.p = {0, 0, thread.pitch * turns};
     p.known.push_back(X);
   }
   p.start = p.known.front();
   // The last half of a turn of the thread lets the screw tilt out of it.
-  p.least_turn = 1.5 * kTurn;
+  p.least_turn = 1.5 * kWholeTurn;
   p.least_way = 1.5 * thread.pitch;
   return p;
 }
@@ -140,7 +141,7 @@ Puzzle key(bool slot) {
                              cut({-4.7, -4.7, 0}, {4.7, 4.7, 5})};
   if (slot) lock.push_back(cut({-1.9, 4.7, 0}, {1.9, 11, 5}));
   p.fixed = solid_of("lock", lock);
-  p.start.q = Quat(Eigen::AngleAxisd(kTurn / 4, Vec3::UnitZ()));
+  p.start.q = Quat(Eigen::AngleAxisd(kWholeTurn / 4, Vec3::UnitZ()));
   if (!slot) return p;
   p.known = {p.start, at(0, 0, 0), at(0, 0, 17)};
   p.least_turn = 0.9;  // play of the bit in the slot, and of the shaft in the hole, may spare the rest

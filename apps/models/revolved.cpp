@@ -3,15 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 TriangleMesh revolved(const std::string& name, const std::vector<ProfilePoint>& profile, int segments) {
   const std::size_t n = profile.size();

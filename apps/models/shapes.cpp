@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "models/revolved.hpp"
 #include "tegotae/core/error.hpp"
@@ -14,8 +15,6 @@
 
 namespace tegotae::shapes {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 void require(bool good, const std::string& what) {
   if (!good) throw Error(what);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "models/mesh_builder.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Height of the sharp triangle over the pitch; of it a quarter is cut off at the root and an eighth at the crest.
 const double kSharp = std::sqrt(3.0) / 2;
 /// Profile points closer than this part of the pitch to an end are left out there.

@@ -2,13 +2,13 @@
 #include <cstdint>
 #include <numeric>
 
+#include "core/numbers.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::shapes {
 
 TriangleMesh torus_knot(const Knot& k) {
-  constexpr double kPi = 3.14159265358979323846;
   if (k.along < 3 || k.around < 3) throw Error("a knot needs at least 3 divisions along and around");
   if (std::gcd(k.p, k.q) != 1) throw Error("a knot's p and q must be coprime");
   TriangleMesh mesh;

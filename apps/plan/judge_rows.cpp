@@ -12,7 +12,7 @@
 namespace tegotae::plan {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 template <class T>
 void add(ContentSum& sum, const T& value) {
@@ -33,14 +33,14 @@ std::string this_program() {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Json to_json(const PlannerFigures& f) {
+OrderedJson to_json(const PlannerFigures& f) {
   return {{"found", f.found},         {"cpu", f.cpu},
           {"whole_cpu", f.whole_cpu}, {"checked", f.checked},
           {"bad_paths", f.bad_paths}, {"intersecting", f.intersecting},
           {"clearance", f.clearance}};
 }
 
-PlannerFigures figures_of(const Json& j) {
+PlannerFigures figures_of(const OrderedJson& j) {
   PlannerFigures f;
   j.at("found").get_to(f.found);
   j.at("cpu").get_to(f.cpu);
@@ -72,8 +72,8 @@ JudgeRows::JudgeRows(std::string path) : path_(std::move(path)) {
   std::ifstream in(path_);
   if (!in) return;
   try {
-    rows_ = Json::parse(in);
-  } catch (const Json::exception& e) {
+    rows_ = OrderedJson::parse(in);
+  } catch (const OrderedJson::exception& e) {
     throw Error(path_ + ": " + e.what());
   }
 }
@@ -83,7 +83,7 @@ std::optional<JudgedFigures> JudgeRows::find(const std::string& scene, const std
     const auto row = rows_.find(scene);
     if (row == rows_.end() || row->at("from") != from) return std::nullopt;
     return JudgedFigures{figures_of(row->at("ours")), figures_of(row->at("baseline"))};
-  } catch (const Json::exception& e) {
+  } catch (const OrderedJson::exception& e) {
     throw Error(path_ + ": \"" + scene + "\": " + e.what());
   }
 }

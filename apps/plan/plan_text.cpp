@@ -11,7 +11,7 @@ namespace tegotae::plan {
 namespace {
 
 using apps::format;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kDegrees = 57.29577951308232;
 constexpr std::size_t kMaxListed = 5;  // parts
@@ -71,26 +71,26 @@ std::string not_found_text(const PlanReport& r) {
   return text;
 }
 
-Json clearance_json(const review::PartClearance& c, const Scene& scene) {
+OrderedJson clearance_json(const review::PartClearance& c, const Scene& scene) {
   return {{"part", scene.parts[c.part].name},
           {"distance_m", c.distance},
           {"t", c.t},
           {"place_m", {c.place_W.x(), c.place_W.y(), c.place_W.z()}}};
 }
 
-Json band_json(const review::BandFindings& found, const Scene& scene) {
-  Json j = {{"low_m", found.band.low}, {"high_m", found.band.high}};
+OrderedJson band_json(const review::BandFindings& found, const Scene& scene) {
+  OrderedJson j = {{"low_m", found.band.low}, {"high_m", found.band.high}};
   for (const review::BandZone zone : review::kBandZones) {
     const auto i = static_cast<std::size_t>(zone);
     j[to_string(zone)] = {{"seconds", found.seconds[i]}, {"way_m", found.way[i]}};
   }
-  j["spans"] = Json::array();
+  j["spans"] = OrderedJson::array();
   for (const review::BandSpan& s : found.spans) {
-    Json span = {{"zone", to_string(s.zone)},
-                 {"begin_s", s.span.begin},
-                 {"end_s", s.span.end},
-                 {"way_begin_m", s.way_begin},
-                 {"way_end_m", s.way_end}};
+    OrderedJson span = {{"zone", to_string(s.zone)},
+                        {"begin_s", s.span.begin},
+                        {"end_s", s.span.end},
+                        {"way_begin_m", s.way_begin},
+                        {"way_end_m", s.way_end}};
     if (std::isfinite(s.tightest.distance)) span["tightest"] = clearance_json(s.tightest, scene);
     j["spans"].push_back(span);
   }
@@ -109,7 +109,7 @@ std::string plan_text(const PlanReport& r, const std::string& folder) {
 }
 
 std::string plan_json(const PlanReport& r) {
-  Json j;
+  OrderedJson j;
   j["scene"] = r.file.path;
   j["held"] = held_part(r.file.scene).name;
   j["task"] = r.to_goal ? "goal" : "out";
@@ -121,10 +121,10 @@ std::string plan_json(const PlanReport& r) {
   j["turn_rad"] = r.turn;
   j["farthest_m"] = r.plan.way;
   j["farthest_turn_rad"] = r.plan.turn;
-  j["tightest"] = Json::array();
+  j["tightest"] = OrderedJson::array();
   for (const review::PartClearance& c : r.tightest) j["tightest"].push_back(clearance_json(c, r.file.scene));
   if (r.band) j["band"] = band_json(*r.band, r.file.scene);
-  j["in_the_way"] = Json::array();
+  j["in_the_way"] = OrderedJson::array();
   for (const PartInTheWay& p : r.plan.in_the_way)
     j["in_the_way"].push_back({{"part", r.file.scene.parts[p.part].name}, {"stops", p.stops}});
   j["start"] = apps::start_json(r.plan.start, r.file.scene);
@@ -132,7 +132,7 @@ std::string plan_json(const PlanReport& r) {
                    {"poses", r.plan.poses},
                    {"motions_checked", r.plan.motions},
                    {"motions_led", r.plan.complied}};
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return j.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace tegotae::plan

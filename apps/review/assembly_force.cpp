@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.hpp"
 #include "review/review.hpp"
 #include "session/run_goal.hpp"
 #include "shared/format.hpp"
@@ -21,7 +22,6 @@ constexpr double kSeated = 0.01;
 constexpr double kMinWay = 1e-3;
 constexpr double kPeriod = 1e-3;  // s, of the contact loop in runs
 constexpr std::size_t kTellEvery = 256;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The contact forces of a tick and the depth they act at.
 struct Tick {

@@ -1,10 +1,10 @@
 #include "review/report_plots.hpp"
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/number_text.hpp"
+#include "core/numbers.hpp"
 #include "session/run_goal.hpp"
 #include "shared/format.hpp"
 
@@ -18,7 +18,6 @@ constexpr std::size_t kMaxParts = 5;
 constexpr double kMinShown = 1e-4;  // mm: where the logarithm of an intersection is drawn
 // A bound farther above the largest value than this goes into the title: drawn, it would flatten the line.
 constexpr double kMaxAbove = 4;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 json number(double x) {
   return std::isfinite(x) ? json(static_cast<double>(static_cast<float>(x))) : json(nullptr);

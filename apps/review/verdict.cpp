@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/number_text.hpp"
+#include "core/numbers.hpp"
 #include "shared/format.hpp"
 #include "shared/start_text.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 std::string times(std::size_t n) {
   return n == 1 ? "once" : format("%zu times", n);
 }
-
-constexpr double kDegree = 0.017453292519943295;
 
 class Judge {
  public:

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/numbers.hpp"
 #include "loop/inward_offset.hpp"
 #include "loop/lag.hpp"
 #include "loop/scene_parts.hpp"
@@ -24,7 +25,6 @@
 namespace tegotae::study {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 // How far off (standard deviation in each direction) a part is brought to the rim, m on a radius of 25 mm, and how it
 // is tilted; one that is pulled out is pulled a little askew only.
 constexpr double kOffset = 1e-3, kOffsetRadius = 0.025, kTilt = 2 * kDegree;

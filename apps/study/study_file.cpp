@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/numbers.hpp"
 #include "scene_file/toml_table.hpp"
 #include "shared/pose_option.hpp"
 #include "tegotae/core/error.hpp"
@@ -12,7 +13,6 @@
 namespace tegotae::study {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr double kMaxCases = 1e7, kMaxSeconds = 3600, kMaxMu = 10;
 
 std::int64_t whole(const TomlTable& t, const char* key, double fallback, double least, double most) {

@@ -12,7 +12,7 @@ namespace tegotae::view {
 namespace {
 
 // A part farther from the world's origin (m), or turned by more than this (rad) at once, is a mistake.
-constexpr double kFarthest = 100, kMaxTurn = 10;
+constexpr double kFarthestPart = 100, kMaxTurn = 10;
 
 Vec3 three(const nlohmann::json& values, double most) {
   if (!values.is_array() || values.size() != 3) throw Error("a move has three numbers");
@@ -30,7 +30,7 @@ Pose moved(const Part& part, const Vec3& by, const Vec3& turn) {
                   Eigen::AngleAxisd(turn.x(), Vec3::UnitX()) * part.pose.q)
                      .normalized();
   const Vec3 p = part.pose * middle + by - q * middle;
-  if (!(p.cwiseAbs().maxCoeff() <= kFarthest)) throw Error("a move is out of range");
+  if (!(p.cwiseAbs().maxCoeff() <= kFarthestPart)) throw Error("a move is out of range");
   return {turn.isZero(0) ? part.pose.q : q, turn.isZero(0) ? Vec3(part.pose.p + by) : p};
 }
 
@@ -66,7 +66,7 @@ void PageParts::edit(const nlohmann::json& command) {
   } else if (what == "remove") {
     removed_[i] = true;
   } else {
-    part.pose = moved(part, three(command.at("by"), kFarthest), three(command.at("turn"), kMaxTurn));
+    part.pose = moved(part, three(command.at("by"), kFarthestPart), three(command.at("turn"), kMaxTurn));
   }
 }
 

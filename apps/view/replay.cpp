@@ -26,7 +26,7 @@
 namespace tegotae::view {
 namespace {
 
-constexpr auto kPoll = std::chrono::milliseconds(50);
+constexpr auto kReplayPoll = std::chrono::milliseconds(50);
 
 /// The frame of a row: recorded values, with the contacts found.
 void fill(const RecordFrame& row, const Follower& follower, const FrameMaker& maker, Frame& frame) {
@@ -167,7 +167,7 @@ void serve_replay(const std::string& bundle, const std::function<std::string()>&
   ReplaySource source(bundle, make_review);
   Server server(address, source);
   announce(server);
-  while (!stop) std::this_thread::sleep_for(kPoll);
+  while (!stop) std::this_thread::sleep_for(kReplayPoll);
 }
 
 void write_replay(const std::string& bundle, const std::string& path) {

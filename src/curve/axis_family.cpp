@@ -10,11 +10,11 @@ namespace tegotae {
 namespace {
 
 constexpr double kEndNormal = 0.98;
-constexpr int kRounds = 6;
+constexpr int kFamilyRounds = 6;
 /// The second least mean square is as small as the least on a sphere.
 constexpr double kDistinct = 8, kMinSecond = 1e-3;
 /// A facet is of the nearest rise where its own one lies within so many spreads.
-constexpr double kSameSpread = 2;
+constexpr double kSameFamilySpread = 2;
 /// Squares are of angles: facets nearer to the axis than this (of the size) do not count more.
 constexpr double kMinSpeed2 = 1e-4;
 /// Of a normal distribution, 30 % are within 1 / 2.6 of the deviation.
@@ -51,7 +51,7 @@ bool AxisFamily::settle_about(const ScrewMotion& plain) {
 }
 
 bool AxisFamily::settle_rounds() {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kFamilyRounds; ++round) {
     if (round > 0) collect();
     find_rise();
     assign();
@@ -100,10 +100,10 @@ void AxisFamily::find_rise() {
   rises_ = {0};
   if (own_.empty()) return;
   double rise = most_frequent(own_, spread_);
-  if (std::abs(rise) < 2 * kSameSpread * spread_) {
+  if (std::abs(rise) < 2 * kSameFamilySpread * spread_) {
     // What turns without a rise is most of it; a thread may be beside it.
     own_.erase(std::remove_if(own_.begin(), own_.end(),
-                              [&](const OwnRise& o) { return std::abs(o.rise) < 2 * kSameSpread * spread_; }),
+                              [&](const OwnRise& o) { return std::abs(o.rise) < 2 * kSameFamilySpread * spread_; }),
                own_.end());
     if (own_.empty()) return;
     rise = most_frequent(own_, spread_);
@@ -121,7 +121,7 @@ void AxisFamily::assign() {
       continue;
     }
     const OwnRise own = own_rise(f, axis_, rough_);
-    double nearest = kSameSpread * std::max(spread_, own.spread);
+    double nearest = kSameFamilySpread * std::max(spread_, own.spread);
     for (std::size_t k = 0; k < rises_.size(); ++k) {
       const double off = std::abs(own.rise - rises_[k]);
       if (off < nearest) nearest = off, of_rise_[i] = static_cast<std::int8_t>(k);

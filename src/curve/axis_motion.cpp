@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.hpp"
+
 namespace tegotae {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Axes that lean more against each other are not looked at; nor are larger turns (rad), which the proof excludes.
 constexpr double kMaxLean = 0.2, kMaxTurn = 0.5;
 /// Rounding of one gap, relative to the largest terms: some 100 operations of 1.1e-16.
-constexpr double kRounding = 5e-14;
+constexpr double kMotionRounding = 5e-14;
 
 /// What one reading of the path adds: `p0` to `p1` is the way of the point that moves linearly.
 void add_reading(const Vec3& p0, const Vec3& p1, const Vec3& turn, double reach, AxisMotion& m) {
@@ -62,8 +63,8 @@ AxisMotion axis_motion(const FrameMotion& f, double rise, double start_floor, do
   add_reading(f.center0, f.center1, f.turn, f.reach_center, m);
   add_reading(f.origin0, f.origin1, f.turn, f.reach_origin, m);
   const double terms = f.size + std::abs(rise) * (2 * kPi + std::abs(m.start.psi));
-  m.start_floor = start_floor + kRounding * terms;
-  m.floor = floor + kRounding * terms;
+  m.start_floor = start_floor + kMotionRounding * terms;
+  m.floor = floor + kMotionRounding * terms;
   return m;
 }
 

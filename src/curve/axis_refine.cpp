@@ -9,13 +9,14 @@
 #include <map>
 #include <tuple>
 
+#include "core/numbers.hpp"
+
 namespace tegotae {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Facets that are used, rounds, and the size of the cells of the profile (of the mesh's size) and of its normals.
 constexpr std::size_t kMaxUsed = 4000;
-constexpr int kRounds = 6, kNormalCells = 24;
+constexpr int kRefineRounds = 6, kNormalCells = 24;
 constexpr double kCell = 0.02;
 /// A rise that is only rounding, of the size.
 constexpr double kNoRise = 1e-10;
@@ -216,7 +217,7 @@ ScrewMotion laid(const std::vector<Facet>& facets, const std::vector<std::size_t
 ScrewMotion refined(const std::vector<Facet>& facets, const std::vector<std::size_t>& of, const ScrewMotion& motion) {
   ScrewMotion best = laid(facets, of, motion);
   double scale = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRefineRounds; ++round) {
     const Frame f(best);
     const Equations equations(samples_of(facets, of, f), f.rise, scale);
     scale = std::max(2 * equations.rms(), 1e-9);

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.hpp"
+
 namespace tegotae {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// A triangle is cut into pieces over which r deviates from linear by at most this part of it, as far as so many cuts
 /// go.
 constexpr double kSagitta = 3e-5;

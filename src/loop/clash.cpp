@@ -21,15 +21,15 @@ namespace {
 // Enough for all of them in practice; the deepest point is looked for near these and at every vertex.
 constexpr std::size_t kMaxPairs = 1000000;
 // For planes between patches of a pair, about 15 ms, before FCL is asked.
-constexpr int kMaxSearches = 1 << 16;
+constexpr int kMaxClashSearches = 1 << 16;
 // An edge that leans less than this out of a triangle's plane (sine) does not cross it: parts that lie face to face.
 constexpr double kCrossing = 1e-9;
 
-using Box = Eigen::AlignedBox3d;
+using Bounds = Eigen::AlignedBox3d;
 
 /// What is known of a mesh, made when first needed.
 struct MeshData {
-  Box box;
+  Bounds box;
   std::shared_ptr<const PatchTree> tree;
   std::unique_ptr<SignedDistance> distance;
   bool closed = false;                     ///< set with it
@@ -94,7 +94,7 @@ class PairLook {
     front_.attach(*tree(a), a.data->box.center(), *tree(b));
     front_.set_clearance(reach());
     WorkLimit limit;
-    limit.searches = kMaxSearches;
+    limit.searches = kMaxClashSearches;
     limit.blocking = 1;
     return front_.certify(X_BA, Displacement{}, limit).status == CertifyStatus::certified;
   }
@@ -212,14 +212,14 @@ class PairLook {
 };
 
 /// Pairs of parts whose boxes come within `reach`.
-std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Box>& boxes, double reach) {
+std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Bounds>& boxes, double reach) {
   std::vector<std::size_t> order(boxes.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(),
             [&](std::size_t i, std::size_t j) { return boxes[i].min().x() < boxes[j].min().x(); });
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    Box wide = boxes[order[i]];
+    Bounds wide = boxes[order[i]];
     wide.min().array() -= reach;
     wide.max().array() += reach;
     for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min().x() <= wide.max().x(); ++j)
@@ -234,9 +234,9 @@ std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Bo
 
 std::vector<Clash> find_clashes(const Scene& scene, const ClashOptions& options) {
   std::map<const TriangleMesh*, MeshData> data;
-  std::vector<Box> boxes;
+  std::vector<Bounds> boxes;
   for (const Part& part : scene.parts) {
-    Box& box = data[part.mesh.get()].box;
+    Bounds& box = data[part.mesh.get()].box;
     if (box.isEmpty())
       for (const Vec3& p : part.mesh->vertices) box.extend(p);
     boxes.push_back(box.transformed(Eigen::Translation3d(part.pose.p) * part.pose.q));

@@ -20,7 +20,7 @@ constexpr int kMaxImpulses = 100, kRecovering = 30;
 // New constraints looked for on one sub-step of the way before it is shortened.
 constexpr int kMaxSearches = 6;
 constexpr int kMaxHalvings = 4;
-constexpr std::size_t kMaxBlocking = 256;
+constexpr std::size_t kMaxImpulseBlocking = 256;
 // Share of the envelope that a contact may lose in a sub-step before it counts as a collision: impulses at other
 // contacts leave speeds that die away but never vanish.
 constexpr double kSlack = 0.05;
@@ -29,7 +29,7 @@ constexpr double kRecovery = 0.2;
 // See ContactLoop: planes for one motion alone leave this many times the certificate's clearance.
 constexpr double kCutMargin = 1.2;
 // A motion that carries no point farther than this (m) is rest.
-constexpr double kRest = 1e-10;
+constexpr double kImpulseRest = 1e-10;
 // No hand takes a part along faster (m/s, of any of its points); without a bound a pen that jumps by kilometers makes
 // spins that Euler's equation, taken explicitly, drives past every number.
 constexpr double kFastest = 100;
@@ -47,7 +47,7 @@ ImpulseLoop::ImpulseLoop(const Scene& scene, const ContactSettings& settings, co
       substep_cap_(at_.check->longest_motion()) {
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
-  blocking_.reserve(kMaxBlocking);
+  blocking_.reserve(kMaxImpulseBlocking);
   near_.reserve(at_.spheres.size());
 }
 
@@ -197,7 +197,7 @@ void ImpulseLoop::collide(const Collision& collision) {
 
 ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport& report) {
   const double length = time * (V_.v.norm() + at_.radius * V_.w.norm());
-  if (length < kRest) return Advance::made;
+  if (length < kImpulseRest) return Advance::made;
   time *= std::min({1.0, substep_cap_ / length, kMaxTurn / std::max(kMaxTurn, time * V_.w.norm())});
   for (int i = 0; i <= kMaxHalvings && !late(); ++i, time *= 0.5) {
     const Displacement d{time * V_.v, time * V_.w};
@@ -222,10 +222,10 @@ void ImpulseLoop::gather(const Pose& Y, double wanted, TickReport& report) const
   at_.fill_report(2 * envelope_, report);
   report.flags.timed_out |= late();
   const double left = size(displacement(X_, Y, mass_.center));
-  report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
+  report.fraction = wanted > kImpulseRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   // A part with inertia trails in free space, which needs no reason; one that cannot go on has none to trail for.
   const bool held = report.contacts > 0 || collided_;
-  report.lag_reason = left <= kRest            ? LagReason::none
+  report.lag_reason = left <= kImpulseRest     ? LagReason::none
                       : held                   ? LagReason::contact
                       : report.flags.timed_out ? LagReason::time
                       : stuck_                 ? LagReason::capacity

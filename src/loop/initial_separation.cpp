@@ -15,7 +15,7 @@ constexpr double kMargin = 1.2;
 // offset.
 constexpr double kStep = 0.25;
 constexpr int kMaxRounds = 60, kMaxCalls = 16;
-constexpr std::size_t kMaxBlocking = 256;
+constexpr std::size_t kMaxInitialBlocking = 256;
 
 class InitialSeparation {
  public:
@@ -29,7 +29,7 @@ class InitialSeparation {
         rows_(kMaxConstraints),
         bounds_(kMaxConstraints) {
     metric_.set_orientation(X.q);
-    blocking_.reserve(kMaxBlocking);
+    blocking_.reserve(kMaxInitialBlocking);
   }
 
   Pose run() {

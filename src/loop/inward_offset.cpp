@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 // A vertex goes no farther than this many times what its faces go.
-constexpr double kFarthest = 10;
+constexpr double kFarthestMoved = 10;
 
 int most_faces(const Topology& topology) {
   std::uint32_t most = 0;
@@ -39,7 +39,7 @@ TriangleMesh inward_offset(const Surface& surface, double by) {
     const QpResult& r = solver.solve(normals, one.data(), Vec6::Zero());
     if (r.status != LpStatus::optimal) continue;
     const Vec3 d = r.z.head<3>();
-    mesh.vertices[v] += by * std::min(1.0, kFarthest / d.norm()) * d;
+    mesh.vertices[v] += by * std::min(1.0, kFarthestMoved / d.norm()) * d;
   }
   return mesh;
 }

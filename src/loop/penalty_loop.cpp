@@ -20,7 +20,7 @@ constexpr int kMaxSteps = 4, kMaxRounds = 12;
 // A step carries no point farther than this share of the part's radius: springs are straightened at its start.
 constexpr double kStepShare = 0.02;
 // Steps shorter than this (m) are rest.
-constexpr double kRest = 1e-8;
+constexpr double kPenaltyRest = 1e-8;
 constexpr std::size_t kMaxSprings = 16384;
 
 }  // namespace
@@ -112,7 +112,7 @@ Vec6 PenaltyLoop::balance(const Vec6& error, const Vec6& made, double dt) const 
     const Vec6 next = H.ldlt().solve(g);
     const double change = (next - d).head<3>().norm() + radius_ * (next - d).tail<3>().norm();
     d = next;
-    if (change < kRest) break;
+    if (change < kPenaltyRest) break;
   }
   return d;
 }
@@ -154,8 +154,8 @@ void PenaltyLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   collect(most, report);
   report.substeps.push_back(X_);
   const double left = size(displacement(X_, Y, center_));
-  report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
-  report.lag_reason = left <= kRest         ? LagReason::none
+  report.fraction = wanted > kPenaltyRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
+  report.lag_reason = left <= kPenaltyRest  ? LagReason::none
                       : report.contacts > 0 ? LagReason::contact
                                             : LagReason::time;  // a step or a tick has its longest motion
   report.proxy.touching = report.lag_reason == LagReason::contact || report.flags.timed_out;

@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
+
+#include "core/numbers.hpp"
 
 // Each pass is written once for a vector of kBytes and compiled for three instruction sets. Every lane does the same
 // IEEE operations (no fused ones: the build forbids contraction), so the width changes the speed and nothing else.
@@ -10,8 +11,6 @@
 
 namespace tegotae {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <int kBytes>
 struct Wide {

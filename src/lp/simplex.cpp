@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.hpp"
+
 namespace tegotae {
 namespace {
 
@@ -169,7 +171,6 @@ void LpSolver::tableau_row(Leaving& leaving) const noexcept {
 }
 
 bool LpSolver::choose_entering(const Leaving& leaving, bool first_index, Entering& out) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // When no slack can enter, v = Gᵀ y with y >= 0 of 1-norm `weight`, so some row of y has v·g >= |v|²/weight: a
   // smaller pivot than about that need never be taken. With six tight rows v is zero.
   const double length = leaving.v.norm();

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
 
 namespace tegotae {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Foresight takes pieces apart that are small enough for motions: beyond this part of the capacity there is none.
 constexpr double kCrowded = 0.4;

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
+#include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
 
 namespace tegotae {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
 constexpr int kMinRaises = 4, kSearchesPerRaise = 3, kMaxLooks = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the

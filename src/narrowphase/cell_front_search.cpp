@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
 
 namespace tegotae {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What is farther from the way of a piece than this part of its width needs no plane.
 constexpr double kWantedShare = 0.75;
 /// Cells are looked for farther ahead than the motion goes when it is this many times as far; what was met on the way

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.hpp"
 #include "narrowphase/moving_plane.hpp"
 #include "narrowphase/patch_lanes.hpp"
 #include "narrowphase/wide.hpp"
@@ -11,7 +12,6 @@
 namespace tegotae {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 /// A plane known already stands for a piece of B as well when it is not nearer than this share of the nearest.
 constexpr double kGoodShare = 0.8;
@@ -24,7 +24,7 @@ constexpr double kParallel = 1e-6;
 /// What is so many times as far as is wanted is not listed.
 constexpr double kListed = 6;
 /// Halvings of the range of distances among which the nearest are looked for.
-constexpr int kHalvings = 10;
+constexpr int kSearchHalvings = 10;
 
 /// A number of single precision that is no larger.
 float round_down(double x) {
@@ -35,7 +35,7 @@ float round_down(double x) {
 /// Among `count` distances, the end of which is padded with infinity to a multiple of kMeasured: one up to which,
 /// itself not included, there are at most `room`, and nearly as many.
 TEGOTAE_WIDE float nearest_end(const float* distance, std::size_t count, std::size_t room, float low, float high) {
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kSearchHalvings; ++i) {
     const float middle = 0.5F * (low + high);
     int nearer = 0;
     for (std::size_t k = 0; k < count; ++k) nearer += distance[k] < middle;

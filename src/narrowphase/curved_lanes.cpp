@@ -5,6 +5,7 @@
 #include <limits>
 #include <new>
 
+#include "core/numbers.hpp"
 #include "curve/curved_gap.hpp"
 #include "narrowphase/wide.hpp"
 
@@ -15,7 +16,6 @@ using curve::Lane;
 using curve::LaneInMemory;
 using curve::Piece;
 
-constexpr double kPi = 3.14159265358979323846;
 /// Wider arcs count as whole circles (half of the arc, rad): the bound over an arc needs less than a quarter turn.
 constexpr double kWidestArc = 1.5;
 

@@ -6,7 +6,7 @@ namespace tegotae {
 namespace {
 
 // A motion carries no point farther than this share of the part's radius, so that the poses checked lie close together.
-constexpr double kLongestShare = 0.02;
+constexpr double kLongestFclShare = 0.02;
 // Doublings of the back-off length.
 constexpr int kMaxBackOffs = 4;
 
@@ -26,7 +26,7 @@ void FclMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t)
 }
 
 double FclMotionCheck::longest_motion() const {
-  return kLongestShare * radius_;
+  return kLongestFclShare * radius_;
 }
 
 MotionAnswer FclMotionCheck::check(const Pose& X, const Displacement& d, double clearance,

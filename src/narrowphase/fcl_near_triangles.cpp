@@ -6,7 +6,7 @@ namespace tegotae {
 namespace {
 
 // FCL's thresholds are meant for lengths of about 1: it gets them in 0.1 mm.
-constexpr double kUnit = 1e-4;
+constexpr double kNearUnit = 1e-4;
 
 class TriangleQuery : public LeafQuery {
  public:
@@ -16,10 +16,10 @@ class TriangleQuery : public LeafQuery {
     const PatchTree &of_a = front_.a(), &of_b = front_.b();
     for (std::uint32_t i = 0; i < a.count; ++i) {
       std::array<Vec3, 3> p;
-      for (int k = 0; k < 3; ++k) p[k] = X_ * of_a.corner(of_a.order()[a.first + i], k) / kUnit;
+      for (int k = 0; k < 3; ++k) p[k] = X_ * of_a.corner(of_a.order()[a.first + i], k) / kNearUnit;
       for (std::uint32_t j = 0; j < b.count; ++j) {
         std::array<Vec3, 3> q;
-        for (int k = 0; k < 3; ++k) q[k] = of_b.corner(of_b.order()[b.first + j], k) / kUnit;
+        for (int k = 0; k < 3; ++k) q[k] = of_b.corner(of_b.order()[b.first + j], k) / kNearUnit;
         if (!fcl::detail::Intersect<double>::intersect_Triangle(p[0], p[1], p[2], q[0], q[1], q[2])) continue;
         bound = 0;
         return 0;

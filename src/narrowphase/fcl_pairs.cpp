@@ -11,15 +11,15 @@ namespace {
 
 // FCL's distance of two triangles takes one whose normal (the product of two edges) is shorter than 3e-8 for a segment,
 // whatever the unit, and then may call them touching: lengths are given to it in 0.1 mm.
-constexpr double kUnit = 1e-4;
+constexpr double kPairUnit = 1e-4;
 
 TriangleMesh in_units(TriangleMesh mesh) {
-  for (Vec3& v : mesh.vertices) v /= kUnit;
+  for (Vec3& v : mesh.vertices) v /= kPairUnit;
   return mesh;
 }
 
 fcl::Transform3d in_units(const Pose& X) {
-  return fcl_transform({X.q, X.p / kUnit});
+  return fcl_transform({X.q, X.p / kPairUnit});
 }
 
 }  // namespace
@@ -63,11 +63,11 @@ double FclPairs::distance_below(double bound, const TriangleMesh& a, const Trian
                                 Faces& nearest) {
   const fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
-  result.min_distance = bound / kUnit;  // the traversal leaves out whatever is farther than the best so far
+  result.min_distance = bound / kPairUnit;  // the traversal leaves out whatever is farther than the best so far
   fcl::distance((*models_)[a], in_units(X_BA), (*models_)[b], fcl::Transform3d::Identity(), request, result);
-  if (!(result.min_distance < bound / kUnit)) return bound;
+  if (!(result.min_distance < bound / kPairUnit)) return bound;
   nearest = {static_cast<std::uint32_t>(result.b1), static_cast<std::uint32_t>(result.b2)};
-  return kUnit * result.min_distance;
+  return kPairUnit * result.min_distance;
 }
 
 }  // namespace tegotae

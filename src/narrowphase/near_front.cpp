@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "core/numbers.hpp"
 
 namespace tegotae {
 namespace {
@@ -10,11 +11,10 @@ namespace {
 // A front that has grown to so many times what it was, and so many pairs more, is built anew.
 constexpr std::size_t kGrown = 2, kMore = 256;
 // Edges whose sine is less have no common normal to speak of.
-constexpr double kParallel = 1e-4;
+constexpr double kNearParallel = 1e-4;
 // Directions between supporting corners that are tried after the axes of two boxes: where corners or edges of far
 // boxes face each other the axes say little.
 constexpr int kSupports = 3;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Half of what the box covers along a direction given in its tree's axes.
 double extent(const PatchNode& node, const Vec3& n) {
@@ -73,7 +73,7 @@ class BoxAxes {
   }
   void offer_edges(int i, int j) {
     const double squared = 1 - cosine_[i][j] * cosine_[i][j];
-    if (!(squared > kParallel * kParallel)) return;
+    if (!(squared > kNearParallel * kNearParallel)) return;
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     offer(a_[i].cross(b_[j]),
           half_a_[i1] * std::abs(cosine_[i2][j]) + half_a_[i2] * std::abs(cosine_[i1][j]) +

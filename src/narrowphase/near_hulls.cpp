@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.hpp"
 #include "narrowphase/wide.hpp"
 
 namespace tegotae {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 /// Faces thinner than this part of their longest edge have no plane.
 constexpr double kParallel = 1e-6;

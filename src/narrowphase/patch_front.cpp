@@ -9,7 +9,7 @@ namespace tegotae {
 namespace {
 
 /// Searches of boxes, and splits undone, between two looks at the clock; pairs of the wide check.
-constexpr int kClockStride = 16, kRollBackStride = 64;
+constexpr int kPatchClockStride = 16, kRollBackStride = 64;
 constexpr std::uint32_t kChunk = 1024;
 /// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
 constexpr std::size_t kBlocksPerPair = 2;
@@ -148,7 +148,7 @@ bool PatchFront::collect_failures() {
 bool PatchFront::spend(bool triangles) {
   if (++report_.searches > limit_.searches) return false;
   // A triangle pair may halve its time and cost as much as all boxes of a stride.
-  return (!triangles && report_.searches % kClockStride != 0) || !past(limit_.deadline_ns);
+  return (!triangles && report_.searches % kPatchClockStride != 0) || !past(limit_.deadline_ns);
 }
 
 double PatchFront::worth_of_a() const {
@@ -222,7 +222,7 @@ void PatchFront::raise() {
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !may_raise(parent)) continue;
-    if (++tries % kClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
+    if (++tries % kPatchClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (!try_raise(parent)) continue;
     ++report_.merges;
     count = static_cast<std::uint32_t>(pairs());

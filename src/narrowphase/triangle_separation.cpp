@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTimeHalvings = 4;
 /// Products of unit vectors shorter than this have no reliable direction.
-constexpr double kParallel = 1e-6;
+constexpr double kParallelEdges = 1e-6;
 
 double least(const Vec3& n, const std::array<Vec3, 3>& p) {
   return std::min(std::min(n.dot(p[0]), n.dot(p[1])), n.dot(p[2]));
@@ -116,10 +116,10 @@ Vec3 edge_direction(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) 
   return least > 0 ? Vec3(best / std::sqrt(least)) : Vec3(Vec3::Zero());
 }
 
-/// Thinner than kParallel of its longest edge.
+/// Thinner than kParallelEdges of its longest edge.
 bool degenerate(const std::array<Vec3, 3>& v) {
   const Vec3 e = v[1] - v[0], f = v[2] - v[0], g = v[2] - v[1];
-  return !(e.cross(f).norm() > kParallel * std::max({e.squaredNorm(), f.squaredNorm(), g.squaredNorm()}));
+  return !(e.cross(f).norm() > kParallelEdges * std::max({e.squaredNorm(), f.squaredNorm(), g.squaredNorm()}));
 }
 
 struct Edges {
@@ -134,7 +134,7 @@ struct Edges {
     }
     n = e[0].cross(e[1]);
     const double l = n.norm();
-    n = l > kParallel * kParallel * longest ? Vec3(n / l) : Vec3(Vec3::Zero());
+    n = l > kParallelEdges * kParallelEdges * longest ? Vec3(n / l) : Vec3(Vec3::Zero());
     for (Vec3& x : e) {
       const double length = x.norm();
       if (length > 0) x /= length;
@@ -164,12 +164,12 @@ void offer_triangle_axes(const TrianglePair& t, Axes which, Search& search) {
   auto product = [&](const Vec3& x0, const Vec3& y0, const Vec3& x1, const Vec3& y1, bool with_a) {
     const Vec3 m0 = x0.cross(y0);
     const double l0 = m0.norm();
-    if (l0 < kParallel) return;
+    if (l0 < kParallelEdges) return;
     const Vec3 n0 = m0 / l0;
     if (which == Axes::promising && !search.promises(n0)) return;
     const Vec3 m1 = x1.cross(y1);
     const double l1 = m1.norm();
-    if (l1 < kParallel) return;
+    if (l1 < kParallelEdges) return;
     search.offer_both_ways(n0, m1 / l1, with_a);
   };
   for (int i = 0; i < 3; ++i) {

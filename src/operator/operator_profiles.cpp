@@ -1,12 +1,11 @@
 #include <cmath>
 
+#include "core/numbers.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/operator/operator.hpp"
 
 namespace tegotae {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 // A grip of this stiffness and mass (N/m, kg), near critical damping with the pen's own mass on it.
 HandSettings grip(double stiffness, double mass, double torsional_stiffness) {

@@ -1,8 +1,8 @@
 #include "plan/exit.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "core/numbers.hpp"
 #include "loop/scene_parts.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -15,7 +15,6 @@ constexpr double kSameDirection = 0.9999;
 constexpr int kHalvings = 40;
 
 WorldBox around_others(const Scene& scene) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   WorldBox box = {Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
   for (const Part& part : scene.parts) {
     if (part.held) continue;

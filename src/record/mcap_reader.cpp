@@ -22,7 +22,7 @@ constexpr unsigned kNeededTopics = ((1u << kFrameTopics) - 1) & ~(1u << kForcesT
 // A chunk that says to be larger is damaged; common writers' are some megabytes.
 constexpr std::uint64_t kMaxChunk = 1u << 30;
 
-std::uint32_t crc(std::string_view bytes) {
+std::uint32_t checksum_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
@@ -101,7 +101,7 @@ class McapReader {
     } else if (!compression.empty() && compression != "zstd") {
       fail("compression \"" + std::string(compression) + "\" is not supported (zstd and none are)");
     }
-    whole = whole && records.size() == size && (checksum == 0 || checksum == crc(records));
+    whole = whole && records.size() == size && (checksum == 0 || checksum == checksum_of(records));
     if (!whole) {
       out_.damage = "the chunk at byte " + std::to_string(at_) + " is damaged";
       return false;

@@ -9,7 +9,7 @@
 namespace tegotae {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // poses in a row that one thread asks about
+constexpr std::size_t kPoseBlock = 256;  // poses in a row that one thread asks about
 
 }  // namespace
 
@@ -54,11 +54,12 @@ void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
 
 std::int64_t PoseCheck::count_intersecting(const Scene& scene, const InitialContactReport& start) const {
   const JudgedScene judged(scene, start);
-  const std::size_t blocks = (poses_.size() + kBlock - 1) / kBlock;
+  const std::size_t blocks = (poses_.size() + kPoseBlock - 1) / kPoseBlock;
   std::atomic<std::int64_t> count{0};
   const auto ask = [&](int block) {
     PoseJudge judge(judged);
-    const std::size_t begin = static_cast<std::size_t>(block) * kBlock, end = std::min(begin + kBlock, poses_.size());
+    const std::size_t begin = static_cast<std::size_t>(block) * kPoseBlock,
+                      end = std::min(begin + kPoseBlock, poses_.size());
     for (std::size_t i = begin; i < end; ++i)
       if (judge.intersects(poses_[i].X, poses_[i].freed)) ++count;
   };
