@@ -40,9 +40,10 @@ struct FixedParts {
 };
 
 std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixed, const ContactSettings& settings,
-                                        const Vec3& center, double radius, ProofEffort effort) {
+                                        const Vec3& center, double radius, const std::vector<std::uint32_t>& left_out,
+                                        ProofEffort effort) {
   if (settings.narrowphase != NarrowPhase::fcl)
-    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses, effort);
+    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses, left_out, effort);
   std::vector<const TriangleMesh*> meshes;
   for (const auto& mesh : fixed.meshes) meshes.push_back(mesh.get());
   return std::make_unique<FclMotionCheck>(*held.mesh, center, radius, meshes, fixed.poses, *settings.l_0);
@@ -67,9 +68,14 @@ CollisionWorld::CollisionWorld(const Scene& scene, const ContactSettings& settin
   }
   const auto copies = start.shrink(scene, mass.center, static_cast<std::uint32_t>(parts.fixed.size()));
   for (const InitialContacts::Copy& c : copies) fixed.add(c.mesh, parts.fixed[c.part]->pose, parts.fixed_id[c.part]);
+  // Touching parts or copies of them, and suspended ones.
+  std::vector<std::uint32_t> left_out;
+  for (std::size_t i = 0; i < start.waiting(); ++i) left_out.push_back(start.waiting(i).part);
+  for (auto copy = parts.fixed.size(); copy < fixed.meshes.size(); ++copy)
+    left_out.push_back(static_cast<std::uint32_t>(copy));
   radius = radius_about(*parts.held->mesh, mass.center);
   reach = *settings.l_min + 2 * kReachShare * radius;
-  check = make_check(*parts.held, fixed, settings, mass.center, radius, effort);
+  check = make_check(*parts.held, fixed, settings, mass.center, radius, left_out, effort);
   contacts = std::make_unique<ContactSet>(made.surfaces.at(parts.held->mesh.get()), std::move(fixed.surfaces),
                                           mass.center, kMaxConstraints);
   X = initial_separation(*this, mass, parts.held->pose, kMaxShift * (settings.touch_tolerance + 2 * kGapFloor));
@@ -97,7 +103,7 @@ bool CollisionWorld::is_path_free(const Pose& from, const Pose& to, const Vec3& 
                near.end());
   start.apply(near);
   if (near.empty()) return true;
-  check->begin(near, deadline_ns);
+  check->begin(near, deadline_ns, OtherParts::ignored);
   blocking.clear();
   return check->check(from, d, kGapFloor, blocking) == MotionAnswer::free;
 }

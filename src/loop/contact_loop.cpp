@@ -114,7 +114,8 @@ void ContactLoop::stand_at(const Pose& X) {
   X_ = last_Y_ = X;
   at_.contacts->clear();
   near_.clear();
-  at_.check->begin(near_, kNoDeadline);  // nothing is near: what the check knew of parts that were goes
+  // Nothing is near: what the check knew of parts that were goes.
+  at_.check->begin(near_, kNoDeadline, OtherParts::far);
   tracked_ = timed_out_ = comes_ = queried_ = false;
   owed_.reset();
   margin_ = max_margin_;
@@ -148,7 +149,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     tracked_ = false;
     owed_.reset();
   } else {
-    at_.check->begin(near_, deadline_ns_);
+    at_.check->begin(near_, deadline_ns_, OtherParts::far);
     if (track()) adapt_margin(Y);
     trust_ = std::max(trust_, kMinTrust);
     if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));

@@ -116,7 +116,7 @@ void ImpulseLoop::substep(double h, TickReport& report) {
     tracked_ = false;
     return;
   }
-  at_.check->begin(near_, deadline_ns_);
+  at_.check->begin(near_, deadline_ns_, OtherParts::far);
   tracked_ = false;  // planes for motions of the last sub-step are of no more use
   double left = h;
   int impulses = 0, searches = 0;

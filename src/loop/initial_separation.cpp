@@ -105,7 +105,7 @@ class InitialSeparation {
   /// One answer of the narrow phase; where its work for one call runs out the next call goes on.
   MotionAnswer check(const std::vector<std::uint32_t>& parts, const Pose& X, const Displacement& d) {
     MotionAnswer answer = MotionAnswer::unknown;
-    at_.check->begin(parts, kNoDeadline);
+    at_.check->begin(parts, kNoDeadline, OtherParts::ignored);
     for (int i = 0; i < kMaxCalls && answer == MotionAnswer::unknown; ++i) {
       blocking_.clear();
       answer = at_.check->check(X, d, kGapFloor, blocking_);

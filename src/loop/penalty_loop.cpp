@@ -45,7 +45,8 @@ PenaltyLoop::PenaltyLoop(const Scene& scene, const ContactSettings& settings, co
   }
   radius_ = radius_about(*parts.held->mesh, center_);
   if (start_.waiting() > 0)
-    check_ = std::make_unique<PatchMotionCheck>(parts.held->mesh, center_, radius_, meshes, poses_);
+    check_ = std::make_unique<PatchMotionCheck>(parts.held->mesh, center_, radius_, meshes, poses_,
+                                                std::vector<std::uint32_t>{});
   X_ = parts.held->pose;
   near_.reserve(parts.fixed.size());
   points_.reserve(kMaxSprings);

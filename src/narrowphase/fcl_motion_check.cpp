@@ -21,7 +21,7 @@ FclMotionCheck::FclMotionCheck(const TriangleMesh& held, const Vec3& center, dou
       back_off_(back_off),
       narrow_(held, fixed) {}
 
-void FclMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t) noexcept {
+void FclMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t, OtherParts) noexcept {
   near_ = &near;
 }
 

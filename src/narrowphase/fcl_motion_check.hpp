@@ -14,7 +14,7 @@ class FclMotionCheck final : public MotionCheck {
   FclMotionCheck(const TriangleMesh& held, const Vec3& center, double radius,
                  const std::vector<const TriangleMesh*>& fixed, std::vector<Pose> poses, double back_off);
 
-  void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
+  void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   double free_share() const override { return free_ ? 1 : 0; }

@@ -15,6 +15,12 @@ enum class MotionAnswer : std::uint8_t {
   unknown   ///< work or time ran out before anything was found
 };
 
+/// What is known of the fixed parts that a list of near ones does not name.
+enum class OtherParts : std::uint8_t {
+  far,     ///< they are out of reach, but for those that the check was told may be left out
+  ignored  ///< they do not matter, wherever they are
+};
+
 /// Narrow phase of the contact loop: whether a motion of A keeps clear of the fixed parts. A motion runs from `X` (A's
 /// file frame in the world) by `d` of its center of mass; both in the world.
 class MotionCheck {
@@ -22,7 +28,7 @@ class MotionCheck {
   virtual ~MotionCheck() = default;
 
   /// Fixed parts that matter until the next call; `deadline_ns` of monotonic_ns() bounds the work of the checks.
-  virtual void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept = 0;
+  virtual void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept = 0;
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;

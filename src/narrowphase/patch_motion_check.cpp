@@ -11,6 +11,8 @@ namespace {
 
 // Parts that can have fronts at once.
 constexpr std::size_t kMaxFronts = 32;
+// Where more parts of as many triangles at most are near, they are one for the cells: 2 µs for each at the start.
+constexpr std::size_t kMaxBundleFaces = 1u << 17;
 // Pairs of all fronts together (about 200 bytes each, 330 where parts have a common axis), and the least and the most
 // of one.
 constexpr std::size_t kAllPairs = 1u << 18;
@@ -93,7 +95,8 @@ double mean_edge(const TriangleMesh& mesh) {
 
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
-                                   std::vector<Pose> poses, ProofEffort effort)
+                                   std::vector<Pose> poses, const std::vector<std::uint32_t>& left_out,
+                                   ProofEffort effort)
     : center_(center),
       radius_(radius),
       held_(cached_patch_tree(held)),
@@ -113,6 +116,8 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
     any_axes = any_axes || !axes_.back()->empty();
     parts.push_back({tree, poses_[i]});
   }
+  make_bundle(fixed, left_out);
+  if (bundle_) parts.push_back({bundle_->tree(), Pose{}});
   const std::size_t fronts = std::min(kMaxFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
   capacity.blocking = kMaxBlocking;
@@ -136,7 +141,26 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   seen_.assign(fixed.size(), 0);
   near_.reserve(fixed.size());
   near_fronts_.reserve(fixed.size());
-  near_cells_.reserve(fixed.size());
+  near_cells_.reserve(fixed.size() + 1);
+}
+
+/// For scenes of more parts than there are fronts. Bores and threads are not in it: their fronts are faster.
+void PatchMotionCheck::make_bundle(const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
+                                   const std::vector<std::uint32_t>& left_out) {
+  if (effort_ == ProofEffort::quick || fixed.size() <= kMaxFronts) return;
+  std::vector<std::uint32_t> members;
+  std::size_t faces = 0;
+  for (std::uint32_t part = 0; part < fixed.size(); ++part) {
+    if (!axes_[part]->empty() || std::find(left_out.begin(), left_out.end(), part) != left_out.end()) continue;
+    members.push_back(part);
+    faces += fixed[part]->triangles.size();
+  }
+  if (members.size() > kMaxFronts && faces <= kMaxBundleFaces) bundle_.emplace(fixed, poses_, members);
+}
+
+bool PatchMotionCheck::bundles() noexcept {
+  if (!bundle_ || others_ == OtherParts::ignored) return false;
+  return near_.size() > (bundled_ ? kMaxFronts / 2 : kMaxFronts);
 }
 
 double PatchMotionCheck::longest_motion() const {
@@ -164,8 +188,10 @@ void PatchMotionCheck::move_to_cells(std::uint32_t part) noexcept {
   choice_[part] = Certificate::cells;
 }
 
-void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept {
+void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns,
+                             OtherParts others) noexcept {
   limit_.deadline_ns = deadline_ns;
+  others_ = others;
   near_.assign(near.begin(), near.end());
   take_up_near();
 }
@@ -175,9 +201,12 @@ void PatchMotionCheck::take_up_near() noexcept {
   overflow_ = false;
   near_fronts_.clear();
   near_cells_.clear();
+  bundled_ = bundles();
   for (const std::uint32_t part : near_)
-    if (front_of_[part] != kNobody) used_[front_of_[part]] = now_;
+    if (front_of_[part] != kNobody && !(bundled_ && bundle_->has(part))) used_[front_of_[part]] = now_;
+  if (bundled_) near_cells_.push_back(static_cast<std::uint32_t>(fixed_.size()));
   for (const std::uint32_t part : near_) {
+    if (bundled_ && bundle_->has(part)) continue;
     if (seen_[part] + 1 < now_) choice_[part] = Certificate::front;
     seen_[part] = now_;
     if (front_of_[part] == kNobody && choice_[part] != Certificate::cells) take_front(part);
@@ -233,7 +262,8 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
     judge_cells(report);
     share_ = std::min(share_, report.share);
     for (const FacePair& pair : cells_->blocking())
-      if (blocking.size() < blocking.capacity()) blocking.push_back(pair);
+      if (blocking.size() < blocking.capacity())
+        blocking.push_back(pair.part < fixed_.size() ? pair : bundle_->of_part(pair));
   }
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
@@ -279,7 +309,7 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
 }
 
 void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {
-  if (report.status != CertifyStatus::cut || vain_.last == now_) return;
+  if (report.status != CertifyStatus::cut || vain_.last == now_ || bundled_) return;
   const bool begins = vain_.last + kTicksBetween < now_ || report.pairs > 2 * vain_.cells;
   if (begins) vain_ = {report.pairs, 0, 0};
   vain_.last = now_;
@@ -397,7 +427,7 @@ void PatchMotionCheck::prepare_cells(const Pose& X, const Displacement& next) no
 MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance,
                                       std::int64_t deadline_ns) noexcept {
   one_[0] = part;
-  begin(one_, deadline_ns);
+  begin(one_, deadline_ns, OtherParts::ignored);
   WorkLimit limit = limit_;
   limit.blocking = 1;
   limit.searches = kStandSearches;

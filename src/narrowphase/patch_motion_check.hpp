@@ -8,6 +8,7 @@
 #include "narrowphase/cell_front.hpp"
 #include "narrowphase/headway.hpp"
 #include "narrowphase/motion_check.hpp"
+#include "narrowphase/part_bundle.hpp"
 #include "narrowphase/patch_front.hpp"
 
 namespace tegotae {
@@ -28,12 +29,12 @@ enum class ProofEffort : std::uint8_t {
 class PatchMotionCheck final : public MotionCheck {
  public:
   /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
-  /// center of mass `center` (m, file frame).
+  /// center of mass `center` (m, file frame). Parts in `left_out` may be left out of begin() although they are near.
   PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed, std::vector<Pose> poses,
-                   ProofEffort effort = ProofEffort::full);
+                   const std::vector<std::uint32_t>& left_out, ProofEffort effort = ProofEffort::full);
 
-  void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns) noexcept override;
+  void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
@@ -68,6 +69,9 @@ class PatchMotionCheck final : public MotionCheck {
     int proved_with_many = 0;  ///< motions that were proved with so many pairs that A could lie on B
   };
 
+  void make_bundle(const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
+                   const std::vector<std::uint32_t>& left_out);
+  bool bundles() noexcept;
   void take_up_near() noexcept;
   void begin_anew() noexcept;
   void take_front(std::uint32_t part) noexcept;
@@ -108,6 +112,9 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
+  std::optional<PartBundle> bundle_;  ///< what the cells know as the part after the last
+  bool bundled_ = false;              ///< the near parts of the bundle are certified as one
+  OtherParts others_ = OtherParts::ignored;
   std::vector<Certificate> choice_;  ///< of each part, for as long as it is near
   Vain vain_;
   std::vector<std::uint32_t> near_;         ///< of the last begin()

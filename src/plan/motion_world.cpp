@@ -101,7 +101,7 @@ double MotionWorld::free_share(const Pose& from, const Pose& to, double clearanc
 double MotionWorld::step_share(const Pose& X, const Displacement& step, double clearance) {
   at_->query(X, center(), size(step) + clearance, near_);
   if (near_.empty()) return 1;
-  at_->check->begin(near_, kNoDeadline);
+  at_->check->begin(near_, kNoDeadline, OtherParts::ignored);
   blocking_.clear();
   const MotionAnswer answer = at_->check->check(X, step, clearance, blocking_);
   if (answer == MotionAnswer::free) return 1;
@@ -117,7 +117,7 @@ double MotionWorld::step_share(const Pose& X, const Displacement& step, double c
   const double share = std::min(at_->check->free_share(), 1 - kMinProof);
   // Cells that took over a part, which they keep until it was out of sight, give it back: what follows is elsewhere.
   near_.clear();
-  at_->check->begin(near_, kNoDeadline);
+  at_->check->begin(near_, kNoDeadline, OtherParts::ignored);
   return share;
 }
 

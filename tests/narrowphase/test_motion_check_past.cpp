@@ -93,11 +93,11 @@ class Checks {
  private:
   std::unique_ptr<PatchMotionCheck> make() const {
     return std::make_unique<PatchMotionCheck>(case_.a, case_.center, radius_, std::vector<MeshPtr>{case_.b},
-                                              std::vector<Pose>{Pose{}});
+                                              std::vector<Pose>{Pose{}}, std::vector<std::uint32_t>{});
   }
   MotionAnswer ask(PatchMotionCheck& check, const Question& q, double clearance) {
     blocking_.clear();
-    check.begin({0}, kNoDeadline);
+    check.begin({0}, kNoDeadline, OtherParts::far);
     return check.check(q.X, q.d, clearance, blocking_);
   }
 

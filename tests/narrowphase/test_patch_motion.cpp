@@ -139,8 +139,8 @@ TEST_CASE("what is prepared ahead lets nothing through", "[patch]") {
   const Oracle oracle(sheet, sheet);
   std::vector<FacePair> blocking;
   blocking.reserve(64);
-  PatchMotionCheck check(sheet, Vec3::Zero(), size, {sheet}, {Pose{}});
-  check.begin({0}, kNoDeadline);
+  PatchMotionCheck check(sheet, Vec3::Zero(), size, {sheet}, {Pose{}}, {});
+  check.begin({0}, kNoDeadline, OtherParts::far);
   check.prepare(X, {Vec3(0, 0, -1e-4), Vec3::Zero()}, kNoDeadline);
   for (const Displacement& d :
        {Displacement{Vec3(0, 0, -5e-5), Vec3::Zero()}, Displacement{Vec3(2e-5, -2e-5, -2e-5), Vec3(1e-4, 0, 1e-4)}}) {
