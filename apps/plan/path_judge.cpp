@@ -83,7 +83,7 @@ class PathJudge::Asked {
   FclPairs fcl_;
 };
 
-PathJudge::PathJudge(const Scene& scene, const Vec3& center) : scene_(scene), center_(center) {
+PathJudge::PathJudge(const Scene& scene, const Vec3& center) : center_(center) {
   for (const Vec3& v : held_part(scene).mesh->vertices) points_.push_back(v - center);
   const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
   for (unsigned i = 0; i < processors; ++i) fcl_.push_back(std::make_unique<Asked>(scene));

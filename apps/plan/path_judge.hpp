@@ -61,7 +61,6 @@ class PathJudge {
   /// pose that may be near, set to the one that was.
   double spared(const Vec3& center, const Mat3& turn, std::size_t& near) const;
 
-  const Scene& scene_;
   Vec3 center_;
   std::vector<Vec3> points_;                              ///< of the held part, from its center, m
   std::vector<std::unique_ptr<Asked>> fcl_;               ///< one for each processor
