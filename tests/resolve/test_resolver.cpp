@@ -70,7 +70,7 @@ TEST_CASE("a resolved motion satisfies every constraint and never goes away from
     std::vector<double> bounds;
     const int n = 1 + static_cast<int>(rng() % 60);
     for (int k = 0; k < n; ++k) {
-      rows.push_row(metric.row({random_direction(rng), random_vector(rng, 0.03), 0, 0, 0}));
+      rows.push_row(metric.row({random_direction(rng), random_vector(rng, 0.03), 0, {}, 0}));
       bounds.push_back(-1e-4 * static_cast<double>(rng() % 100) / 100);  // standing still is allowed
     }
     const Vec6 wanted = metric.whiten({random_vector(rng, 1e-3), random_vector(rng, 2e-2)});
