@@ -1,34 +1,17 @@
 // What makes two calls of `tegotae try` the same task.
 #include <set>
 
-#include "apps/run_program.hpp"
 #include "catch.hpp"
+#include "review/cube_scene.hpp"
 #include "study/task.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
 
-namespace {
-
-/// A cube of 10 mm over a floor cube, and a roof beside it.
-std::string write_scene(const TempFolder& folder) {
-  folder.write(
-      "cube.obj",
-      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
-      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
-  folder.write("scene.toml",
-               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
-               "[[part]]\nname = \"roof\"\nmesh = \"cube.obj\"\nposition = [0.02, 0, 0.04]\n"
-               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.03]\n");
-  return folder / "scene.toml";
-}
-
-}  // namespace
-
 TEST_CASE("every setting that a scene file knows makes another task, and how it is written does not") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder);
+  const std::string scene = write_cube_scene(folder);
   std::string text = read_text(scene);
   const auto print = [&](const std::string& more, std::uint64_t seed = 1, double seconds = 6) {
     folder.write("scene.toml", text + more);

@@ -12,6 +12,7 @@
 #include "catch.hpp"
 #include "fcl_oracle.hpp"
 #include "recording.hpp"
+#include "review/cube_scene.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
 
 using namespace tegotae;
@@ -22,19 +23,6 @@ using Catch::StartsWith;
 using nlohmann::json;
 
 namespace {
-
-/// A cube of 10 mm over a floor cube, and a roof beside it.
-std::string write_scene(const TempFolder& folder) {
-  folder.write(
-      "cube.obj",
-      "v -5 -5 -5\nv 5 -5 -5\nv 5 5 -5\nv -5 5 -5\nv -5 -5 5\nv 5 -5 5\nv 5 5 5\nv -5 5 5\n"
-      "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
-  folder.write("scene.toml",
-               "unit = \"mm\"\n[[part]]\nname = \"floor\"\nmesh = \"cube.obj\"\n"
-               "[[part]]\nname = \"roof\"\nmesh = \"cube.obj\"\nposition = [0.02, 0, 0.04]\n"
-               "[[part]]\nname = \"block\"\nmesh = \"cube.obj\"\nheld = true\nposition = [0, 0, 0.03]\n");
-  return folder / "scene.toml";
-}
 
 // Onto the floor, 20 µm over it.
 const char* const kGoal = " --goal 0,0,0.01002 --seconds 6";
@@ -54,7 +42,7 @@ std::size_t lines(const std::string& text) {
 
 TEST_CASE("tries are the same for any number of jobs and after going on") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder);
+  const std::string scene = write_cube_scene(folder);
   const std::string one = folder / "one", two = folder / "two", bits = folder / "bits";
   const Output o = tries(scene, one, std::string("--tries 4 --jobs 1") + kGoal);
   CHECK(o.code == 0);
@@ -103,7 +91,7 @@ TEST_CASE("tries are the same for any number of jobs and after going on") {
 
 TEST_CASE("tries that cannot succeed tell who is in the way") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder);
+  const std::string scene = write_cube_scene(folder);
   // Into the roof from below: the straight way only, for no other one is free.
   const Output o = tries(scene, folder / "t", "--tries 2 --goal 0.02,0,0.036 --seconds 3");
   CHECK(o.code == 1);
@@ -142,7 +130,7 @@ bool agrees(const std::string& scene, const std::string& options, const std::str
 
 TEST_CASE("a try and the review of its recording never disagree") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder), out = folder / "t";
+  const std::string scene = write_cube_scene(folder), out = folder / "t";
   int failed = 0, all = 0;
   const auto look = [&](const std::string& file, const std::string& options) {
     failed += agrees(file, options, out) ? 1 : 0;
@@ -173,7 +161,7 @@ TEST_CASE("a try of a peg and its review never disagree", "[.][parts]") {
 
 TEST_CASE("an interrupted call keeps its tries and goes on") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder), out = folder / "t";
+  const std::string scene = write_cube_scene(folder), out = folder / "t";
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
@@ -204,7 +192,7 @@ TEST_CASE("an interrupted call keeps its tries and goes on") {
 
 TEST_CASE("bad input of try is one line") {
   const TempFolder folder;
-  const std::string scene = write_scene(folder);
+  const std::string scene = write_cube_scene(folder);
   const auto refused = [&](const std::string& arguments, const std::string& why) {
     const Output o = run_program("tegotae", "try " + scene + " --out " + folder / "t " + arguments);
     INFO(arguments << ": " << o.err);
