@@ -52,7 +52,8 @@ class GltfCheck {
     std::vector<std::string> notes;
     for (const json& name : list("extensionsUsed"))
       if (!is_known_extension(name.get<std::string>()))
-        notes.push_back("the glTF extension " + name.get<std::string>() + " is not read");
+        notes.push_back("the glTF extension " + name.get<std::string>() +
+                        " is not read; export without it if a shape or a place is wrong");
     return notes;
   }
 

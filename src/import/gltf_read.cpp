@@ -54,7 +54,9 @@ class GltfReader {
   }
 
   PartFile read() {
-    if (data_.animations_count > 0) file_.notes.push_back("animations are not read: parts stand where the nodes are");
+    if (data_.animations_count > 0)
+      file_.notes.push_back(
+          "animations are not read: parts stand where the nodes are; apply the pose that is meant and export anew");
     std::vector<std::string> groups;
     const cgltf_scene* scene = data_.scene != nullptr ? data_.scene : data_.scenes_count > 0 ? data_.scenes : nullptr;
     if (scene != nullptr) {
@@ -83,14 +85,15 @@ class GltfReader {
       other += data_.nodes[i].mesh != nullptr && shown_.count(&data_.nodes[i]) == 0;
     if (other > 0)
       file_.notes.push_back("not in the scene that is read: nodes with meshes, " + std::to_string(other) +
-                            " of them: left out");
+                            " of them: left out; add them to that scene if they are parts");
     if (off_weights_ > 0)
       file_.notes.push_back("the weights of " + std::to_string(off_weights_) +
-                            " vertices on their joints do not add up to one: taken as shares of their sum");
+                            " vertices on their joints do not add up to one: taken as shares of their sum; normalize "
+                            "them if the shape is not as it should be");
     if (!left_over_.empty())
       file_.notes.push_back("the last corners of " + std::to_string(left_over_.size()) +
                             (left_over_.size() == 1 ? " list" : " lists") +
-                            " of triangles are too few for a triangle: left out");
+                            " of triangles are too few for a triangle: left out; export anew if there is a hole");
   }
 
   void add_parts(const cgltf_node& node, const Matrix34& X, const std::vector<std::string>& groups) {

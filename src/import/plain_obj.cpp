@@ -51,11 +51,12 @@ class ObjReader {
                         (unknown_.empty() ? "" : "; " + unknown()));
     if (!has_faces_) refuse(path_, "no triangles" + (unknown_.empty() ? "" : "; " + unknown()));
     if (surface_line_ > 0)
-      notes.push_back("the free-form surfaces from line " + std::to_string(surface_line_) + " on are not read");
-    if (!unknown_.empty()) notes.push_back(unknown() + ": left out");
+      notes.push_back("the free-form surfaces from line " + std::to_string(surface_line_) +
+                      " on are not read; export them as polygons");
+    if (!unknown_.empty()) notes.push_back(unknown() + ": left out; export anew if something is missing");
     if (short_line_ > 0)
       notes.push_back("faces of fewer than three corners are left out, the first in line " +
-                      std::to_string(short_line_));
+                      std::to_string(short_line_) + "; export anew if there is a hole");
     return std::move(out_);
   }
 

@@ -25,7 +25,9 @@ class OffReader {
     for (std::uint64_t i = 0; i < vertices_; ++i) out.vertex(read_vertex(i));
     for (std::uint64_t i = 0; i < faces_; ++i) out.face(read_face(i));
     if (!next_line().empty())
-      notes.push_back("lines behind its last face are not read: its counts announce fewer vertices and faces");
+      notes.push_back(
+          "lines behind its last face are not read: its counts announce fewer vertices and faces; "
+          "correct them if something is missing");
     out.tell_short(notes);
     if (!out.has_faces()) refuse(path_, "no triangles");
     return out.file();

@@ -266,7 +266,9 @@ class PlyReader {
       for (std::uint64_t i = 0; i < element.count; ++i) read(element, i);
     }
     if (!is_padding(body_.rest()))
-      notes.push_back("what stands behind its last element is not read: its header announces fewer elements");
+      notes.push_back(
+          "what stands behind its last element is not read: its header announces fewer elements; correct it "
+          "if something is missing");
     out_.tell_short(notes);
     if (!out_.has_faces()) refuse(path_, "no triangles");
     return out_.file();

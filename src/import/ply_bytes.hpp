@@ -28,7 +28,8 @@ class PlyBytes {
   }
   void tell_short(std::vector<std::string>& notes) const {
     if (short_faces_ > 0)
-      notes.push_back("faces of fewer than three corners are left out, " + std::to_string(short_faces_) + " of them");
+      notes.push_back("faces of fewer than three corners are left out, " + std::to_string(short_faces_) +
+                      " of them; export anew if there is a hole");
   }
   bool has_faces() const { return faces_ > 0; }
   std::string file() const {

@@ -303,7 +303,8 @@ TEST_CASE("PLY: faces of any number of corners", "[flat]") {
 }
 
 TEST_CASE("PLY, OFF: faces of fewer than three corners are counted and left out", "[flat]") {
-  const std::string few = "0\n1 2\n2 0 1\n", why = "faces of fewer than three corners are left out, 3 of them";
+  const std::string few = "0\n1 2\n2 0 1\n",
+                    why = "faces of fewer than three corners are left out, 3 of them; export anew if there is a hole";
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 7\nproperty list uchar int vertex_indices\nend_header\n";
