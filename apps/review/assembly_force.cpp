@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/number_text.hpp"
 #include "core/numbers.hpp"
 #include "review/review.hpp"
 #include "session/run_goal.hpp"
@@ -200,21 +201,24 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
   using apps::format;
   std::vector<std::string> out;
   if (!f.known) return out;
-  const auto peak = [](const char* what, const ForcePeak& p) {
-    return format("%s: at most %.2f N at %.2f mm", what, p.force, 1e3 * p.depth) +
+  const auto newtons = [](double force) { return fixed_text(force, 2) + " N"; };
+  const auto mm = [](double depth) { return fixed_text(1e3 * depth, 2); };
+  const auto peak = [&](const std::string& what, const ForcePeak& p) {
+    return what + ": at most " + newtons(p.force) + " at " + mm(p.depth) + " mm" +
            (p.part.empty() ? "" : ", against " + p.part);
   };
+  const auto mean = [&](double force) { return "; " + newtons(force) + " in the mean over the way"; };
   out.push_back(f.insertion.force > 0
-                    ? peak("insertion", f.insertion) + format("; %.2f N in the mean over the way", f.insertion_mean) +
+                    ? peak("insertion", f.insertion) + mean(f.insertion_mean) +
                           (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string())
                     : "insertion: no force seen");
   out.push_back(f.seating.force > 0 ? peak("seating (final)", f.seating) : "seating (final): no force seen");
-  out.push_back(f.pull_out.force > 0
-                    ? peak("pull-out", f.pull_out) + format("; %.2f N in the mean over the way", f.pull_out_mean)
-                    : "pull-out: no force seen");
+  out.push_back(f.pull_out.force > 0 ? peak("pull-out", f.pull_out) + mean(f.pull_out_mean)
+                                     : "pull-out: no force seen");
   if (f.band.high > 0)
-    out.push_back(format("insertion with friction of %.2g to %.2g: %.2f to %.2f N in the mean, to %.2f and %.2f mm",
-                         f.band.low, f.band.high, f.low_mean, f.high_mean, 1e3 * f.low_depth, 1e3 * f.high_depth));
+    out.push_back(format("insertion with friction of %.2g to %.2g: ", f.band.low, f.band.high) +
+                  fixed_text(f.low_mean, 2) + " to " + newtons(f.high_mean) + " in the mean, to " + mm(f.low_depth) +
+                  " and " + mm(f.high_depth) + " mm");
   return out;
 }
 

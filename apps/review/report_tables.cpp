@@ -41,7 +41,7 @@ std::string seconds(double t) {
   return format("%.3f", t);
 }
 std::string newtons(double f) {
-  return format("%.2f", f);
+  return fixed_text(f, 2);
 }
 
 json clearances(const Review& r) {

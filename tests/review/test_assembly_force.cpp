@@ -135,3 +135,19 @@ TEST_CASE("a band of friction leads the recorded pen once more", "[review]") {
   CHECK(f.high_depth < f.way);
   CHECK(f.low_depth > f.way);
 }
+
+TEST_CASE("forces and depths that round to zero have no sign", "[review]") {
+  AssemblyForce f;
+  f.known = true;
+  f.insertion = {0.004, -1e-6, 0, Vec3::Zero(), "base"};
+  f.pull_out = f.seating = f.insertion;
+  f.insertion_mean = f.pull_out_mean = f.low_mean = f.high_mean = -0.0049;
+  f.low_depth = f.high_depth = -4e-6;
+  f.band = {0.1, 0.2};
+  CHECK(assembly_force_text(f) ==
+        std::vector<std::string>{
+            "insertion: at most 0.00 N at 0.00 mm, against base; 0.00 N in the mean over the way",
+            "seating (final): at most 0.00 N at 0.00 mm, against base",
+            "pull-out: at most 0.00 N at 0.00 mm, against base; 0.00 N in the mean over the way",
+            "insertion with friction of 0.1 to 0.2: 0.00 to 0.00 N in the mean, to 0.00 and 0.00 mm"});
+}
