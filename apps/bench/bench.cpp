@@ -72,16 +72,13 @@ SceneFigures measure_scene(const std::string& name, const BenchOptions& options,
     HapticLoop loop(scene.scene);
     center = loop.center();
     progress.say(name + ": at hand speed");
-    Scene boundless = scene.scene;
-    boundless.contact.tick_budget = std::numeric_limits<double>::infinity();
-    HapticLoop unlimited(boundless);
     f.hand = measure_loop(scene, loop, kHandSpeed, options.quick ? 1 : kRounds, trace);
     progress.say(name + ": the same without a budget");
-    f.hand_lag = measure_lag(scene, unlimited, trace);
+    f.hand_lag = measure_lag(scene, trace);
     progress.say(name + ": fast");
     f.fast = measure_loop(scene, loop, kFastSpeed, options.quick ? 1 : kFastRounds, trace);
     progress.say(name + ": the same without a budget");
-    f.fast_lag = measure_lag(scene, unlimited, trace);
+    f.fast_lag = measure_lag(scene, trace);
   }
   if (options.mu > 0) {
     progress.say(name + ": friction");

@@ -31,7 +31,8 @@ Json to_json(const LagFigures& f) {
           {"force_rms_n", f.force_rms},
           {"force_error_rms_n", f.error_rms},
           {"force_error_share", json_number(f.error_share)},
-          {"force_error_max_n", f.error_most}};
+          {"force_error_max_n", f.error_most},
+          {"ticks", f.ticks}};
 }
 
 Json to_json(const SeatFigures& f) {

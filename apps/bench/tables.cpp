@@ -172,10 +172,11 @@ std::string lag_table(const Results& r) {
       "RMS | its error, N RMS (max) | of the force | ticks cut |\n|---|---|---|---|---|---|---|\n";
   const auto row = [&](const SceneFigures& s, const char* pen, const LagFigures& f, const LoopFigures& loop) {
     const std::string share = std::isfinite(f.error_share) ? format("%.2g %%", 100 * f.error_share) : "–";
-    text += format("| `%s` | %s | %s / %s / %s | %s | %s (%s) | %s | %zu of %zu |\n", s.scene.c_str(), pen,
-                   number(1e6 * f.p50).c_str(), number(1e6 * f.p99).c_str(), number(1e6 * f.most).c_str(),
-                   number(f.force_rms).c_str(), number(f.error_rms).c_str(), number(f.error_most).c_str(),
-                   share.c_str(), loop.cut, loop.in_contact);
+    const std::string first = f.ticks < loop.ticks ? format(", first %zu ticks of %zu", f.ticks, loop.ticks) : "";
+    text += format("| `%s` | %s%s | %s / %s / %s | %s | %s (%s) | %s | %zu of %zu |\n", s.scene.c_str(), pen,
+                   first.c_str(), number(1e6 * f.p50).c_str(), number(1e6 * f.p99).c_str(),
+                   number(1e6 * f.most).c_str(), number(f.force_rms).c_str(), number(f.error_rms).c_str(),
+                   number(f.error_most).c_str(), share.c_str(), loop.cut, loop.in_contact);
   };
   for (const SceneFigures& s : r.rows) {
     row(s, "hand", s.hand_lag, s.hand);
