@@ -23,11 +23,14 @@ double at(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-LagFigures measure_lag(const BenchScene& scene, const LoopTrace& trace) {
+Scene without_budget(Scene scene, const Pose& start) {
+  scene.contact.tick_budget = std::numeric_limits<double>::infinity();
+  std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; })->pose = start;
+  return scene;
+}
+
+LagFigures measure_lag(const BenchScene& scene, HapticLoop& unlimited, const LoopTrace& trace) {
   LagFigures f;
-  Scene boundless = scene.scene;
-  boundless.contact.tick_budget = std::numeric_limits<double>::infinity();
-  HapticLoop unlimited(boundless);
   const Vec3 center = unlimited.center();
   const double stiffness = unlimited.coupling().stiffness;
   double radius = 0;

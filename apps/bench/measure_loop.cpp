@@ -27,6 +27,7 @@ LoopFigures measure_loop(const BenchScene& scene, HapticLoop& loop, const PenSpe
   cpu.reserve(ticks);
   trace.ticks.clear();
   trace.ticks.reserve(ticks);
+  trace.start = loop.report().proxy.X;
   double lowest = 0;
   f.fifo = on_measuring_thread([&] {
     Rest rest;

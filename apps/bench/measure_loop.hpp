@@ -39,6 +39,7 @@ struct LoopTrace {
     Pose X, Y;
   };
   std::vector<Tick> ticks;  ///< all of the last run
+  Pose start;               ///< X before it
 };
 
 /// Runs `rounds` rounds of the scene's pen at `speed`, a tick each millisecond of virtual time. `loop` must be where
