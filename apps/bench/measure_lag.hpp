@@ -18,8 +18,8 @@ struct LagFigures {
   std::size_t ticks = 0;   ///< so many of the run's first ticks were compared
 };
 
-/// Leads `unlimited`, a loop without a budget that is where the run of `trace` began, by the pen of that run, for half a
-/// minute of CPU time at most: where surfaces of 180 k triangles slide on each other its ticks take up to seconds.
+/// Leads `unlimited`, a loop without a budget that is where the run of `trace` began, by the pen of that run, for half
+/// a minute of CPU time at most: where surfaces of 180 k triangles slide on each other its ticks take up to seconds.
 LagFigures measure_lag(const BenchScene& scene, HapticLoop& unlimited, const LoopTrace& trace);
 /// The scene of such a loop, with its held part at `start`.
 Scene without_budget(Scene scene, const Pose& start);
