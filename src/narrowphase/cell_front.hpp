@@ -108,8 +108,8 @@ class CellFront {
   void settle_due();
   Look look_at(std::uint32_t id);
   Outcome settle(std::uint32_t top);
-  CellSearch::Outcome search(std::uint32_t id);
-  CellSearch::Outcome search(const Node& node, const Sweep& sweep);
+  CellSearch::Outcome search(std::uint32_t id, bool cells_only);
+  CellSearch::Outcome search(const Node& node, const Sweep& sweep, bool cells_only);
   void keep(std::uint32_t id);
   bool split(std::uint32_t id);
   void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,

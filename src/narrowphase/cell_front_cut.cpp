@@ -165,7 +165,7 @@ void CellFront::needs_parts(std::uint32_t id, double margin) {
 bool CellFront::merge(std::uint32_t id, double lasts) {
   const bool near = asked_[nodes_[id].part] == now_;
   const double enough = std::max(need_, std::min(kRaiseMotions * motion_, kRaiseShare * lasts));
-  if (near && (search(id) != CellSearch::Outcome::found || search_.margin() < enough)) {
+  if (near && (search(id, true) != CellSearch::Outcome::found || search_.margin() < enough)) {
     needs_parts(id, lasts);
     return false;
   }

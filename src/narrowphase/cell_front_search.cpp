@@ -160,18 +160,19 @@ double CellFront::free_until(std::uint32_t part, std::uint32_t face_a, std::uint
   return met;
 }
 
-CellSearch::Outcome CellFront::search(std::uint32_t id) {
+CellSearch::Outcome CellFront::search(std::uint32_t id, bool cells_only) {
   const Node& node = nodes_[id];
   if (node.face_a)
     for (int k = 0; k < 3; ++k) face_[k] = a_->corner(node.a, k) - center_;
   if (foresees()) {
-    const CellSearch::Outcome outcome = search(node, foreseen(node.part));
+    // What only passes on a way that is not taken yet is of no use.
+    const CellSearch::Outcome outcome = search(node, foreseen(node.part), true);
     if ((outcome == CellSearch::Outcome::found && holds(node)) ||
         (outcome == CellSearch::Outcome::divide && !node.face_a))
       return outcome;
     if (outcome == CellSearch::Outcome::blocked) shorten_foresight(node);
   }
-  return search(node, sweep_of(node.part));
+  return search(node, sweep_of(node.part), cells_only);
 }
 
 /// Whether the cell that was found holds for the motion.
@@ -183,9 +184,10 @@ bool CellFront::holds(const Node& node) {
          check_cell(found_, hull(node, sweep), sweep).free;
 }
 
-CellSearch::Outcome CellFront::search(const Node& node, const Sweep& sweep) {
+CellSearch::Outcome CellFront::search(const Node& node, const Sweep& sweep, bool cells_only) {
   const MovingHull a = hull(node, sweep);
   CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, wanted(a, sweep)};
+  query.cells_only = cells_only;
   found_corridor_ = corridor(node, a, sweep);
   if (node.children == 0) {
     const CellItems& items = items_[node.slot];
@@ -227,7 +229,7 @@ CellFront::Outcome CellFront::settle(std::uint32_t top) {
     const std::uint32_t id = stack_.back();
     stack_.pop_back();
     if (out_of_work(true)) return Outcome::out_of_work;
-    switch (search(id)) {
+    switch (search(id, false)) {
       case CellSearch::Outcome::found:
         keep(id);
         break;

@@ -44,6 +44,20 @@ TEGOTAE_WIDE float nearest_end(const float* distance, std::size_t count, std::si
   return low;
 }
 
+/// A face of A at both ends of a motion and a piece of B.
+struct FaceOverHull {
+  const MovingHull& a;
+  const Hull& b;
+
+  double start(const Vec3& n) const { return a.start.lowest(n) - b.highest(n); }
+  double end(const Vec3& n) const { return a.end.lowest(n) - b.highest(n); }
+  double mixed(const Vec3& n0, const Vec3& n1) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) least = std::min(least, n0.dot(a.end.corner(i)) + n1.dot(a.start.corner(i)));
+    return least - b.highest(n0) - b.highest(n1);
+  }
+};
+
 }  // namespace
 
 CellSearch::CellSearch() : boxes_{}, faces_{}, near_boxes_{}, near_faces_{}, lane_{} {
@@ -310,6 +324,11 @@ void CellSearch::open(std::uint32_t node) {
   push(pieces.data(), count);
 }
 
+/// Whether the moving plane that keeps A's face off the last face of B that passes keeps it off `b` as well.
+bool CellSearch::passes(const Hull& b) const {
+  return stays_apart(FaceOverHull{*a_, b}, passed_.n0, passed_.n1, Bulge(*sweep_, a_->reach, 0, 1), *sweep_, 0);
+}
+
 CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
   if (keeps_off(b, normal(e, b, e.any), 0)) return Outcome::found;
   if (face_of_a_ == nullptr) return Outcome::divide;
@@ -323,7 +342,9 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
                                     query_.tree->corner(face, 2) - o};
   MovingPlane plane{n, n};
   if (separate_triangles(*face_of_a_, corners, *sweep_, a_->reach, plane)) {
+    if (query_.cells_only) return Outcome::passing;
     passing_ = true;
+    passed_ = plane;
     return Outcome::found;
   }
   blocking_.push_back(face);
@@ -332,6 +353,11 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
 
 CellSearch::Outcome CellSearch::settle(const Entry& e) {
   const Hull b = hull_of(e.item);
+  // There will be no cell: what passes as well needs no closer look.
+  if (passing_ && passes(b)) {
+    near_.add(e.item, e.distance);
+    return Outcome::found;
+  }
   const double good = std::min(query_.wanted, kGoodShare * least_);
   // What leaves its surface goes against no plane that lies on it.
   const bool upright = e.upright.gap >= good;

@@ -24,6 +24,7 @@ class CellSearch {
     bool is_face = false;
     double wanted = 0;                 ///< what is farther from the piece (m) needs no plane
     const CellItems* known = nullptr;  ///< of an earlier search for the piece or for one that it is of; null: none
+    bool cells_only = false;           ///< the search ends where something only passes
     double moved = 0;  ///< how far the piece gets at most from where that search looked, by the end of the motion, m
   };
 
@@ -99,6 +100,7 @@ class CellSearch {
   Hull hull_of(std::uint32_t item) const;
   bool under_known_plane(const Hull& b, double good);
   bool keeps_off(const Hull& b, const Vec3& n, double at_least);
+  bool passes(const Hull& b) const;
   bool best_of_all_axes(const Hull& b, Vec3& n) const;
   bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
   void tell_items(bool found);
@@ -121,10 +123,11 @@ class CellSearch {
   float list_end_ = 0;  ///< what is farther away is in no list, m
   double beyond_ = 0;   ///< what is in no list is at least so far, m
   CellItems items_;
-  List near_, far_;  ///< pieces of B that were settled, or are farther away than is wanted
-  bool passing_ = false;
-  bool full_ = false;                    ///< a plane more was needed than a cell has
-  std::array<Entry, kMaxPieces> stack_;  ///< the nearest of those that were measured together last
+  List near_, far_;       ///< pieces of B that were settled, or are farther away than is wanted
+  bool passing_ = false;  ///< there is no cell, but what was looked at passes
+  MovingPlane passed_{Vec3::Zero(), Vec3::Zero()};  ///< while passing_: of the last face of B
+  bool full_ = false;                               ///< a plane more was needed than a cell has
+  std::array<Entry, kMaxPieces> stack_;             ///< the nearest of those that were measured together last
   std::size_t stacked_ = 0;
   List waiting_;  ///< pieces that an earlier search listed and this one has not come to, the nearest last
   std::vector<std::uint32_t> blocking_;

@@ -23,6 +23,25 @@ std::vector<Scene> all_scenes() {
   return out;
 }
 
+/// Rows of blocks whose tops are at z = 0, around the origin.
+struct Blocks {
+  MeshPtr mesh;
+  double edge;  ///< of the last ones, m
+
+  Blocks(int columns, int rows, double pitch) : edge(0.5 * pitch * (columns - 1) + 0.003) {
+    auto out = std::make_shared<TriangleMesh>();
+    out->name = "blocks";
+    const MeshPtr block = box({0.003, 0.003, 0.005});
+    for (int i = 0; i < columns * rows; ++i) {
+      const Vec3 at(pitch * (i % columns - 0.5 * (columns - 1)), pitch * (i / columns - 0.5 * (rows - 1)), -0.005);
+      const auto first = static_cast<std::uint32_t>(out->vertices.size());
+      for (const Vec3& v : block->vertices) out->vertices.push_back(at + v);
+      for (const auto& t : block->triangles) out->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    mesh = out;
+  }
+};
+
 void require_cover(const CellFront& front, const PatchTree& a, const PatchTree& b) {
   REQUIRE(covers_once(a, b, [&](auto f) {
     front.for_each_cell(
@@ -214,6 +233,48 @@ TEST_CASE("a part at rest costs no search", "[patch]") {
     if (i > 20) REQUIRE(report.splits == 0);
   }
   CHECK(front.certify(X, {}).searches == 0);
+}
+
+TEST_CASE("a plate that swings over many blocks passes them together", "[patch]") {
+  // Where it rocks about the last blocks that it lies on, no plane at rest is between its face and all the others: it
+  // would be too high at one end. One that turns with the face is.
+  const Blocks blocks(20, 10, 0.01);
+  const double thickness = 0.005, gap = 1e-5;
+  const Scene scene{"plate on blocks", box({0.1, 0.05, 0.5 * thickness}), blocks.mesh, Vec3::Zero(), Pose{}, 0, 0};
+  const Oracle oracle(scene.a, scene.b);
+  // Fewer pieces are measured, eight for a search, than a quarter of the blocks' faces.
+  const int few = static_cast<int>(blocks.mesh->triangles.size()) / 4 / 8;
+  std::mt19937 rng(31);
+  for (int i = 0; i < 40; ++i) {
+    CAPTURE(i);
+    const double aside = uniform(rng, 0.01, 0.04), tilt = uniform(rng, 0, 0.01), more = uniform(rng, 0.002, 0.02);
+    const auto tilted = [&](double about, double angle) {
+      const Quat q = rotation(Vec3(0, angle, 0));
+      const Vec3 hinge(about, 0, gap);
+      return Pose{q, hinge + q * (Vec3(aside, 0, 0.5 * thickness + gap) - hinge)};
+    };
+    const bool up = i % 2 == 0;
+    const Pose X = tilted(blocks.edge, up ? tilt : tilt + more);
+    const Displacement d = displacement(X, tilted(blocks.edge, up ? tilt + more : tilt), scene.center);
+    CellFront front = cells_of(scene);
+    front.set_near({0});
+    front.set_clearance(1.1e-6);
+    REQUIRE(front.certify(X, {}).status == CertifyStatus::certified);
+    for (const double times : {0.0, 40.0}) {
+      front.foresee(times * d);
+      const CertifyReport report = front.certify(X, d);
+      CHECK(report.status == CertifyStatus::certified);
+      CHECK(report.searches < few);
+    }
+    CHECK(oracle.hits(X, scene.center, d, 8) == 0);
+    // About a line farther in, it goes into the last blocks.
+    const Pose flat = tilted(blocks.edge, 0);
+    const Displacement in = displacement(flat, tilted(blocks.edge - 0.02, more), scene.center);
+    REQUIRE(oracle.hits(flat, scene.center, in, 8) > 0);
+    const CertifyReport report = front.certify(flat, in);
+    CHECK(report.status == CertifyStatus::blocked);
+    CHECK(oracle.hits(flat, scene.center, 0.999999 * report.share * in, 8) == 0);
+  }
 }
 
 TEST_CASE("blocking triangles of cells stand in the way", "[patch]") {
