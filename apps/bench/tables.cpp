@@ -70,7 +70,7 @@ void add_run(const std::string& scene, const char* speed, const LoopFigures& f, 
              number(f.tick_us.p999).c_str(), number(f.tick_us.max).c_str(), number(f.tick_cpu_us.p50).c_str(),
              number(f.tick_cpu_us.p99).c_str(), number(f.tick_cpu_us.p999).c_str(), number(f.tick_cpu_us.max).c_str(),
              f.contacts, f.contacts_max, f.limits, f.resolves, f.cut, f.in_contact);
-  text += std::isfinite(f.depth) ? format(" %.1f |\n", 1e3 * f.depth) : " – |\n";
+  text += std::isfinite(f.depth) ? " " + fixed_text(1e3 * f.depth, 1) + " |\n" : " – |\n";
 }
 
 std::string runs_table(const Results& r) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/number_text.hpp"
 #include "review/verdict.hpp"
 #include "shared/format.hpp"
 
@@ -35,8 +36,8 @@ std::string tightest_text(const PartClearance& c, const Scene& scene) {
 }
 
 std::string span_text(const BandSpan& s, const Scene& scene) {
-  std::string text = format("%s the band from %.3f to %.3f s, %.2f to %.2f mm on the way", to_string(s.zone),
-                            s.span.begin, s.span.end, 1e3 * s.way_begin, 1e3 * s.way_end);
+  std::string text = format("%s the band from %.3f to %.3f s, ", to_string(s.zone), s.span.begin, s.span.end) +
+                     fixed_text(1e3 * s.way_begin, 2) + " to " + fixed_text(1e3 * s.way_end, 2) + " mm on the way";
   return std::isfinite(s.tightest.distance) ? text + ": at least " + tightest_text(s.tightest, scene) : text;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/number_text.hpp"
 #include "shared/format.hpp"
 
 namespace tegotae::apps {
@@ -22,7 +23,7 @@ const char* state_name(InitialContactState state) {
 }
 
 std::string length(double m) {
-  return m < 1e-3 ? format("%.2f um", 1e6 * m) : format("%.3f mm", 1e3 * m);
+  return m < 1e-3 ? fixed_text(1e6 * m, 2) + " um" : fixed_text(1e3 * m, 3) + " mm";
 }
 
 /// The initial contact of the pair, and how the run treats it.

@@ -3,8 +3,13 @@
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
+#include <cstdint>
+#include <cstring>
 
 #include "tegotae/core/error.hpp"
 
@@ -30,6 +35,44 @@ Address parse_address(const std::string& text) {
                    inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), bytes) == 1;
   if (!six && inet_pton(AF_INET, host.c_str(), bytes) != 1) fail();
   return address;
+}
+
+std::string why_not_listening(const Address& address) {
+  sockaddr_storage place{};
+  const auto port = htons(static_cast<std::uint16_t>(address.port));
+  const bool six = address.host.front() == '[';
+  if (six) {
+    auto& at = reinterpret_cast<sockaddr_in6&>(place);
+    at.sin6_family = AF_INET6;
+    at.sin6_port = port;
+    inet_pton(AF_INET6, address.host.substr(1, address.host.size() - 2).c_str(), &at.sin6_addr);
+  } else {
+    auto& at = reinterpret_cast<sockaddr_in&>(place);
+    at.sin_family = AF_INET;
+    at.sin_port = port;
+    inet_pton(AF_INET, address.host.c_str(), &at.sin_addr);
+  }
+  const int fd = socket(place.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int yes = 1;  // or a connection that just ended would count as somebody
+  const bool can =
+      fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+      bind(fd, reinterpret_cast<const sockaddr*>(&place), six ? sizeof(sockaddr_in6) : sizeof(sockaddr_in)) == 0 &&
+      listen(fd, 1) == 0;
+  const int error = errno;
+  if (fd >= 0) close(fd);
+  if (can) return {};
+  switch (error) {
+    case EADDRINUSE:
+      return "another program listens there; take another port, or none for any that is free";
+    case EADDRNOTAVAIL:
+      return "this machine has no such address; 0.0.0.0 stands for all that it has";
+    case EACCES:
+      return "ports below 1024 are not for every user; take a higher one";
+    case EAFNOSUPPORT:
+      return "this machine has no IPv6; take an address like 127.0.0.1";
+    default:
+      return std::strerror(error);
+  }
 }
 
 std::vector<std::string> machine_addresses(bool six) {

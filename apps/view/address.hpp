@@ -17,6 +17,9 @@ struct Address {
 /// Reads "127.0.0.1", "127.0.0.1:8080" or "[::1]:8080". Throws Error.
 Address parse_address(const std::string& text);
 
+/// Why nobody can listen there now, and what to do; empty when one can.
+std::string why_not_listening(const Address& address);
+
 /// The addresses by which others may reach this machine, none of the loopback; those of IPv6 with their brackets.
 std::vector<std::string> machine_addresses(bool six);
 

@@ -262,7 +262,10 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
     return nullptr;
   };
   impl_->context = mg_start(&callbacks, impl_.get(), options);
-  if (!impl_->context) throw Error("cannot listen on " + port + (impl_->log.empty() ? "" : ": " + impl_->log));
+  if (!impl_->context) {
+    const std::string why = why_not_listening(address);  // CivetWeb says no more than that it failed
+    throw Error("cannot listen on " + port + ": " + (why.empty() ? impl_->log : why));
+  }
   impl_->started = true;
   mg_server_port ports[2] = {};
   mg_get_server_ports(impl_->context, 2, ports);

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -205,6 +206,10 @@ StylusScript read_script(const std::string& path) {
 }
 
 std::vector<Pose> read_path(const std::string& path) {
+  // Run and page read a guide several times, and a pipe can be read once.
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))
+    throw Error(path + ": is not a regular file, as a path has to be; save it to one");
   std::vector<Pose> out;
   for (const StylusScript::Key& key : read_keys(path, {"path", true}))
     out.push_back({key.pose.q.normalized(), key.pose.p});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -49,6 +50,8 @@ std::vector<std::string> schemas_of(std::string_view bytes) {
 bool is_step(const std::string& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".step" || extension == ".stp") return true;
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return false;  // a pipe would be waited for, and lose its start
   std::ifstream file(path, std::ios::binary);
   std::array<char, kMagic.size()> start{};
   file.read(start.data(), start.size());

@@ -1,4 +1,8 @@
 // Every bad input is one line on stderr that names it, exit code 2, and no crash.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 
 #include "apps/run_program.hpp"
@@ -24,6 +28,18 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
 }
+
+/// Stands in a folder as long as it lives.
+class InFolder {
+ public:
+  explicit InFolder(const std::string& folder) { std::filesystem::current_path(folder); }
+  ~InFolder() { std::filesystem::current_path(before_); }
+  InFolder(const InFolder&) = delete;
+  InFolder& operator=(const InFolder&) = delete;
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
 
 }  // namespace
 
@@ -175,7 +191,7 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
   const TempFolder folder;
   write_small_scene(folder);
   const std::string scene = folder / "scene.toml";
-  check_refused(run_program("tegotae", ""), {"--help"});
+  check_refused(run_program("tegotae", ""), {"no command is given", "run", "view", "--help"});
   check_refused(run_program("tegotae", "dance"), {"no command dance", "run", "review", "--help"});
   check_refused(run_program("tegotae", "run"), {"SCENE"});
   check_refused(run_program("tegotae", "check"), {"FILE"});
@@ -196,6 +212,50 @@ TEST_CASE("bad usage is refused", "[bad_input]") {
   check_refused(run_program("peg_in_hole", "extra"), {"extra"});
 }
 
+TEST_CASE("a file whose name begins like an option is named with the way to give it", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  folder.write("-dash.obj", read_text(folder / "tet.obj"));
+  const InFolder in(folder / "");
+  for (const std::string command : {"check", "import -o out", "run --fast scene.toml"})
+    check_refused(run_program("tegotae", command + " -dash.obj"), {"-dash.obj begins like an option", "./-dash.obj"});
+  CHECK(run_program("tegotae", "check ./-dash.obj").code == 0);
+  CHECK(run_program("tegotae", "check -- -dash.obj").code == 0);
+  check_refused(run_program("tegotae", "check -none.obj"), {"see --help"});
+}
+
+TEST_CASE("pipes that cannot be read twice are refused and not waited for", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  for (const std::string name : {"pipe.obj", "pipe", "pipe.csv"}) REQUIRE(mkfifo((folder / name).c_str(), 0600) == 0);
+  for (const std::string name : {"pipe.obj", "pipe"})
+    check_refused(run_program("tegotae", "import " + (folder / name) + " -o " + (folder / "out")),
+                  {name + ":", "is not a regular file"});
+  check_refused(run_program("tegotae", "run --fast " + (folder / "scene.toml") + " --guide " + (folder / "pipe.csv")),
+                {"pipe.csv: is not a regular file"});
+}
+
+TEST_CASE("an address that cannot be listened on says why", "[bad_input]") {
+  const TempFolder folder;
+  write_small_scene(folder);
+  const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  REQUIRE(bind(taken, reinterpret_cast<const sockaddr*>(&at), size) == 0);
+  REQUIRE(listen(taken, 1) == 0);
+  REQUIRE(getsockname(taken, reinterpret_cast<sockaddr*>(&at), &size) == 0);
+  const auto view = [&](const std::string& address) {
+    return run_program("tegotae", "view " + (folder / "scene.toml") + " --no-browser --view-address " + address);
+  };
+  const std::string busy = "127.0.0.1:" + std::to_string(ntohs(at.sin_port));
+  check_refused(view(busy), {"cannot listen on " + busy, "another program listens there", "another port"});
+  close(taken);
+  // An address that is for documentation and no machine's (RFC 5737).
+  check_refused(view("192.0.2.1:8080"), {"cannot listen on 192.0.2.1:8080", "this machine has no such address"});
+}
+
 TEST_CASE("help and version are no errors", "[bad_input]") {
   for (const std::string program : {"demo", "tegotae", "tegotae-device", "peg_in_hole", "tegotae-models",
                                     "tegotae-load-mesh", "families", "stress", "tegotae bench", "tegotae experiment"}) {
@@ -211,8 +271,7 @@ TEST_CASE("help and version are no errors", "[bad_input]") {
 
 TEST_CASE("no program ends in a crash for an argument that it does not know", "[bad_input]") {
   const TempFolder folder;  // where none of the files is that examples look for
-  const std::filesystem::path before = std::filesystem::current_path();
-  std::filesystem::current_path(folder / "");
+  const InFolder in(folder / "");
   for (const std::string program : {"first_touch", "example_driver", "demo", "families", "stress", "tegotae-models"})
     for (const std::string argument : {"--help", "--version", "--frobnicate", "a.step"}) {
       INFO(program << " " << argument);
@@ -220,5 +279,4 @@ TEST_CASE("no program ends in a crash for an argument that it does not know", "[
       CHECK(o.code <= 2);
       CHECK(o.out + o.err != "");
     }
-  std::filesystem::current_path(before);
 }

@@ -465,6 +465,10 @@ TEST_CASE("a band of clearances over the motion of a block towards a wall and ba
   CHECK_THAT(text[0], Catch::Contains("clearance of 2 mm to 5 mm: below 0.22 s and 2.0"));
   CHECK_THAT(text[2], Catch::Contains("below the band from 0.8") && Catch::Contains("at least 1 mm to wall"));
   CHECK_THAT(text.back(), Catch::Contains("tightest: 1 mm to wall") && Catch::Contains("below the band"));
+  BandFindings rounded = found;  // ways are sums of steps: what rounds to zero has no sign
+  for (BandSpan& s : rounded.spans) s.way_begin = s.way_end = -1e-9;
+  const std::vector<std::string> zeros = band_text(rounded, f.clearances, scene);
+  CHECK_THAT(zeros[2], Catch::Contains(", 0.00 to 0.00 mm on the way"));
 }
 
 TEST_CASE("a cylinder that rolls along a wall stays in the band that its gap is in") {
