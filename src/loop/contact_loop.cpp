@@ -65,6 +65,9 @@ constexpr double kMaxTurn = 0.5;
 // long way.
 constexpr double kStiction = 1e-6;
 constexpr int kMaxStillTicks = 250;
+// The same, after those ticks, for every one in which the part swings, as often as that takes: gaps that steps lose on
+// surfaces that curve, and steps that open them again, would go on for ever where each is larger than creep is.
+constexpr double kSwingStiction = 1e-4;
 // Of what the springs pull, the share of a lag that is more than the last hair of a part at rest (see kStiction).
 constexpr double kFeltLag = 0.05;
 // Contacts explain a lag where steps that open gaps take back this share of what the others bring.
@@ -106,6 +109,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   last_Y_ = Y;
   tracked_ = false;
   owed_.reset();
+  swings_.forget();
   margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
   return true;
 }
@@ -132,6 +136,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double pen = size(pen_moved);
   last_Y_ = Y;
   still_ticks_ = pen < kRest && !comes_ ? std::min(still_ticks_ + 1, kMaxStillTicks) : 0;
+  if (still_ticks_ < kMaxStillTicks) swings_.forget();
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(substep_cap_, kCatchUp * pen);
   if (at_.poll_initial_contacts(X_)) tracked_ = false;
@@ -172,6 +177,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
     at_.fill_report(*settings_.l_min, report);
   const Displacement moved = displacement(X_before, X_, center_);
   moved_ = size(moved);
+  count_swings(Y);
   const double left = size(displacement(X_, Y, center_));
   report.lag_reason = reason_for(left, report);
   // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
@@ -311,6 +317,14 @@ bool ContactLoop::cutting() const {
   return std::any_of(constraints.begin(), constraints.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
 
+void ContactLoop::count_swings(const Pose& Y) {
+  const Displacement left = displacement(X_, Y, center_);
+  // A larger turn is taken in parts, of which none need bring the whole nearer.
+  if (still_ticks_ < kMaxStillTicks || left.dr.norm() > max_turn_) return;
+  metric_.set_orientation(X_.q);
+  swings_.add(metric_.whiten(left).squaredNorm(), kStiction, moved_ > kRest);
+}
+
 LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   TickEnd end;
   end.lag = lag;
@@ -359,7 +373,7 @@ bool ContactLoop::worth_it(const Vec6& error, const Trial& trial, const Pose& Y)
   if (promised <= 0) return true;  // a step that only opens gaps
   if (made < kPoor * promised) trust_ = 0.5 * std::min(trust_, size(trial.d));
   if (made > kGood * promised) trust_ = std::min(2 * trust_, substep_cap_);
-  return made > kStiction * still_ticks_ * error.squaredNorm();
+  return made > (kStiction * still_ticks_ + kSwingStiction * swings_.ticks()) * error.squaredNorm();
 }
 
 }  // namespace tegotae

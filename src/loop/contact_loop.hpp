@@ -7,6 +7,7 @@
 #include "loop/collision_world.hpp"
 #include "loop/contact_planes.hpp"
 #include "loop/proxy_loop.hpp"
+#include "loop/swings.hpp"
 #include "resolve/friction_rows.hpp"
 #include "resolve/metric.hpp"
 #include "tegotae/resolve/resolver.hpp"
@@ -98,6 +99,8 @@ class ContactLoop final : public ProxyLoop {
   /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,
   /// whatever features they come from.
   bool only_contacts() const { return !cutting() || !far_planes_; }
+  /// At the end of a tick, in which X moved by moved_.
+  void count_swings(const Pose& Y);
   LagReason reason_for(double lag, const TickReport& report) const;
   /// Bound on how far `d` carries any point of the held part (m).
   double size(const Displacement& d) const { return d.dp.norm() + at_.radius * d.dr.norm(); }
@@ -131,6 +134,7 @@ class ContactLoop final : public ProxyLoop {
   double gained_ = 0;    ///< of the squared error, by sub-steps of this tick
   double lost_ = 0;      ///< the same, by those that led away
   int still_ticks_ = 0;  ///< since the pen last moved or X was on its way to it
+  Swings swings_;        ///< under a pen that has stood still for long
   double margin_;        ///< gap that contacts keep, m, between the next two
   double min_margin_, max_margin_;
   double recover_below_;  ///< share of the kept gap below which gaps recover
