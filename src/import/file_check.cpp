@@ -76,6 +76,8 @@ PlainMesh plain_mesh(const std::string& path) {
     mesh.bytes = plain_off(path, bytes, mesh.notes);
   else if (extension == ".obj")
     mesh.bytes = plain_obj(path, bytes, mesh.notes);
+  else if (extension == ".toml")
+    refuse(path, "a scene file, where a part is wanted");
   else
     refuse(path, "unknown format \"" + extension + "\" (known: stl, obj, ply, off, gltf, glb, 3mf; step for import)");
   return mesh;

@@ -194,7 +194,10 @@ std::string plain_stl(const std::string& path, std::string file) {
   const std::uint64_t facets = bytes.size() < kHeader ? 0 : little_endian_32(bytes, kHeader - 4);
   const std::size_t room = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
   const std::size_t whole = kHeader + kFacet * static_cast<std::size_t>(facets);
-  if (bytes.size() >= kHeader && whole == bytes.size()) return file;
+  if (bytes.size() >= kHeader && whole == bytes.size()) {
+    if (facets == 0) refuse(path, "no triangles");
+    return file;
+  }
   const std::string_view text = text_of(bytes);
   if (is_word(text.substr(0, 5), "solid") && text.find('\0') == std::string_view::npos)
     return TextStl(path, text).plain();

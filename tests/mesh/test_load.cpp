@@ -299,6 +299,8 @@ TEST_CASE("files that cannot be used are refused with the reason", "[load]") {
   refuse("part.stl", "ISO-10303-21;\nHEADER;\n", "STEP");
   refuse("part.txt", kObj, "unknown format");
   refuse("part", kObj, "unknown format");
+  refuse("scene.toml", "[[part]]\n", "a scene file, where a part is wanted");
+  refuse("none.stl", std::string(84, '\0'), ": no triangles");
 
   refuse("empty.stl", "solid Empty\nendsolid Empty", "no triangles");
   refuse("points.obj", "v 0 0 0\nv 1 0 0\np 1\nl 1 2\n", "no triangles");
