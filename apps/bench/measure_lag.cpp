@@ -9,9 +9,9 @@
 namespace tegotae::bench {
 namespace {
 
-constexpr double kLagPeriod = 1e-3;  // s
-constexpr double kPulls = 1e-3;      // N
-constexpr std::int64_t kLongest_ns = 30'000'000'000;
+constexpr double kLagPeriod = 1e-3;                // s
+constexpr double kPulls = 1e-3;                    // N
+constexpr std::int64_t kLongest = 30'000'000'000;  // ns, of CPU time
 
 const Part& held_part_of(const Scene& scene) {
   return *std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
@@ -41,7 +41,7 @@ LagFigures measure_lag(const BenchScene& scene, HapticLoop& unlimited, const Loo
   std::size_t pulls = 0;
   const std::int64_t begin = thread_cpu_ns();
   for (const LoopTrace::Tick& tick : trace.ticks) {
-    if (thread_cpu_ns() - begin > kLongest_ns) break;
+    if (thread_cpu_ns() - begin > kLongest) break;
     const Pose X = unlimited.step(tick.Y, kLagPeriod).proxy.X;
     const Displacement d = displacement(X, tick.X, center);
     off.push_back(d.dp.norm() + radius * d.dr.norm());
