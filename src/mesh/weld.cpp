@@ -12,6 +12,8 @@ namespace {
 
 /// Cells of the tolerance pass, in tolerances: large enough that few vertices lie near a cell wall.
 constexpr double kCellSize = 16.0;
+/// So many vertices ahead memory is asked for what the table has for one: it is too large for a processor's caches.
+constexpr std::size_t kAhead = 16;
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
   h = (h ^ v) * 0x9e3779b97f4a7c15ull;
@@ -36,6 +38,9 @@ class VertexTable {
       if (slots_[s] == kNone || same(slots_[s])) return slots_[s];
     }
   }
+
+  /// What find() will look at first is on its way.
+  void fetch(const Key& key) const { __builtin_prefetch(&slots_[home(key)]); }
 
   void insert(const Key& key, std::uint32_t vertex) {
     std::size_t s = home(key);
@@ -66,6 +71,7 @@ std::vector<std::uint32_t> first_equal(const std::vector<Vec3>& vertices) {
   VertexTable table(vertices.size());
   std::vector<std::uint32_t> first(vertices.size());
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
+    if (v + kAhead < vertices.size()) table.fetch(bits(vertices[v + kAhead]));
     const Key key = bits(vertices[v]);
     first[v] = table.find(key, [&](std::uint32_t other) { return bits(vertices[other]) == key; });
     if (first[v] == kNone) {
@@ -83,7 +89,9 @@ void join_near(const std::vector<Vec3>& vertices, double tolerance, std::vector<
   const auto key_of = [cell](const Vec3& p) {
     return Key{std::llround(p.x() / cell), std::llround(p.y() / cell), std::llround(p.z() / cell)};
   };
-  VertexTable table(vertices.size());
+  std::size_t places = 0;
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) places += first[v] == v ? 1 : 0;
+  VertexTable table(places);
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
     if (first[v] != v) continue;  // bit-equal to an earlier vertex
     const Vec3& p = vertices[v];
