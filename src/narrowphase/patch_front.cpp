@@ -8,8 +8,9 @@
 namespace tegotae {
 namespace {
 
-/// Searches of boxes, and splits undone, between two looks at the clock; pairs of the wide check.
-constexpr int kPatchClockStride = 16, kRollBackStride = 64;
+/// Searches of boxes, and splits undone, between two looks at the clock, and how many of them one of triangles counts;
+/// pairs of the wide check.
+constexpr int kPatchClockStride = 16, kRollBackStride = 64, kTriangleWorth = 4;
 constexpr std::uint32_t kChunk = 1024;
 /// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
 constexpr std::size_t kBlocksPerPair = 2;
@@ -26,13 +27,16 @@ constexpr int kDebtShare = 64, kFullShare = 4;
 constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8, kGoodShare = 3;
 /// The same of parts that slide along each other about a common axis: their fronts grow larger, and what cannot be
 /// raised waits, so that tries go where something has changed. On parts that roll over each other it gains nothing.
-constexpr int kSlidingRaises = 24, kSlidingTries = 512;
+constexpr int kSlidingRaises = 24, kSlidingTries = 768;
 /// Pairs looked at in one call then, and this part of the front.
 constexpr int kMinLooks = 512, kLookShare = 16;
 /// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
 constexpr double kFirstWait = 4, kLastWait = 4;
-/// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks.
-constexpr int kLateTries = 32;
+/// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks. And those
+/// of a call that is a long one anyway, because it took so many pairs apart: the next ones make up for them.
+constexpr int kLateTries = 32, kManySplits = 1000, kBusyTries = 128;
+/// See curves_pay(); what comes of the last so many tries counts.
+constexpr int kRarelyCurved = 8, kBendsCounted = 256;
 /// Where planes may go on with A: of two that are about as good the one that rests is as good later, and cheaper.
 constexpr double kWorthOfA = 0.5;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
@@ -71,11 +75,13 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   free_twos_ = free_fans_ = kNoPair;
   cursor_ = 0;
   debt_ = 0;
+  asked_to_bend_ = bent_ = passed_over_ = 0;
   sizes_ = {node_reach(a.nodes()[0]), a.radius() + offset_a_.norm(),
             reach_from(b.nodes()[0].center_vec(), b.nodes()[0]), b.radius()};
   slides_ = axes != nullptr && !axes->empty() && capacity_.curved > 0;
   effort_ = slides_ ? kSlidingTries : kMaxTries;
   motion_ = travel_ = 0;
+  waiting_ = 0;
   pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, false, {0, 0, 0}, 0, 0};
   enter(0);
 }
@@ -116,6 +122,7 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
 
 void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_ = Sweep(X_BA, d, center_, *b_, sizes_.radius_a, clearance_);
+  beside_ = {Vec3::Zero(), Vec3::Zero()};
   curved_.begin(*a_, center_, *b_, sweep_);
   const double carried = d.dp.norm() + sizes_.reach_a * d.dr.norm();
   if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
@@ -147,8 +154,11 @@ bool PatchFront::collect_failures() {
 
 bool PatchFront::spend(bool triangles) {
   if (++report_.searches > limit_.searches) return false;
-  // A triangle pair may halve its time and cost as much as all boxes of a stride.
-  return (!triangles && report_.searches % kPatchClockStride != 0) || !past(limit_.deadline_ns);
+  // A triangle pair may halve its time and cost as much as all boxes of a stride; hardly any does.
+  since_clock_ += triangles ? kTriangleWorth : 1;
+  if (since_clock_ < kPatchClockStride) return true;
+  since_clock_ = 0;
+  return !past(limit_.deadline_ns);
 }
 
 double PatchFront::worth_of_a() const {
@@ -163,19 +173,27 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     const std::uint32_t id = stack_.back();
     stack_.pop_back();
     const PairNode& p = pool_[id];
-    if (!spend(faces(p))) return Outcome::out_of_work;
+    if (!spend(faces(p))) {
+      admit(id);
+      admit_rest();
+      return Outcome::out_of_work;
+    }
     MovingPlane known = moving(plane(id));
     if (faces(p)) {
       const auto a = face_a(p.a), b = face_b(p.b);
       const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
-      if (separate_triangles(a, b, sweep_, reach, known)) {
+      if (separate_triangles(a, b, sweep_, reach, beside_, known)) {
+        beside_ = known;
         set_plane(id, last(known));
         continue;
       }
+      admit(id);
       blocking_.push_back({p.a, p.b});
       if (blocking_.size() >= std::min(capacity_.blocking, limit_.blocking) ||
-          blocking_.size() - before == kBlocksPerPair)
+          blocking_.size() - before == kBlocksPerPair) {
+        admit_rest();
         return Outcome::blocked;
+      }
       continue;
     }
     // What was curved is asked so first, what was flat last.
@@ -188,14 +206,42 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
       set_plane(id, last(known));
       continue;
     }
-    if (p.curved == 0 && bend(id, 0)) continue;
+    if (p.curved == 0 && curves_pay() && try_to_bend(id)) continue;
     if (!split(id)) {
+      admit(id);
+      admit_rest();
       report_.overflow = true;
       return Outcome::out_of_work;
     }
     for (std::uint32_t k = 0; k < pool_[id].children; ++k) stack_.push_back(pool_[id].child + k);
   }
   return blocking_.size() > before ? Outcome::blocked : Outcome::free;
+}
+
+/// Where hardly any pair that no plane keeps apart is apart about an axis, only one in so many is asked.
+bool PatchFront::curves_pay() {
+  return kRarelyCurved * bent_ >= asked_to_bend_ || ++passed_over_ % kRarelyCurved == 0;
+}
+
+bool PatchFront::try_to_bend(std::uint32_t id) {
+  if (++asked_to_bend_ > kBendsCounted) {
+    asked_to_bend_ /= 2;
+    bent_ /= 2;
+  }
+  if (!bend(id, 0)) return false;
+  ++bent_;
+  return true;
+}
+
+/// Takes a pair that waits for a plane into the front with the one of the pair that it comes of.
+void PatchFront::admit(std::uint32_t id) {
+  if (pool_[id].slot != kNoPair) return;
+  --waiting_;
+  enter(id);
+}
+
+void PatchFront::admit_rest() {
+  for (const std::uint32_t id : stack_) admit(id);
 }
 
 void PatchFront::roll_back() {
@@ -212,7 +258,10 @@ void PatchFront::raise() {
   const int wanted = std::min(debt_, raises + std::max(report_.splits + report_.splits / 2, debt_ / kDebtShare));
   const int fewest = std::max(kMinTries, pairs() / kPairsPerTry);
   effort_ = std::max(effort_, fewest);
-  const int most = std::min(2 * wanted, report_.exhausted ? std::min(effort_, kLateTries) : effort_);
+  int at_most = effort_;
+  if (report_.splits > kManySplits) at_most = std::min(at_most, kBusyTries);
+  if (report_.exhausted) at_most = std::min(at_most, kLateTries);
+  const int most = std::min(2 * wanted, at_most);
   int tries = 0;
   auto count = static_cast<std::uint32_t>(pairs());
   // Round robin over all groups, once around at most.

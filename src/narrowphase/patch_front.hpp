@@ -82,12 +82,12 @@ class PatchFront {
     std::uint32_t a, b;           ///< nodes, or faces
     std::uint32_t parent;         ///< kNoPair for the root
     std::uint32_t child;          ///< first of `children` in a row
-    std::uint32_t slot;           ///< in its group, while in the front
+    std::uint32_t slot;           ///< in its group, while in the front; kNoPair: it waits for its plane
     std::uint8_t children : 4;    ///< 0: in the front
     std::uint8_t curved : 4;      ///< kept apart about the axis pair of this number less one; 0: by a plane
     bool face_a, face_b;          ///< which of a and b are faces
     bool with_a;                  ///< its plane is fixed to A, and not to B
-    std::array<float, 3> normal;  ///< last plane (see Plane), kept here while split or curved
+    std::array<float, 3> normal;  ///< last plane (see Plane), kept here while split, curved or waiting
     float wait;                   ///< travel between two tries to raise it, m
     double retry;                 ///< travel_ from which on it may be raised
   };
@@ -124,6 +124,8 @@ class PatchFront {
   void roll_back();
   void raise();
   bool bend(std::uint32_t id, double spare);
+  bool curves_pay();
+  bool try_to_bend(std::uint32_t id);
   void flatten(std::uint32_t id);
   std::uint32_t in_front(std::uint32_t i) const;  ///< the i-th of pairs()
   bool all_in_front(std::uint32_t id) const;      ///< the children
@@ -132,6 +134,8 @@ class PatchFront {
   void put_off(std::uint32_t id);
 
   std::uint32_t allocate(std::uint32_t children);
+  void admit(std::uint32_t id);
+  void admit_rest();
   void enter(std::uint32_t id);
   void leave(std::uint32_t id);
   void set_plane(std::uint32_t id, const Plane& plane);
@@ -179,15 +183,19 @@ class PatchFront {
       failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check
   std::size_t failure_count_ = 0;
   std::vector<std::uint32_t> stack_, splits_;
+  std::uint32_t waiting_ = 0;  ///< pairs on the stack that are not in the lanes: most of them are split or get a plane
   std::vector<BlockingPair> blocking_;
-  std::uint32_t cursor_ = 0;  ///< where raising goes on
-  double motion_ = 0;         ///< longest motion of late, m
-  double travel_ = 0;         ///< sum of the lengths of all motions, m
-  bool slides_ = false;       ///< the parts have a common axis
-  int debt_ = 0;              ///< pairs to raise, for those that were split
-  int effort_ = 0;            ///< pairs that one call tries to raise, fitted to what comes of it
+  std::uint32_t cursor_ = 0;                            ///< where raising goes on
+  double motion_ = 0;                                   ///< longest motion of late, m
+  double travel_ = 0;                                   ///< sum of the lengths of all motions, m
+  bool slides_ = false;                                 ///< the parts have a common axis
+  int asked_to_bend_ = 0, bent_ = 0, passed_over_ = 0;  ///< see curves_pay()
+  int since_clock_ = 0;                                 ///< searches since the last look at it
+  int debt_ = 0;                                        ///< pairs to raise, for those that were split
+  int effort_ = 0;  ///< pairs that one call tries to raise, fitted to what comes of it
 
   Sweep sweep_;
+  MovingPlane beside_{Vec3::Zero(), Vec3::Zero()};  ///< of the triangles that were kept apart last in the motion
   WorkLimit limit_;
   CertifyReport report_;
 };

@@ -40,8 +40,8 @@ bool PatchFront::split(std::uint32_t id) {
     if (const auto thicker = curved_.thicker(p.a, p.b)) split_a = *thicker;
   const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
   const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
-  if (static_cast<std::uint32_t>(pairs()) + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
-      stack_.size() + children > stack_.capacity()) {
+  if (static_cast<std::uint32_t>(pairs()) + waiting_ + children > capacity_.pairs ||
+      splits_.size() == splits_.capacity() || stack_.size() + children > stack_.capacity()) {
     return false;
   }
   const std::uint32_t child = allocate(children);
@@ -56,7 +56,7 @@ bool PatchFront::split(std::uint32_t id) {
   put_off(id);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(known.n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, parent.normal, 0, 0};
+    PairNode c{p.a, p.b, id, kNoPair, kNoPair, 0, 0, p.face_a, p.face_b, p.with_a, parent.normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -68,8 +68,8 @@ bool PatchFront::split(std::uint32_t id) {
       c.b = b.leaf() ? b_->order()[place] : place;
     }
     pool_[child + k] = c;
-    enter(child + k);
   }
+  waiting_ += children;
   splits_.push_back(id);
   return true;
 }
@@ -175,6 +175,10 @@ void PatchFront::leave(std::uint32_t id) {
     if (moved != CurvedPairs::kNobody) pool_[moved].slot = pool_[id].slot;
     return;
   }
+  if (pool_[id].slot == kNoPair) {
+    --waiting_;
+    return;
+  }
   Group& g = group(pool_[id]);
   const std::uint32_t slot = pool_[id].slot, last = --g.count;
   if (slot == last) return;
@@ -186,7 +190,7 @@ void PatchFront::leave(std::uint32_t id) {
 /// Gives a pair of the front, not a curved one, its plane.
 void PatchFront::set_plane(std::uint32_t id, const Plane& plane) {
   PairNode& p = pool_[id];
-  if (p.with_a == plane.with_a) return write_plane(id, plane.n);
+  if (p.slot != kNoPair && p.with_a == plane.with_a) return write_plane(id, plane.n);
   leave(id);
   p.with_a = plane.with_a;
   for (int k = 0; k < 3; ++k) p.normal[k] = static_cast<float>(plane.n[k]);
@@ -217,7 +221,7 @@ void PatchFront::write_plane(std::uint32_t id, const Vec3& n) {
 
 PatchFront::Plane PatchFront::plane(std::uint32_t id) const {
   const PairNode& p = pool_[id];
-  if (p.curved > 0) return {{p.normal[0], p.normal[1], p.normal[2]}, p.with_a};
+  if (p.curved > 0 || p.slot == kNoPair) return {{p.normal[0], p.normal[1], p.normal[2]}, p.with_a};
   const LaneBlocks& lanes = groups_[kind(p)].lanes;
   const Vec3 n(lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2));
   return {p.with_a ? Vec3(-n) : n, p.with_a};

@@ -78,8 +78,9 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
                     MovingPlane& plane);
 
 /// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
-/// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between.
+/// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between. `beside`
+/// is tried after `plane`: one that keeps triangles near these apart, or nothing.
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        MovingPlane& plane);
+                        const MovingPlane& beside, MovingPlane& plane);
 
 }  // namespace tegotae

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "narrowphase/moving_plane.hpp"
+#include "narrowphase/wide.hpp"
 
 namespace tegotae {
 namespace {
@@ -43,13 +44,8 @@ class Search {
       keep(b0.lo - a0.hi, b1.lo - a1.hi, {-n0, -n1, with_a});
   }
 
-  /// Whether the direction of the start has the triangles farther apart there than any that is known has at both ends:
-  /// only then can it be the best for both ends at once.
-  bool promises(const Vec3& n0) const {
-    const Span a(n0, pair_.p0), b(n0, pair_.q);
-    return std::max(a.lo - b.hi, b.lo - a.hi) > both_;
-  }
-
+  /// The largest separation that a known direction has at both ends.
+  double both() const { return both_; }
   /// Largest separation at the start and at the end.
   double start() const { return start_; }
   double end() const { return end_; }
@@ -122,23 +118,19 @@ bool degenerate(const std::array<Vec3, 3>& v) {
   return !(e.cross(f).norm() > kParallelEdges * std::max({e.squaredNorm(), f.squaredNorm(), g.squaredNorm()}));
 }
 
+/// Not of unit length; the normal is zero where its direction would be rounding.
 struct Edges {
   std::array<Vec3, 3> e;
-  Vec3 n;  ///< unit or zero
+  Vec3 n;
 
   explicit Edges(const std::array<Vec3, 3>& v) {
     double longest = 0;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       e[i] = v[(i + 1) % 3] - v[i];
       longest = std::max(longest, e[i].squaredNorm());
     }
     n = e[0].cross(e[1]);
-    const double l = n.norm();
-    n = l > kParallelEdges * kParallelEdges * longest ? Vec3(n / l) : Vec3(Vec3::Zero());
-    for (Vec3& x : e) {
-      const double length = x.norm();
-      if (length > 0) x /= length;
-    }
+    if (!(n.norm() > kParallelEdges * kParallelEdges * longest)) n.setZero();
   }
 };
 
@@ -155,29 +147,94 @@ void offer_normals(const TrianglePair& t, Search& search) {
 
 enum class Axes : std::uint8_t { promising, all };
 
-/// Directions that can separate two triangles, all or those that the start does not rule out as the best for both ends;
-/// offered to `search` with their counterparts at the end.
-void offer_triangle_axes(const TrianglePair& t, Axes which, Search& search) {
-  const Edges a0(t.p0), a1(t.p1), b(t.q);
-  if (!b.n.isZero(0)) search.offer_both_ways(b.n, b.n, false);
-  if (!a0.n.isZero(0)) search.offer_both_ways(a0.n, a1.n, true);
-  auto product = [&](const Vec3& x0, const Vec3& y0, const Vec3& x1, const Vec3& y1, bool with_a) {
-    const Vec3 m0 = x0.cross(y0);
-    const double l0 = m0.norm();
-    if (l0 < kParallelEdges) return;
-    const Vec3 n0 = m0 / l0;
-    if (which == Axes::promising && !search.promises(n0)) return;
-    const Vec3 m1 = x1.cross(y1);
-    const double l1 = m1.norm();
-    if (l1 < kParallelEdges) return;
-    search.offer_both_ways(n0, m1 / l1, with_a);
-  };
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) product(a0.e[i], b.e[j], a1.e[i], b.e[j], false);
+/// A direction across two edges, or across a normal and an edge, at the two ends of the motion.
+struct Product {
+  const Vec3 *left0, *right0, *left1, *right1;
+  bool with_a;
+};
+constexpr std::size_t kProducts = 15;
+/// Gaps along products are right up to this share of the positions' size. A product of nearly parallel edges has an
+/// error of 1e-16 of their lengths, and counts from kParallelEdges of them on.
+constexpr double kProductSlack = 1e-9;
+
+constexpr std::size_t kLane = 8;
+typedef double Lane __attribute__((vector_size(kLane * sizeof(double)), may_alias));
+struct Lanes3 {
+  Lane x, y, z;
+};
+/// Vectors one after the other; as many as fill the lanes.
+struct alignas(64) Factors {
+  std::array<std::array<double, 2 * kLane>, 3> v{};
+
+  void set(std::size_t k, const Vec3& n) {
+    for (std::size_t i = 0; i < 3; ++i) v[i][k] = n[static_cast<Eigen::Index>(i)];
   }
-  for (int i = 0; i < 3; ++i) {
-    product(b.n, b.e[i], b.n, b.e[i], false);
-    product(a0.n, a0.e[i], a1.n, a1.e[i], true);
+  TEGOTAE_INLINE Lane lane(std::size_t axis, std::size_t first) const {
+    return *reinterpret_cast<const Lane*>(v[axis].data() + first);
+  }
+  TEGOTAE_INLINE Lanes3 lanes(std::size_t first) const { return {lane(0, first), lane(1, first), lane(2, first)}; }
+};
+/// How far apart the triangles are along the products, times their lengths, and the squares of these.
+struct alignas(64) Apart {
+  std::array<double, 2 * kLane> gap, length2;
+};
+
+TEGOTAE_INLINE Lane dot(const Lanes3& n, const Vec3& p) {
+  return n.x * p.x() + n.y * p.y() + n.z * p.z();
+}
+TEGOTAE_INLINE Lane lesser(Lane a, Lane b) {
+  return a < b ? a : b;
+}
+TEGOTAE_INLINE Lane greater(Lane a, Lane b) {
+  return a > b ? a : b;
+}
+
+TEGOTAE_WIDE void measure_products(const Factors& left, const Factors& right, const std::array<Vec3, 3>& p,
+                                   const std::array<Vec3, 3>& q, Apart& out) {
+  for (std::size_t first = 0; first < 2 * kLane; first += kLane) {
+    const Lanes3 x = left.lanes(first), y = right.lanes(first);
+    const Lanes3 n{x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
+    const Lane a0 = dot(n, p[0]), a1 = dot(n, p[1]), a2 = dot(n, p[2]);
+    const Lane b0 = dot(n, q[0]), b1 = dot(n, q[1]), b2 = dot(n, q[2]);
+    const Lane up = lesser(lesser(a0, a1), a2) - greater(greater(b0, b1), b2);
+    const Lane down = lesser(lesser(b0, b1), b2) - greater(greater(a0, a1), a2);
+    *reinterpret_cast<Lane*>(out.gap.data() + first) = greater(up, down);
+    *reinterpret_cast<Lane*>(out.length2.data() + first) = n.x * n.x + n.y * n.y + n.z * n.z;
+  }
+}
+
+/// Directions across edges, all or those that the start does not rule out as the best for both ends; offered to
+/// `search` with their counterparts at the end. With the normals they can separate any two triangles that are apart.
+void offer_products(const TrianglePair& t, Axes which, Search& search) {
+  const Edges a0(t.p0), a1(t.p1), b(t.q);
+  std::array<Product, kProducts> products;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) products[count++] = {&a0.e[i], &b.e[j], &a1.e[i], &b.e[j], false};
+  for (std::size_t i = 0; i < 3; ++i) {
+    products[count++] = {&b.n, &b.e[i], &b.n, &b.e[i], false};
+    products[count++] = {&a0.n, &a0.e[i], &a1.n, &a1.e[i], true};
+  }
+  Factors left, right;
+  for (std::size_t k = 0; k < kProducts; ++k) {
+    left.set(k, *products[k].left0);
+    right.set(k, *products[k].right0);
+  }
+  Apart apart;
+  measure_products(left, right, t.p0, t.q, apart);
+  double size = 0;
+  for (const Vec3& v : t.p0) size = std::max(size, v.lpNorm<1>());
+  for (const Vec3& v : t.q) size = std::max(size, v.lpNorm<1>());
+  for (std::size_t k = 0; k < kProducts; ++k) {
+    const Product& p = products[k];
+    const double length = std::sqrt(apart.length2[k]);
+    if (which == Axes::promising && !(apart.gap[k] > length * (search.both() - kProductSlack * size))) continue;
+    const double parallel2 = kParallelEdges * kParallelEdges * p.right0->squaredNorm();
+    const Vec3 m1 = p.left1->cross(*p.right1);
+    if (!(apart.length2[k] > parallel2 * p.left0->squaredNorm() &&
+          m1.squaredNorm() > parallel2 * p.left1->squaredNorm()))
+      continue;
+    search.offer_both_ways(p.left0->cross(*p.right0) / length, m1.normalized(), p.with_a);
   }
 }
 
@@ -187,18 +244,23 @@ void offer_closest(const TrianglePair& t, Search& search) {
 }
 
 bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                   double s0, const Placement& from, double s1, const Placement& to, int halvings, MovingPlane& plane) {
+                   double s0, const Placement& from, double s1, const Placement& to, int halvings,
+                   const MovingPlane& beside, MovingPlane& plane) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
   if (stays_apart(pair, plane.n0, plane.n1, bulge, sweep, 0)) return true;
+  if (stays_apart(pair, beside.n0, beside.n1, bulge, sweep, 0)) {
+    plane = beside;
+    return true;
+  }
   Search search(pair);
   search.offer(plane);
   offer_normals(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
   // What is best for both ends is among the promising ones, but what is best for one end need not be.
-  offer_triangle_axes(pair, Axes::promising, search);
+  offer_products(pair, Axes::promising, search);
   if (search.accept_together(bulge, sweep, plane)) return true;
-  offer_triangle_axes(pair, Axes::all, search);
+  offer_products(pair, Axes::all, search);
   if (search.accept(bulge, sweep, plane)) return true;
   // The axes are complete, but for triangles without a plane.
   if (search.end() < 0 && !degenerate(a) && !degenerate(b)) return false;
@@ -208,9 +270,9 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
   MovingPlane first{search.best().n0, search.best().n0};
-  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, first)) return false;
+  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, first, first)) return false;
   MovingPlane second{first.n1, first.n1};
-  if (!separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, second)) return false;
+  if (!separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, second, second)) return false;
   plane = second;
   return true;
 }
@@ -239,8 +301,8 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        MovingPlane& plane) {
-  return separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, plane);
+                        const MovingPlane& beside, MovingPlane& plane) {
+  return separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, beside, plane);
 }
 
 }  // namespace tegotae
