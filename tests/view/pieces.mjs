@@ -1,7 +1,7 @@
 // Pieces of the page that need no browser: features and measures on meshes of known sizes, numbers, the tree of groups.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { fixed, length, written } from "../../apps/web/src/common/number.js";
+import { fixed, length, plain, written } from "../../apps/web/src/common/number.js";
 import { ForceNotice } from "../../apps/web/src/view/force.js";
 import { featureAt, Surface } from "../../apps/web/src/view/feature.js";
 import { measuresBetween } from "../../apps/web/src/view/measures.js";
@@ -70,6 +70,9 @@ test("pieces: numbers as people write them", () => {
   assert.equal(written(NaN), "–");
   assert.equal(fixed(-0.001, 2), "0.00");
   for (const v of [1e-8, 1e-5, 123456, 1e7, -3e-7]) assert.doesNotMatch(written(v), /e/);
+  // Of any size, in reports.
+  assert.deepEqual([0, -0, 0.00025, -12.5, 1e-6, 3e8].map((v) => plain(v)), ["0", "0", "0.00025", "−12.5", "0.000001", "300000000"]);
+  assert.deepEqual([1e-8, -1e-12, 2.5e-7, 1e10, -3.25e21].map((v) => plain(v)), ["10⁻⁸", "−10⁻¹²", "2.5 × 10⁻⁷", "10¹⁰", "−3.25 × 10²¹"]);
 });
 
 test("pieces: the tree of groups", () => {

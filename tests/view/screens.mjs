@@ -40,6 +40,16 @@ export async function fits(page, screen) {
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight));
 }
 
+// All of the parts is in the picture, also in one that has just become another size.
+export async function partsAreSeen(page) {
+  const out = async () => {
+    const [corners, canvas] = [await page.evaluate(() => window.__tegotae.corners()), await size(page, "#stage canvas")];
+    return corners.filter(([x, y]) => x < canvas.left || x > canvas.right || y < canvas.top || y > canvas.bottom);
+  };
+  for (const end = Date.now() + 5000; Date.now() < end && (await out()).length > 0; ) await page.waitForTimeout(50);
+  assert.deepEqual(await out(), []);
+}
+
 // No tool is out of sight without a hint: they wrap, and on the narrowest screens the row fades where it goes on.
 export async function toolsAreSeen(page, screen) {
   const tools = (left) => page.evaluate(async (to) => {

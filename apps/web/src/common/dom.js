@@ -12,7 +12,7 @@ export function element(tag, text = "", className = "") {
 function cellText(value) {
   const rounding = typeof value === "number" && value !== 0 && Math.abs(value) < 1e-6;
   // A number and its unit stay on one line.
-  return rounding ? "< 1e-6" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
+  return rounding ? "< 0.000001" : String(value ?? "–").replace(/(\d) (?=[^\d ]+$)/, "$1\u00a0");
 }
 
 // A table of {caption?, head: [...], rows: [[cell, ...], ...], text?: [...]}; a cell is text, a number, {text, class?,

@@ -21,4 +21,13 @@ export function length(meters, digits = 4) {
   return size < 1e-4 ? `${written(1e6 * meters, digits)}\u00a0µm` : `${written(1e3 * meters, digits)}\u00a0mm`;
 }
 
+// A number that may be of any size, as in reports: where it would be all zeros, with a power of ten.
+export function plain(value, digits = 6) {
+  const size = Math.abs(value);
+  if (size === 0 || (size >= 1e-6 && size < 1e9)) return signed(String(Number(value.toPrecision(digits))));
+  const [head, power] = value.toExponential(digits - 1).split("e");
+  const raised = String(Number(power)).replace(/./g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
+  return signed(`${Number(head)} × 10${raised}`.replace(/^(-?)1 × /, "$1"));
+}
+
 const signed = (text) => (Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−"));

@@ -6,6 +6,7 @@
 // forth (a path in a plane). low and high are the ends of error bars. With gaps a line breaks where its y is null.
 import uPlot from "uplot";
 import { element } from "./dom.js";
+import { plain } from "./number.js";
 
 const kHeight = 280;
 
@@ -15,7 +16,7 @@ function color(name) {
 const seriesColor = (i) => color(`--series-${i % 6}`);
 
 // As many digits as a tick needs: uPlot's own labels stop at three decimals. On a log axis it leaves out some (null).
-const tickText = (u, ticks) => ticks.map((v) => (v == null ? "" : Number(v.toPrecision(6)).toString().replace("-", "−")));
+const tickText = (u, ticks) => ticks.map((v) => (v == null ? "" : plain(v)));
 
 // Over many decades only powers of ten; uPlot would draw nine lines in each.
 const kMaxDecades = 4;
@@ -164,7 +165,7 @@ function options(plot, width) {
         dash: s.dash ? [6, 4] : undefined,
         spanGaps: !plot.gaps,
         points: s.points ? { show: true, size: 6, fill: seriesColor(i) } : { show: false },
-        value: (u, v) => (v == null ? "–" : Number(v.toPrecision(4)).toString()),
+        value: (u, v) => (v == null ? "–" : plain(v, 4)),
       })),
     ],
     hooks: { draw },
@@ -180,6 +181,8 @@ export function addPlot(parent, plot) {
   const show = () => {
     shown?.destroy();
     shown = new uPlot(options(plot, frame.clientWidth), data, frame);
+    shown.ctx.canvas.setAttribute("role", "img");
+    shown.ctx.canvas.setAttribute("aria-label", `${plot.title}: ${plot.y.label} over ${plot.x.label}`);
   };
   show();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);

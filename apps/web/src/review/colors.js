@@ -1,3 +1,5 @@
+import { plain } from "../common/number.js";
+
 // From a clearance to a color: red is close, blue is as far as was looked, logarithmic; gray is farther.
 const stops = [[165, 0, 38], [244, 109, 67], [254, 224, 144], [116, 173, 209], [49, 54, 149]];
 const beyond = [150, 156, 163];
@@ -40,7 +42,7 @@ export class ClearanceScale {
 
 export function lengthText(meters) {
   const [value, unit] = meters < 0.999e-3 ? [1e6 * meters, "µm"] : [1e3 * meters, "mm"];
-  return `${Number(value.toPrecision(2))} ${unit}`;
+  return `${plain(value, 2)} ${unit}`;
 }
 
 export function showLegend(figure, scale) {

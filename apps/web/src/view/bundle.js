@@ -13,7 +13,13 @@ export function readBundle(buffer) {
 // What a file carries inside; null when the page was served.
 export function embeddedBundle() {
   const text = document.getElementById("data").textContent.trim();
-  if (!text) return null;
+  return text ? writtenBundle(text) : null;
+}
+
+// The same of another page's text.
+export const bundleOf = (html) => writtenBundle(html.match(/ id="data">([^<]*)</)[1].trim());
+
+function writtenBundle(text) {
   const binary = atob(text);
   const bytes = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);

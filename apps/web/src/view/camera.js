@@ -27,6 +27,8 @@ export class Viewpoint {
   constructor(stage) {
     this.stage = stage;
     this.up = "z";
+    this.fit = null; // what was brought into the picture last, and from where
+    stage.onResize = () => this.refit();
     this.addControls();
     // The browser's own middle button (scrolling) and context menu are in the way.
     stage.canvas.addEventListener("mousedown", (event) => event.button === 1 && event.preventDefault());
@@ -101,8 +103,9 @@ export class Viewpoint {
     return v;
   }
 
-  // All of `box` from the direction of view number `i`, or from where one is.
-  look(i = null, box = this.stage.measure()) {
+  // All of the box `given`, or of all parts, from the direction of view number `i`, or from where one is.
+  look(i = null, given = null) {
+    const box = given ?? this.stage.measure();
     if (box.isEmpty()) return;
     this.limits();
     const { camera } = this.stage;
@@ -114,6 +117,14 @@ export class Viewpoint {
     camera.position.copy(center).addScaledVector(direction, this.distanceFor(box, center));
     this.controls.update();
     this.changed();
+    this.fit = { box: given, eye: camera.position.clone(), target: center };
+  }
+  // The same again, of another picture or of parts that have moved, unless somebody has gone elsewhere meanwhile.
+  refit() {
+    if (!this.fit) return;
+    const { position } = this.stage.camera;
+    const still = 1e-6 * position.distanceTo(this.controls.target);
+    if (position.distanceTo(this.fit.eye) < still && this.controls.target.distanceTo(this.fit.target) < still) this.look(null, this.fit.box);
   }
 
   // How far from `center` the eye must be, looking as it does, so that all corners of `box` are in the picture.

@@ -38,7 +38,6 @@ export class Compass {
       line.setAttribute("y2", -arm * end.y);
       text.setAttribute("x", 1.38 * arm * end.x);
       text.setAttribute("y", -1.38 * arm * end.y);
-      text.style.opacity = end.z < -0.95 || end.z > 0.95 ? 0.55 : 1;
       this.triad.append(line, text);
     }
     const perPixel = this.viewpoint.viewHeight() / this.viewpoint.stage.canvas.clientHeight;

@@ -65,7 +65,11 @@ export function addPanels() {
 }
 
 export function addHelp() {
-  const dialog = $("help");
+  const dialog = $("help"), top = element("div", "", "top");
+  const close = element("button", "Close");
+  close.addEventListener("click", () => dialog.close());
+  top.append(element("h2", "Mouse, fingers and keys"), close);
+  dialog.append(top);
   for (const [title, lines] of help) {
     dialog.append(element("h2", title));
     const table = element("table");
@@ -78,9 +82,6 @@ export function addHelp() {
     }
     dialog.append(table);
   }
-  const close = element("button", "Close");
-  close.addEventListener("click", () => dialog.close());
-  dialog.append(element("p"), close);
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }
 

@@ -3,19 +3,12 @@ const shown = (name) => (/^[\w.+-]+$/.test(name) ? name : `'${name.replaceAll("'
 
 export function listenToDrops(onMessage) {
   const wanted = ({ target, dataTransfer }) => target.tagName === "INPUT" && !dataTransfer?.types.includes("Files"); // text into a field
-  let told = false;
   addEventListener("dragover", (event) => wanted(event) || event.preventDefault());
   addEventListener("drop", (event) => {
     if (wanted(event)) return;
     event.preventDefault();
     const file = event.dataTransfer?.files[0];
     if (!file) return;
-    onMessage(`This page shows what the program has opened. To open the file: tegotae view ${shown(file.name)}`);
-    told = true;
+    onMessage(`This page shows what the program has opened. To open the file: tegotae view ${shown(file.name)}`, "news");
   });
-  const forget = () => {
-    if (told) onMessage("");
-    told = false;
-  };
-  addEventListener("pointerdown", forget, { capture: true }); // before whoever drags takes it
 }

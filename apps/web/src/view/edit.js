@@ -81,6 +81,7 @@ export class Parts {
     const [label, title, command] = part.removed ? ["Add back", `Put ${part.name} back where it was`, "add"] : ["Hold", `Take ${part.name} into the hand`, "hold"];
     const button = element("button", label, "do");
     button.title = title;
+    button.setAttribute("aria-label", `${label} ${part.name}`);
     button.disabled = this.busy;
     button.addEventListener("click", () => this.send({ do: command, part: i }));
     item.append(button);

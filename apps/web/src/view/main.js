@@ -24,6 +24,7 @@ import { addReview, saveScript, stylusScript } from "./review.js";
 import { Section } from "./section.js";
 import { Stage } from "./stage.js";
 import { addTestDoor } from "./test_door.js";
+import { Touched } from "./touched.js";
 
 const $ = (id) => document.getElementById(id);
 const speeds = { live: [0.05, 0.1, 0.25, 0.5, 1, 2, null], replay: [0.1, 0.25, 0.5, 1, 2, 4] };
@@ -49,6 +50,7 @@ const measure = new Measure(stage, viewpoint, $("measured"), (on) => {
 const contact = new ContactCard(stage, $("contact"));
 const numbers = new Numbers($("numbers"));
 const force = new ForceNotice($("force"));
+const touched = new Touched($("touched"));
 const memory = new Memory();
 const hand = new Hand(stage, viewpoint, { lead: (pose) => { led = true; live.send({ do: "lead", pose, generation: about.generation }); }, changed: showHand });
 // player: what is played back instead of what is live.
@@ -61,10 +63,14 @@ stage.onDraw = () => {
   if (frame) behind.show(frame);
 };
 
-function showMessage(text) {
+// kind: "" something is wrong, "work" is under way, "news" go with the next click.
+function showMessage(text, kind = "") {
+  $("message").dataset.kind = kind;
   $("message").textContent = text;
   $("message").hidden = !text;
 }
+// Before whoever drags takes it.
+addEventListener("pointerdown", () => $("message").dataset.kind === "news" && showMessage(""), { capture: true });
 
 // Fingers have neither Shift nor a wheel.
 const fingers = matchMedia("(pointer: coarse)").matches;
@@ -124,12 +130,14 @@ function showFrame(next) {
   stage.showPoses(frame.x, frame.y, overlay.show(frame));
   behind.show(frame);
   contact.show(frame);
+  touched.show(frame, stage.parts);
   numbers.show(frame, about.reasons);
   if (!player) force.show(frame, about.reasons, hand);
   $("clock").textContent = `${frame.t.toFixed(player || about.virtual_time ? 3 : 1)} s`;
   if (player) {
     plots.showTime(frame.t);
     if (Number($("scrub").value) !== player.at) $("scrub").value = player.at;
+    $("scrub").setAttribute("aria-valuetext", $("clock").textContent);
   } else plots.push(frame);
 }
 
@@ -167,6 +175,7 @@ function showHeld() {
   const held = stage.held !== null;
   const rested = held && document.body.classList.contains("rest");
   hand.setScene(about);
+  touched.rest();
   document.body.classList.toggle("rest", !held);
   $("near").title = held ? "Show the held part (C)" : "Show the selected part (C)";
   for (const id of ["save", "review"]) $(id).disabled = !held && live !== null;
@@ -301,6 +310,7 @@ function showRun() {
 function explode(factor) {
   $("explode").value = factor;
   stage.explode(factor);
+  viewpoint.refit();
   overlay.hide(factor > 0 || !stage.held);
   guide.show();
   allowHand();

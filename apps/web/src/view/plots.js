@@ -39,6 +39,7 @@ export class Plots {
     const shown = plots.filter((plot) => !without.includes(plot.name));
     this.frames = shown.map((plot) => {
       const frame = element("figure", "", plot.technical ? "plot technical" : "plot");
+      frame.setAttribute("aria-label", `${plot.name} over time`);
       const caption = element("figcaption");
       caption.append(element("span", `${plot.name} (${plot.unit})`));
       for (const [name, color] of plot.series) {
@@ -71,7 +72,9 @@ export class Plots {
   }
   showPeak(p) {
     const text = p.highest === null ? "peak –" : `peak ${fixed(p.highest, p.peak)}`;
-    if (p.label.textContent !== text) p.label.textContent = text;
+    if (p.label.textContent === text) return;
+    p.label.textContent = text;
+    p.label.setAttribute("aria-label", `${p.name}: ${text} ${p.unit}, begin anew`);
   }
 
   // Those that are to be seen.
@@ -115,6 +118,7 @@ export class Plots {
         padding: [4, 6, last ? 0 : 6, 0],
         hooks: { draw: [(u) => this.drawNow(u), (u) => this.drawPeak(u, p)] },
       }, this.data(p), p.frame);
+      p.canvas.root.setAttribute("aria-hidden", "true"); // its newest value is in the table
       p.canvas.over.addEventListener("click", (event) => this.seek?.(p.canvas.posToVal(event.offsetX, "x")));
     }
   }

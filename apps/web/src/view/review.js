@@ -1,4 +1,6 @@
 // Requests a report from the program and saves it; saves the motion of the hand as a stylus script.
+import { bundleOf } from "./bundle.js";
+
 function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -9,15 +11,16 @@ function save(blob, name) {
 
 const stem = (title) => title.replace(/.*\//, "").replace(/\.[^.]*$/, "");
 
-// ask(): the report, a blob, of a recording or a run called `title`.
+// ask(): the report, a blob, of a recording or a run called `title`. Its verdict is told at once.
 export function addReview(button, ask, title, onMessage) {
   button.hidden = false;
   button.addEventListener("click", async () => {
     button.disabled = true;
-    onMessage("Making the report …");
+    onMessage("Making the report …", "work");
     try {
-      save(await ask(), `${stem(title)}.review.html`);
-      onMessage("");
+      const report = await ask(), name = `${stem(title)}.review.html`;
+      save(report, name);
+      onMessage(`${bundleOf(await report.text()).about.verdict.headline}. The report is saved as ${name}.`, "news");
     } catch (error) {
       onMessage(error.message);
     } finally {

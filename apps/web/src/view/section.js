@@ -1,6 +1,7 @@
 // The section plane: along an axis, along the screen or along a face, moved by a slider, keys, or its handle in the
 // picture; Shift on the handle tilts it. What is cut away is on the eye's side, so that one sees the cut.
 import * as THREE from "three";
+import { length } from "../common/number.js";
 import { cssColor } from "../common/theme.js";
 import { toggle } from "./controls.js";
 import { project, rayAt } from "./picking.js";
@@ -103,6 +104,8 @@ export class Section {
       const [low, high] = this.reach();
       const at = high + Number($("cut").value) * (low - high);
       this.showHandle(new THREE.Plane(this.normal, -at), high - low);
+      const axis = ["x", "y", "z"].indexOf(this.kind);
+      $("cut").setAttribute("aria-valuetext", axis < 0 ? length(-at) : `${this.kind} ${length(this.handle.position.getComponent(axis))}`);
       plane = new THREE.Plane(this.normal.clone(), -at);
       if ($("flip").checked) plane.negate();
       plane.constant -= aside * (high - low);

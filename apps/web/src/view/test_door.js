@@ -20,7 +20,7 @@ export function addTestDoor(page) {
         camera: stage.camera.position.toArray(), target: viewpoint.controls.target.toArray(), up: viewpoint.up, parallel: viewpoint.parallel,
         section: stage.section && { normal: stage.section.normal.toArray(), constant: stage.section.constant }, handle: section.handle.position.toArray(), caps: stage.parts?.filter(({ cap }) => cap?.face.visible).map(({ name }) => name),
         contact: contact.at, measured: measure.rows, picked: measure.picked.map(({ kind }) => kind),
-        count: player?.count, playing: player?.playing ?? false, message: document.getElementById("message").textContent,
+        count: player?.count, playing: player?.playing ?? false, message: document.getElementById("message").textContent, touched: document.getElementById("touched").textContent,
       };
     },
     project: (point) => project(stage, point),
