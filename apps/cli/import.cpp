@@ -11,6 +11,7 @@
 #include "core/name_list.hpp"
 #include "core/number_text.hpp"
 #include "shared/length_option.hpp"
+#include "shared/option_check.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
@@ -92,12 +93,12 @@ CLI::App* add_import(CLI::App& app, ImportOptions& options) {
                     "STEP: how far they may be from other curved faces (50um); a part alone in its file is between the "
                     "two by its size");
   import->add_option("--seconds", options.bounds.seconds, "How long reading, or the facets of one part, may take (600)")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(between(1e-3, 1e6))
       ->type_name("S");
   import
       ->add_option("--megabytes", options.bounds.megabytes,
                    "How much memory reading may take (three quarters of the machine's)")
-      ->check(CLI::Range(1.0, 1e9))
+      ->check(between(1.0, 1e9))
       ->type_name("MB");
   return import;
 }

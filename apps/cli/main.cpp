@@ -15,6 +15,7 @@
 #include "review/script_report.hpp"
 #include "shared/guarded_main.hpp"
 #include "shared/length_option.hpp"
+#include "shared/option_check.hpp"
 #include "shared/status_line.hpp"
 #include "study/study_command.hpp"
 #include "study/try_command.hpp"
@@ -83,11 +84,11 @@ int main(int argc, char** argv) {
   std::vector<std::string> bench_names = bench::scene_names();
   bench_names.emplace_back(bench::kStart);
   measure->add_option("--scene", bench_options.scenes, "Only this scene, or the start (may be repeated)")
-      ->check(CLI::IsMember(bench_names))
+      ->check(one_of(bench_names))
       ->type_name("NAME");
   measure->add_flag("--quick", bench_options.quick, "A short look: one round of the pen, small programs");
   measure->add_option("--friction", bench_options.mu, "Also with this coefficient of friction between the parts")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(between(0.0, 10.0));
   measure->add_flag("--budgets", bench_options.budgets, "Also with tick budgets of 0.1 and 0.3 ms");
   measure->add_option("--resolver", bench_options.resolver, "Contact resolver (default: the library's)")
       ->type_name("NAME");
@@ -100,15 +101,13 @@ int main(int argc, char** argv) {
   experiments::Options trials;
   CLI::App* experiment =
       app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
-  experiment->add_option("NAME", trials.name, "Which one, or all")
-      ->required()
-      ->check(CLI::IsMember(experiments::names()));
+  experiment->add_option("NAME", trials.name, "Which one, or all")->required()->check(one_of(experiments::names()));
   experiment->add_option("--out", trials.out, "Folder for the results")->capture_default_str()->type_name("DIR");
   experiment->add_option("--seeds", trials.seeds, "Runs of each kind (each experiment has its own number)")
-      ->check(CLI::Range(1, 10000))
+      ->check(between(1, 10000))
       ->type_name("N");
   experiment->add_option("--threads", trials.threads, "Threads (default: all processors); no result depends on it")
-      ->check(CLI::Range(1, 1024))
+      ->check(between(1, 1024))
       ->type_name("N");
   experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "import/file_check.hpp"
+#include "shared/option_check.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
 #include "shared/temporary_folder.hpp"
@@ -48,7 +49,7 @@ void hold_smallest(SceneFile& file, bool quiet) {
 void add_unit_option(CLI::App& app, ImportOptions& options) {
   app.add_option("--unit", options.assembly.unit,
                  "Unit of an STL, OBJ, PLY, OFF or glTF file: m, cm, mm, um, in (m; asked for beyond 20 m)")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "in"}))
+      ->check(one_of({"m", "cm", "mm", "um", "in"}))
       ->type_name("UNIT");
 }
 

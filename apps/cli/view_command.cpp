@@ -5,6 +5,7 @@
 
 #include "import/file_check.hpp"
 #include "review/review_command.hpp"
+#include "shared/option_check.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -63,7 +64,7 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
       replay->add_option("--html", options.html, "Write the page to a file that needs no server, then exit")
           ->type_name("FILE");
   replay->add_option("--frames", options.frames, "That the page gets at most; fewer make a smaller file")
-      ->check(CLI::Range(std::size_t{2}, view::kMaxFrames))
+      ->check(between(std::size_t{2}, view::kMaxFrames))
       ->capture_default_str()
       ->type_name("N");
   const PageOptionNames page = add_page_options(*replay, options.page);

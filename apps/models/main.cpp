@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,8 +10,8 @@
 #include "models/puzzles.hpp"
 #include "models/shapes.hpp"
 #include "models/write_obj.hpp"
-#include "shared/process.hpp"
-#include "tegotae/core/version.hpp"
+#include "shared/guarded_main.hpp"
+#include "shared/option_check.hpp"
 
 namespace {
 
@@ -67,44 +66,31 @@ void write_puzzles(const std::string& folder) {
   }
 }
 
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   CLI::App app(
       "Writes the parts of the experiments as OBJ files, in mm: pegs for a hole of 20 mm, a block with that "
-      "hole, a cube, a wall and a floor.");
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
+      "hole, a cube, a wall and a floor.",
+      "tegotae-models");
   std::string out;
   std::vector<double> ratios;
   int segments = 64, rings = 8;
   app.add_option("--out", out, "Folder to write to")->required();
   app.add_option("--ratio", ratios, "Peg diameter / hole diameter: writes only these pegs and the hole")
-      ->check(CLI::Range(0.01, 0.999999));
+      ->check(apps::between(0.01, 0.999999));
   bool puzzles = false;
   app.add_flag("--puzzles", puzzles, "Write scenes instead, of a part that is to be taken out of another one");
-  app.add_option("--segments", segments, "Facets around peg and hole, a multiple of 8")->check(CLI::Range(8, 8192));
-  app.add_option("--rings", rings, "Bands along peg and hole")->check(CLI::Range(1, 8192));
-  try {
-    app.parse(argc, argv);
+  app.add_option("--segments", segments, "Facets around peg and hole, a multiple of 8")->check(apps::between(8, 8192));
+  app.add_option("--rings", rings, "Bands along peg and hole")->check(apps::between(1, 8192));
+  return apps::guarded_main(app, argc, argv, [&] {
     if (puzzles) {
       write_puzzles(out);
-      return 0;
+      return apps::kDone;
     }
     const bool all = ratios.empty();
     if (all) ratios = {0.91, 0.92, 0.93, 0.94, 0.99};
     write_models(out, ratios, all, segments, rings);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help
-    std::fprintf(stderr, "tegotae-models: %s\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "tegotae-models: %s\n", e.what());
-    return 2;
-  }
-  return 0;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  apps::prepare_process();
-  return apps::finish_output("tegotae-models", run(argc, argv));
+    return apps::kDone;
+  });
 }

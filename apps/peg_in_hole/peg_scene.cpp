@@ -81,7 +81,8 @@ std::string ratio_text(double ratio) {
 
 std::string write_peg_scene(double ratio, const std::string& folder) {
   if (!(ratio >= kLoosestRatio && ratio <= kTightestRatio))
-    throw Error("--ratio: must be between " + ratio_text(kLoosestRatio) + " and " + ratio_text(kTightestRatio));
+    throw Error("--ratio: " + ratio_text(ratio) + " is no number from " + ratio_text(kLoosestRatio) + " to " +
+                ratio_text(kTightestRatio));
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw Error(folder + ": cannot be made: " + failed.message());

@@ -15,6 +15,7 @@
 #include "plan/planner.hpp"
 #include "shared/format.hpp"
 #include "shared/guarded_main.hpp"
+#include "shared/option_check.hpp"
 #include "shared/status_line.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -134,10 +135,10 @@ int main(int argc, char** argv) {
   CLI::App app("Compares the planner with RRT-Connect that asks FCL, in processor time of all threads.", "plan_judge");
   Options o;
   app.add_option("--seeds", o.judge.seeds, "Runs of each planner on a scene")
-      ->check(CLI::Range(1, 1000))
+      ->check(apps::between(1, 1000))
       ->capture_default_str();
   app.add_option("--seconds", o.judge.seconds, "Processor time of a search, at most")
-      ->check(CLI::Range(0.1, 1e5))
+      ->check(apps::between(0.1, 1e5))
       ->capture_default_str();
   CLI::Option* scene = app.add_option("--scene", o.scenes, "Only this one (may be repeated)")->type_name("NAME");
   app.add_option("--parts", o.parts, "Folder of real parts, with pairs.json")->type_name("DIR");

@@ -13,6 +13,7 @@
 #include "review/review_command.hpp"
 #include "shared/format.hpp"
 #include "shared/length_option.hpp"
+#include "shared/option_check.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -87,11 +88,11 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
   review::add_band_option(*plan, o.band);
   plan->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same path")->type_name("N");
   plan->add_option("--iterations", o.iterations, "Most iterations of the search")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
+      ->check(apps::between(std::int64_t{1}, std::int64_t{1000000000}))
       ->type_name("N");
   CLI::Option* seconds =
       plan->add_option("--seconds", o.seconds, "Longest search (60; unbounded with --seed or --iterations)")
-          ->check(CLI::Range(0.1, 1e6))
+          ->check(apps::between(0.1, 1e6))
           ->type_name("S");
   plan->add_option("--to", o.folder, "Folder for the results")->capture_default_str()->type_name("DIR");
   CLI::Option* json = plan->add_flag("--json", o.json, "Print the result as one line of JSON");

@@ -1,12 +1,11 @@
 #include "shared/guarded_main.hpp"
 
-#include <algorithm>
 #include <csignal>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <string>
 
+#include "shared/option_check.hpp"
 #include "shared/process.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
@@ -27,30 +26,6 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// The first word that begins like an option and is a file here.
-std::string file_with_dash(int argc, char** argv) {
-  std::error_code none;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.size() > 1 && word.front() == '-' && std::filesystem::exists(word, none)) return word;
-  }
-  return {};
-}
-
-/// What is wrong with a command line; of a program with subcommands that was given another one, which it has.
-std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
-  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
-  const std::string given = argc > 1 ? argv[1] : "";
-  const bool known =
-      std::any_of(commands.begin(), commands.end(), [&](const CLI::App* c) { return c->get_name() == given; });
-  if (const std::string dash = file_with_dash(argc, argv); !dash.empty())
-    return dash + " begins like an option; write ./" + dash;
-  if (commands.empty() || known || (!given.empty() && given.front() == '-')) return first_line(error.what());
-  std::string list;
-  for (const CLI::App* c : commands) list += (list.empty() ? "" : ", ") + c->get_name();
-  return given.empty() ? "no command is given; there are " + list : "there is no command " + given + ", but " + list;
-}
-
 void add_version(CLI::App& app) {
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) add_version(*command);
@@ -64,7 +39,7 @@ int guarded_body(CLI::App& app, int argc, char** argv, const std::function<int()
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::cerr << app.get_name() << ": " << usage_error(app, argc, argv, e) << " (see --help)\n";
+    std::cerr << app.get_name() << ": " << first_line(usage_error(app, argc, argv, e)) << " (see --help)\n";
     return kBadInput;
   } catch (const Error& e) {
     std::cerr << app.get_name() << ": " << e.what() << "\n";

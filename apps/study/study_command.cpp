@@ -8,6 +8,7 @@
 #include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
+#include "shared/option_check.hpp"
 #include "shared/run_options.hpp"
 #include "study/driver.hpp"
 #include "study/merge.hpp"
@@ -183,26 +184,24 @@ CLI::App* add_study(CLI::App& app, StudyOptions& o) {
   o.self->add_option("STUDY", o.study, "Study file (TOML)");
   o.self->add_option("--shard", o.shard, "Only the I-th of N parts of the cases")->type_name("I/N");
   o.self->add_option("--jobs", o.jobs, "Cases at the same time (default: all processors); no result depends on it")
-      ->check(CLI::Range(1, 1024))
+      ->check(apps::between(1, 1024))
       ->type_name("J");
   add_out(*o.self, o);
   o.run = add_part(o, "run", "Run all cases with HyperShell, and merge");
   o.run->add_option("--shards", o.shards, "Number of shards, one process for each (8 for each processor)")
-      ->check(CLI::Range(1, 1000000))
+      ->check(apps::between(1, 1000000))
       ->type_name("N");
   o.run->add_option("--processors", o.processors, "Shards at the same time (default: all processors)")
-      ->check(CLI::Range(1, 1024))
+      ->check(apps::between(1, 1024))
       ->type_name("P");
   o.merge = add_part(o, "merge", "Make one table and the report of all parts");
   o.one = add_part(o, "case", "Make cases again, and record them");
-  o.one->add_option("NUMBER", o.numbers, "Number of a case (may be several)")
-      ->required()
-      ->check(CLI::NonNegativeNumber);
+  o.one->add_option("NUMBER", o.numbers, "Number of a case (may be several)")->required()->check(apps::at_least(0));
   o.one->add_option("--to", o.to, "Folder for scene, recording and replay")->type_name("DIR");
   for (CLI::App* part : {o.run, o.merge, o.one}) add_out(*part, o);
   for (CLI::App* part : {o.run, o.merge})
     part->add_option("--replays", o.replays, "Cases whose replay is made at once: the best, the worst, failed ones")
-        ->check(CLI::Range(0, 1000))
+        ->check(apps::between(0, 1000))
         ->capture_default_str()
         ->type_name("N");
   return o.self;

@@ -5,6 +5,7 @@
 
 #include "core/same_file.hpp"
 #include "shared/format.hpp"
+#include "shared/option_check.hpp"
 #include "shared/pose_option.hpp"
 #include "shared/run_options.hpp"
 #include "shared/status_line.hpp"
@@ -36,15 +37,15 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
                         "Goal of the part, or \"out\": out of all others (default: where the scene's script ends)");
   tries->add_option("--hold", o.hold, "Name of the part to hold, overrides the scene's")->type_name("NAME");
   tries->add_option("--tries", o.tries, "Number of tries")
-      ->check(CLI::Range(1, 100000))
+      ->check(apps::between(1, 100000))
       ->capture_default_str()
       ->type_name("N");
   tries->add_option("--jobs", o.jobs, "Tries at the same time (default: all processors); no result depends on it")
-      ->check(CLI::Range(1, 1024))
+      ->check(apps::between(1, 1024))
       ->type_name("J");
   tries->add_option("--seed", o.seed, "Seed of all random choices")->capture_default_str()->type_name("N");
   tries->add_option("--seconds", o.seconds, "Time that an operator has")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(apps::between(1.0, 3600.0))
       ->capture_default_str()
       ->type_name("S");
   tries->add_option("--out", o.out, "Folder for the results; finished tries in it are not repeated")
