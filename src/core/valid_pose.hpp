@@ -10,6 +10,9 @@ namespace tegotae {
 /// micrometers. HapticLoop::step tells users this figure.
 inline constexpr double kFarthest = 1e4;
 
+/// No coordinate of a vertex (m) is larger: beyond lie damaged files and wrong units.
+inline constexpr double kFarthestVertex = 1e6;
+
 /// Finite, and no coordinate beyond kFarthest.
 inline bool within_reach(const Vec3& p) noexcept {
   return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest;

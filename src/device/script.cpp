@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/valid_pose.hpp"
 #include "core/wide_text.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -65,6 +66,7 @@ std::vector<std::string_view> split(std::string_view line) {
 std::string refusal(const StylusScript::Key& key, const StylusScript::Key* previous) {
   if (!std::isfinite(key.t) || !key.pose.p.allFinite() || !key.pose.q.coeffs().allFinite())
     return "a value is not finite";
+  if (!within_reach(key.pose.p)) return "the position lies beyond 10 km; positions are in m";
   const double norm = key.pose.q.coeffs().stableNorm();
   if (norm < kMinQuaternionNorm) return "the quaternion is zero";
   if (norm > kMaxQuaternionNorm) return "the quaternion is too long";

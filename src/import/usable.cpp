@@ -1,17 +1,11 @@
 #include "import/usable.hpp"
 
+#include "core/valid_pose.hpp"
 #include "mesh/precision.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/import/load.hpp"
 
 namespace tegotae {
-namespace {
-
-/// Coordinates beyond this (m) are taken for a damaged file or a wrong unit.
-constexpr double kLargestCoordinate = 1e6;
-
-}  // namespace
-
 std::string cause_of(const std::vector<std::string>& notes) {
   for (const char* words : {"left out", "is not read", "without a volume"})
     for (const std::string& note : notes)
@@ -25,7 +19,7 @@ void require_usable(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) {
       const Vec3& p = mesh.vertices[v];
       if (!p.allFinite()) throw Error(mesh.name + ": a coordinate is not a finite number");
-      if (p.cwiseAbs().maxCoeff() > kLargestCoordinate) {
+      if (p.cwiseAbs().maxCoeff() > kFarthestVertex) {
         throw Error(mesh.name + ": a coordinate lies beyond 1000 km: damaged, or a wrong unit");
       }
     }

@@ -1,7 +1,10 @@
 #include "python/arrays.hpp"
 
+#include <nanobind/stl/string.h>
+
 #include <cmath>
 
+#include "core/valid_pose.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae::python {
@@ -18,10 +21,21 @@ std::string text(const std::vector<std::ptrdiff_t>& shape) {
   return s + (shape.size() == 1 ? ",)" : ")");
 }
 
+/// NumPy makes numbers of text and of dates too, and drops what complex numbers have beside their real part.
+void require_real(nb::handle array, const char* name) {
+  const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  if (kind.find_first_not_of("biufO") == std::string::npos) return;
+  const auto type = nb::cast<std::string>(array.attr("dtype").attr("name"));
+  throw nb::type_error((std::string(name) + ": real numbers are wanted, not " + type).c_str());
+}
+
 }  // namespace
 
 Numbers numbers(nb::handle value, std::initializer_list<std::ptrdiff_t> shape, const char* name) {
-  nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(value, nb::arg("dtype") = "float64");
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  const nb::object given_array = numpy.attr("asarray")(value);
+  require_real(given_array, name);
+  nb::object array = numpy.attr("ascontiguousarray")(given_array, nb::arg("dtype") = "float64");
   const auto block = nb::cast<Block>(array);
   const std::vector<std::ptrdiff_t> wanted(shape);
   std::vector<std::ptrdiff_t> given;
@@ -38,6 +52,7 @@ Pose pose_of(const double* rows, const std::string& name) {
   const Mat3 R = X.topLeftCorner<3, 3>();
   const auto fail = [&name](const char* why) { throw Error(ErrorKind::setting, name + ": " + why); };
   if (!X.allFinite()) fail("a number of the pose is not finite");
+  if (!within_reach(X.topRightCorner<3, 1>())) fail("the position lies beyond 10 km; positions are in m");
   if (X.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) fail("the last row of a pose is 0, 0, 0, 1");
   if (!((R * R.transpose()).isIdentity(kRotationTolerance) && R.determinant() > 0))
     fail("the upper left 3 x 3 of a pose is a rotation: no scale, no shear, no mirror");

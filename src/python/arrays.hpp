@@ -28,7 +28,8 @@ struct Numbers {
   std::size_t rows = 0;  ///< length of the first axis
 };
 
-/// `value` as numbers of this shape (-1: any length). Throws Error that calls it `name` when it has another one.
+/// `value` as numbers of this shape (-1: any length). Throws Error that calls it `name` when it has another one,
+/// TypeError when it is complex or text.
 Numbers numbers(nb::handle value, std::initializer_list<std::ptrdiff_t> shape, const char* name);
 
 /// A rigid pose of 16 numbers in the order of rows. Throws Error that calls it `name` when it is none.

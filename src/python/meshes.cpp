@@ -9,6 +9,7 @@
 
 #include <filesystem>
 
+#include "core/valid_pose.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/loading.hpp"
@@ -67,8 +68,9 @@ Mesh mesh_of(nb::handle vertices, nb::handle triangles, const std::string& name)
   mesh.name = name;
   for (std::size_t i = 0; i < points.rows; ++i) mesh.vertices.emplace_back(Vec3::Map(points.data + 3 * i));
   for (std::size_t i = 0; i < points.rows; ++i)
-    if (!mesh.vertices[i].allFinite())
-      throw Error(ErrorKind::setting, "vertices: row " + std::to_string(i) + " is not finite");
+    if (!mesh.vertices[i].allFinite() || mesh.vertices[i].cwiseAbs().maxCoeff() > kFarthestVertex)
+      throw Error(ErrorKind::setting,
+                  "vertices: row " + std::to_string(i) + " is not finite, or beyond 1000 km; lengths are in m");
   mesh.triangles = triangles_of(triangles, points.rows);
   if (mesh.triangles.empty()) throw Error(ErrorKind::setting, "triangles: there are none");
   const nb::gil_scoped_release others_go_on;
@@ -137,7 +139,7 @@ name : str
 Raises
 ------
 Error
-    An index out of range, a number that is not finite, no triangle, or another shape.)")
+    An index out of range, a number that is not finite or beyond 1000 km, no triangle, or another shape.)")
       .def(
           "__init__",
           [](Mesh* self, nb::handle vertices, nb::handle triangles, const std::string& name) {

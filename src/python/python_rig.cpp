@@ -1,5 +1,6 @@
 #include "python/python_rig.hpp"
 
+#include <atomic>
 #include <set>
 #include <utility>
 
@@ -101,9 +102,11 @@ void PythonRig::tell_failure() {
 void PythonRig::step(int count) {
   const Turn turn(*this);
   if (!running_) throw Error("rig: start() it first, or use it in a with statement");
-  {
+  if (count == 1) {
     const nb::gil_scoped_release others_go_on;
-    for (int i = 0; i < count && !pen_failed(); ++i) rig_->step();
+    rig_->step();
+  } else {
+    step_alone(count);
   }
   tell_failure();
 }
@@ -117,6 +120,15 @@ void PythonRig::run(double seconds, nb::object callback) {
     run_with(seconds, callback);
   }
   tell_failure();
+}
+
+void PythonRig::step_alone(int count) {
+  std::atomic<bool> ended{false};
+  interruptible(
+      [&] {
+        for (int i = 0; i < count && !ended && !pen_failed(); ++i) rig_->step();
+      },
+      [&ended] { ended = true; });
 }
 
 void PythonRig::run_alone(double seconds) {

@@ -51,6 +51,7 @@ class PythonRig {
    private:
     PythonRig& rig_;
   };
+  void step_alone(int count);
   void run_alone(double seconds);
   void run_with(double seconds, const nanobind::object& callback);
   bool pen_failed() const { return python_ && python_->failed(); }

@@ -260,7 +260,7 @@ void bind_lifecycle(RigClass& c) {
       .def("step", &PythonRig::step, nb::arg("count") = 1,
            "`count` ticks: each reads the pen, moves the part as near to it as the others allow, and publishes the "
            "result.\n"
-           "Other Python threads continue meanwhile.")
+           "Other Python threads continue meanwhile, and Ctrl-C ends it where there are several.")
       .def("run", &PythonRig::run, nb::arg("seconds"), nb::arg("callback") = nb::none(),
            nb::sig("def run(self, seconds: float, callback: collections.abc.Callable[[Rig], object] | None = None) -> "
                    "None"),

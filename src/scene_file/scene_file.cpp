@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/name_list.hpp"
+#include "core/valid_pose.hpp"
 #include "import/file_check.hpp"
 #include "import/gltf_buffers.hpp"
 #include "loop/contact_loop.hpp"
@@ -63,6 +64,7 @@ double read_unit(const TomlTable& t, const char* fallback) {
 Pose read_pose(const TomlTable& t) {
   Pose X;
   if (t.has("position")) X.p = Vec3(t.numbers("position", 3).data());
+  if (!within_reach(X.p)) t.fail("position", "lies beyond 10 km; positions are in m");
   if (t.has("orientation") && t.has("rpy_deg")) t.fail("rpy_deg", "give either orientation or rpy_deg");
   if (t.has("rpy_deg")) X.q = from_roll_pitch_yaw(t.numbers("rpy_deg", 3));
   if (t.has("orientation")) {

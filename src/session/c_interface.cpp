@@ -89,7 +89,8 @@ TriangleMesh mesh_of(const std::string& name, const double* vertices, std::size_
   mesh.name = name;
   for (std::size_t i = 0; i < vertex_count; ++i) {
     mesh.vertices.emplace_back(vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]);
-    if (!mesh.vertices.back().allFinite()) throw Error("part \"" + name + "\": a vertex is not finite");
+    if (!mesh.vertices.back().allFinite() || mesh.vertices.back().cwiseAbs().maxCoeff() > kFarthestVertex)
+      throw Error("part \"" + name + "\": a vertex is not finite, or beyond 1000 km");
   }
   for (std::size_t i = 0; i < triangle_count; ++i) {
     mesh.triangles.push_back({triangles[3 * i], triangles[3 * i + 1], triangles[3 * i + 2]});

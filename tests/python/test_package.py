@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -74,6 +75,7 @@ def test_center_of_mass_is_that_of_the_solid():
         (box(1)[0], [[0.5, 1, 2]], "whole numbers"),
         (box(1)[0][:, :2], [[0, 1, 2]], "(8, 2), not (n, 3)"),
         ([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]], "row 2 is not finite"),
+        ([[0, 0, 0], [2e6, 0, 0], [0, 1, 0]], [[0, 1, 2]], "row 1 is not finite, or beyond 1000 km"),
         (box(1)[0], np.empty((0, 3), int), "none"),
     ],
 )
@@ -100,11 +102,48 @@ def test_isolated_and_trusted_load_the_same():
         (np.diag([1.0, 1, 1, 2]), "last row"),
         (np.full((4, 4), np.nan), "finite"),
         (np.eye(3), "not \\(4, 4\\)"),
+        (pose(1e300), "beyond 10 km"),
+        (pose(0, -10001), "beyond 10 km"),
     ],
 )
 def test_poses_that_cannot_be(X, text):
+    scene, mesh = tegotae.Scene(), tegotae.Mesh(*box(1))
     with pytest.raises(tegotae.Error, match=text):
-        tegotae.Scene().add_fixed("a", tegotae.Mesh(*box(1)), X)
+        scene.add_fixed("a", mesh, X)
+    scene.add_held("a", mesh)
+    with pytest.raises(tegotae.Error, match=text):
+        scene.move("a", X)
+    with pytest.raises(tegotae.Error, match=text):
+        tegotae.ScriptPen([0.0], [X])
+    with pytest.raises(tegotae.Error, match=text):
+        tegotae.plan(scene, goal=X)
+    assert (scene.pose("a") == np.eye(4)).all()
+
+
+@pytest.mark.parametrize(
+    "array, name",
+    [
+        (np.eye(4) + 1e-3j, "complex128"),
+        (np.eye(4, dtype=np.complex64), "complex64"),
+        (np.eye(4).astype(str), "str"),
+        (np.zeros((4, 4), "datetime64[s]"), "datetime64"),
+    ],
+)
+def test_what_are_no_real_numbers(array, name):
+    scene, mesh = tegotae.Scene(), tegotae.Mesh(*box(1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(TypeError, match="pose: real numbers are wanted, not %s" % name):
+            scene.add_fixed("a", mesh, array)
+        with pytest.raises(TypeError, match="poses: real"):
+            tegotae.ScriptPen([0.0], [array])
+        with pytest.raises(TypeError, match="vertices: real"):
+            tegotae.Mesh(array[:3, :3], [[0, 1, 2]])
+        with pytest.raises(TypeError, match="gravity: real"):
+            scene.gravity = array[0, :3]
+    # What can be made real numbers without a loss is taken.
+    assert scene.add_fixed("b", mesh, np.eye(4, dtype=int)) == 0
+    assert scene.add_fixed("c", mesh, np.eye(4, dtype=np.float16).tolist()) == 1
 
 
 def test_errors_say_where(tmp_path):
@@ -520,7 +559,8 @@ def test_a_rig_that_only_a_cycle_holds_is_collected():
     assert gone() is None
 
 
-def test_ctrl_c_ends_a_run():
+@pytest.mark.parametrize("call", ["rig.run(1000)", "rig.step(10**9)"])
+def test_ctrl_c_ends_a_run(call):
     code = """
 import sys, threading, time, signal, os, tegotae
 sys.path.insert(0, %r)
@@ -538,10 +578,10 @@ def interrupt():
 with rig:
     threading.Thread(target=interrupt).start()
     try:
-        rig.run(1000)
+        %s
     except KeyboardInterrupt:
         print("interrupted")
-""" % os.path.dirname(os.path.abspath(__file__))
+""" % (os.path.dirname(os.path.abspath(__file__)), call)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "interrupted", "")
 
