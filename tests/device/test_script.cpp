@@ -129,8 +129,9 @@ TEST_CASE("a bad script is refused with file, line and reason", "[device]") {
   CHECK_THAT(error_of(kHeader + "0,0,0,0,0,0,0,0\n"), Catch::Contains(":2: the quaternion is zero"));
   CHECK_THAT(error_of(kHeader + "0,0,0,0,1e200,0,0,0\n"), Catch::Contains(":2: the quaternion is too long"));
   CHECK_THAT(error_of(kHeader + row + "1e-320,1,0,0,1,0,0,0\n"), Catch::Contains(":3: the way from the key before"));
-  CHECK_THAT(error_of(kHeader + "0,1e308,0,0,1,0,0,0\n1,-1e308,0,0,1,0,0,0\n"),
-             Catch::Contains(":3: the way from the key before"));
+  CHECK_THAT(error_of(kHeader + "0,0,-10001,0,1,0,0,0\n"), Catch::Contains(":2: the position lies beyond 10 km"));
+  CHECK_THAT(error_of(kHeader + row + "2,1e308,0,0,1,0,0,0\n"), Catch::Contains(":3: the position lies beyond 10 km"));
+  CHECK_NOTHROW(StylusScript({{0, Pose{Quat::Identity(), Vec3(-1e4, 0, 1e4)}}}));
   CHECK_THROWS_WITH(StylusScript({}), Catch::Contains("no key"));
   CHECK_THROWS_WITH(StylusScript({{0, Pose()}, {0, Pose()}}), Catch::Contains("key 2"));
 }

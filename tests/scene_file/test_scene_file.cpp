@@ -279,6 +279,8 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
       // Impossible values.
       {replaced(good, "\"mm\"", "\"mile\""), "scene.toml:1: unit: "},
       {replaced(good, "[0, 0, 0.1]", "[0, 0, nan]"), "scene.toml:9: part.position: must be finite"},
+      {replaced(good, "[0, 0, 0.1]", "[0, 1e300, 0]"), "scene.toml:9: part.position: lies beyond 10 km"},
+      {replaced(good, "[0, 0, 0.1]", "[-10001, 0, 0]"), "scene.toml:9: part.position: lies beyond 10 km"},
       {replaced(good, "[0, 0, 0.1]", "[0, 0, 0]\norientation = [0, 0, 0, 0]"), "scene.toml:10: part.orientation: "},
       {replaced(good, "[0, 0, 0.1]", "[0, 0, 0]\norientation = [1, 0, 0, 0]\nrpy_deg = [0, 0, 0]"),
        "scene.toml:11: part.rpy_deg: "},
