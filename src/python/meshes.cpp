@@ -190,6 +190,7 @@ Error
         return Mesh(load(path.string(), unit_length(unit)));
       },
       nb::arg("path"), nb::arg("unit") = "mm", nb::arg("trusted") = false,
+      nb::sig("def load_mesh(path: str | os.PathLike[str], unit: str = 'mm', trusted: bool = False) -> Mesh"),
       R"(Reads STL, OBJ, PLY, OFF, glTF/GLB or 3MF as one surface.
 
 Other Python threads go on meanwhile.
@@ -257,6 +258,8 @@ void bind_meshes(nb::module_& m) {
       },
       nb::arg("path"), nb::arg("unit") = nb::none(), nb::kw_only(), nb::arg("split") = false,
       nb::arg("chord") = AssemblyOptions().chord, nb::arg("coarse_chord") = AssemblyOptions().coarse_chord,
+      nb::sig("def read_assembly(path: str | os.PathLike[str], unit: str | None = None, *, split: bool = False, chord: "
+              "float = 5e-06, coarse_chord: float = 5e-05) -> Assembly"),
       R"(Reads STEP, glTF/GLB or 3MF with its tree, or another mesh file as one part.
 
 The file is parsed in this process. Other Python threads go on meanwhile.

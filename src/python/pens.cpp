@@ -56,7 +56,7 @@ Error
        nb::sig("def __init__(self, times: numpy.typing.ArrayLike, poses: numpy.typing.ArrayLike) -> None"))
       .def_static(
           "read", [](const std::filesystem::path& path) { return ScriptPen({}, read_script(path.string())); },
-          nb::arg("path"),
+          nb::arg("path"), nb::sig("def read(path: str | os.PathLike[str]) -> ScriptPen"),
           "The script of a CSV file with the columns t,px,py,pz,qw,qx,qy,qz (s, m). Raises Error with file and line.")
       .def_prop_ro(
           "begin", [](const ScriptPen& p) { return p.script.begin(); }, "s, of the script.")

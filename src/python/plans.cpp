@@ -94,13 +94,14 @@ nb::dict plan_columns(nb::handle scene, const std::string& held, nb::handle goal
 }  // namespace
 
 void bind_plans(nb::module_& m) {
-  m.def(
-      "_plan", &plan_columns, nb::arg("scene"), nb::arg("hold"), nb::arg("goal").none(), nb::arg("clearance"),
-      nb::arg("seed"), nb::arg("iterations").none(), nb::arg("seconds").none(), nb::arg("to").none(),
-      nb::sig("def _plan(scene: str | os.PathLike | SceneFile | Scene, hold: str, goal: numpy.typing.ArrayLike | None, "
-              "clearance: float, seed: int, iterations: int | None, seconds: float | None, to: str | os.PathLike | "
-              "None) -> dict[str, typing.Any]"),
-      "The columns of tegotae.Plan.");
+  m.def("plan_columns", &plan_columns, nb::arg("scene"), nb::arg("hold"), nb::arg("goal").none(), nb::arg("clearance"),
+        nb::arg("seed"), nb::arg("iterations").none(), nb::arg("seconds").none(), nb::arg("to").none(),
+        nb::sig(
+            "def plan_columns(scene: str | os.PathLike[str] | SceneFile | Scene, hold: str, goal: "
+            "numpy.typing.ArrayLike | None, "
+            "clearance: float, seed: int, iterations: int | None, seconds: float | None, to: str | os.PathLike[str] | "
+            "None) -> dict[str, typing.Any]"),
+        "The columns of tegotae.Plan.");
 }
 
 }  // namespace tegotae::python

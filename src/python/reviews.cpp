@@ -128,10 +128,11 @@ void add_columns(nb::dict& out, const Scene& scene, const std::vector<RecordFram
 }
 
 void bind_reviews(nb::module_& m) {
-  m.def("_review", &review_columns, nb::arg("recording"), nb::arg("scene").none(), nb::arg("goal").none(),
+  m.def("review_columns", &review_columns, nb::arg("recording"), nb::arg("scene").none(), nb::arg("goal").none(),
         nb::arg("report").none(),
-        nb::sig("def _review(recording: str | os.PathLike, scene: str | os.PathLike | SceneFile | None, goal: "
-                "numpy.typing.ArrayLike | None, report: str | os.PathLike | None) -> dict[str, typing.Any]"),
+        nb::sig("def review_columns(recording: str | os.PathLike[str], scene: str | os.PathLike[str] | SceneFile | "
+                "None, goal: "
+                "numpy.typing.ArrayLike | None, report: str | os.PathLike[str] | None) -> dict[str, typing.Any]"),
         "The columns of tegotae.Review.");
 }
 

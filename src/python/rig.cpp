@@ -256,7 +256,9 @@ void bind_lifecycle(RigClass& c) {
             return rig;
           },
           nb::rv_policy::reference)
-      .def("__exit__", [](PythonRig& rig, nb::args) { rig.stop(); })
+      .def(
+          "__exit__", [](PythonRig& rig, nb::args) { rig.stop(); },
+          nb::sig("def __exit__(self, *args: object) -> None"))
       .def("step", &PythonRig::step, nb::arg("count") = 1,
            "`count` ticks: each reads the pen, moves the part as near to it as the others allow, and publishes the "
            "result.\n"

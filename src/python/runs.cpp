@@ -14,6 +14,7 @@
 #include "python/running.hpp"
 #include "python/scenes.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/core/version.hpp"
 #include "tegotae/record/recording.hpp"
 #include "tegotae/session/session.hpp"
 
@@ -93,8 +94,7 @@ nb::dict run(nb::handle scene, const ScriptPen* pen, const std::optional<std::fi
   how.seconds = seconds;
   how.check_all = check_all;
   how.record = record ? record->string() : "";
-  how.program =
-      "tegotae for Python " + std::string(nb::cast<std::string>(nb::module_::import_("tegotae").attr("__version__")));
+  how.program = "tegotae for Python " TEGOTAE_VERSION_STRING;
   how.stop = &stop;
   how.stop_check = &stop;
   RunSummary summary;
@@ -213,15 +213,17 @@ nb::dict read(const std::filesystem::path& path) {
 }  // namespace
 
 void bind_runs(nb::module_& m) {
-  m.def("_read_recording", &read, nb::arg("path"),
-        nb::sig("def _read_recording(path: str | os.PathLike) -> dict[str, typing.Any]"),
+  m.def("recording_columns", &read, nb::arg("path"),
+        nb::sig("def recording_columns(path: str | os.PathLike[str]) -> dict[str, typing.Any]"),
         "The columns of tegotae.Recording.");
-  m.def("run", &run, nb::arg("scene"), nb::arg("pen") = nb::none(), nb::kw_only(), nb::arg("record") = nb::none(),
-        nb::arg("real_time") = false, nb::arg("seconds") = 0.0, nb::arg("check_all") = false,
-        nb::sig("def run(scene: str | os.PathLike | SceneFile | Scene, pen: ScriptPen | None = None, *, record: str | "
-                "os.PathLike | None = None, real_time: bool = False, seconds: float = 0.0, check_all: bool = False) -> "
-                "dict[str, typing.Any]"),
-        R"(Runs a scene with a simulated pen to the end of its script, and asks FCL about the poses.
+  m.def(
+      "run", &run, nb::arg("scene"), nb::arg("pen") = nb::none(), nb::kw_only(), nb::arg("record") = nb::none(),
+      nb::arg("real_time") = false, nb::arg("seconds") = 0.0, nb::arg("check_all") = false,
+      nb::sig(
+          "def run(scene: str | os.PathLike[str] | SceneFile | Scene, pen: ScriptPen | None = None, *, record: str | "
+          "os.PathLike[str] | None = None, real_time: bool = False, seconds: float = 0.0, check_all: bool = False) -> "
+          "dict[str, typing.Any]"),
+      R"(Runs a scene with a simulated pen to the end of its script, and asks FCL about the poses.
 
 It never waits for Python, and other Python threads go on; Ctrl-C ends it.
 

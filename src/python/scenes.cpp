@@ -210,7 +210,7 @@ time.)");
       "load_scene",
       [](nb::handle path, const std::string& hold, bool trusted) { return read_scene_file(path, hold, trusted); },
       nb::arg("path"), nb::kw_only(), nb::arg("hold") = "", nb::arg("trusted") = false,
-      nb::sig("def load_scene(path: str | os.PathLike, *, hold: str = '', trusted: bool = False) -> SceneFile"),
+      nb::sig("def load_scene(path: str | os.PathLike[str], *, hold: str = '', trusted: bool = False) -> SceneFile"),
       R"(Reads a scene file (TOML) and the meshes that it names.
 
 Other Python threads go on meanwhile.

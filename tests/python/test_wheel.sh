@@ -17,7 +17,7 @@ python3 -m venv --clear "$build/venv" 2>"$work/log" || skip "no virtual environm
 PATH=$build/venv/bin:$PATH
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 # What the package needs to build and to run, what the tests need, and what the document shows.
-pip install -q scikit-build-core nanobind numpy pytest matplotlib >"$work/log" 2>&1 ||
+pip install -q scikit-build-core nanobind numpy pytest mypy matplotlib >"$work/log" 2>&1 ||
   skip "PyPI cannot be reached: $(tail -n 1 "$work/log")"
 
 # The same command lines as in the main build, so that ccache has the objects. A tree that is kept builds what changed.
@@ -30,4 +30,7 @@ pip install -q --no-deps "$work"/wheels/*.whl
 
 cd "$work"
 TEGOTAE_MODELS=$root/models python -m pytest -q -p no:cacheprovider "$here/test_package.py"
+# The stubs have all that a program uses, and nothing that mypy cannot tell.
+python -m mypy --strict --cache-dir="$work/mypy" -p tegotae
+python -m mypy --strict --cache-dir="$work/mypy" "$here/typed_program.py"
 python "$here/run_document.py" "$root/docs/python.md" "$root/models" ${step:+"$step"}

@@ -20,13 +20,13 @@ from ._tegotae import (
     Scene,
     SceneFile,
     ScriptPen,
-    __version__,
     contact_dtype,
     load_mesh,
     load_scene,
     read_assembly,
     run,
 )
+from ._tegotae import version as __version__
 
 __all__ = [
     "Assembly",

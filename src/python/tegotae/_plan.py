@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._tegotae import Scene, SceneFile, _plan
+from ._tegotae import Scene, SceneFile, plan_columns
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def plan(
     Error
         The scene or the goal cannot be used, or this build has no planner.
     """
-    found = _plan(scene, hold or "", goal, clearance, seed, iterations, seconds, to)
+    found = plan_columns(scene, hold or "", goal, clearance, seed, iterations, seconds, to)
     summary = json.loads(found["summary"])
     return Plan(
         found=summary["found"],

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ._tegotae import _read_recording
+from ._tegotae import recording_columns
 
 
 @dataclass(frozen=True)
@@ -70,4 +70,4 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
 
     Other Python threads go on meanwhile. Raises Error with file and line for anything else that is wrong.
     """
-    return Recording(**_read_recording(path))
+    return Recording(**recording_columns(path))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._tegotae import SceneFile, _review
+from ._tegotae import SceneFile, review_columns
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def review(
     Error
         The recording or its scene cannot be used.
     """
-    found = _review(recording, scene, goal, report)
+    found = review_columns(recording, scene, goal, report)
     said = json.loads(found["said"])
     return Review(
         goes=said["outcome"] == "goes",
