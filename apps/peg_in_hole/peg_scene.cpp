@@ -82,9 +82,7 @@ std::string ratio_text(double ratio) {
 std::string write_peg_scene(double ratio, const std::string& folder) {
   if (!(ratio >= kLoosestRatio && ratio <= kTightestRatio))
     throw Error("--ratio: must be between " + ratio_text(kLoosestRatio) + " and " + ratio_text(kTightestRatio));
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(folder + ": cannot be made: " + failed.message());
+  make_folder(folder);
 
   shapes::Block block;
   block.segments = facets(ratio);
