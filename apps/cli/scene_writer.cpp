@@ -107,9 +107,7 @@ void write_scene(const Assembly& assembly, const std::string& source, const std:
                  const std::string& hold,
                  const std::function<void(const char* what, std::size_t done, std::size_t total)>& progress) {
   const fs::path meshes = fs::path(folder) / "meshes";
-  std::error_code status;
-  fs::create_directories(meshes, status);
-  if (status) throw Error(meshes.string() + ": cannot be made: " + status.message());
+  make_folder(meshes.string());
   const double unit = unit_length(assembly.unit);
   std::set<std::string> used;
   std::vector<std::string> files;
@@ -124,7 +122,7 @@ void write_scene(const Assembly& assembly, const std::string& source, const std:
   if (assembly.up != UpAxis::z) text += "up = " + quoted(to_string(assembly.up)) + "\n";
   for (const AssemblyPart& part : assembly.parts)
     text += part_text(part, files[part.shape], !hold.empty() && part.name == hold);
-  replace_file((fs::path(folder) / "scene.toml").string(), text);
+  write_file((fs::path(folder) / "scene.toml").string(), text);
 }
 
 }  // namespace tegotae::apps

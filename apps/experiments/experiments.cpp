@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/number_text.hpp"
+#include "core/output_file.hpp"
 #include "experiments/experiment_list.hpp"
 #include "experiments/trial.hpp"
 #include "shared/run_options.hpp"
@@ -56,6 +57,8 @@ int run(const Options& options) {
   bool all = true;
   for (const Experiment& e : kExperiments) {
     if (options.name != "all" && options.name != e.name) continue;
+    const std::string to = options.out + "/" + e.name;
+    make_folder(to);  // before the work whose results it is for
     const std::int64_t start = monotonic_ns();
     Outcome outcome;
     unexplained_lag_ticks() = 0;
@@ -65,7 +68,7 @@ int run(const Options& options) {
     }
     const auto unexplained = static_cast<double>(unexplained_lag_ticks());
     outcome.claims.push_back(at_most("held back for long without a contact", unexplained, 0, "ticks"));
-    write_outcome(outcome, e.name, command(e.name, options), options.out + "/" + e.name);
+    write_outcome(outcome, e.name, command(e.name, options), to);
     all = tell(e.name, outcome, 1e-9 * static_cast<double>(monotonic_ns() - start)) && all;
   }
   std::printf("reports: %s/*/report.html\n", options.out.c_str());

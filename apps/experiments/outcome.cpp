@@ -117,9 +117,7 @@ void thin(Series& s, std::size_t most) {
 void write_outcome(const Outcome& outcome, const std::string& name, const std::string& subtitle,
                    const std::string& folder) {
   const std::filesystem::path to = folder;
-  std::error_code failed;
-  std::filesystem::create_directories(to, failed);
-  if (failed) throw Error(folder + ": cannot be made: " + failed.message());
+  make_folder(folder);
   for (const Csv& csv : outcome.csv) write_file((to / (csv.name + ".csv")).string(), csv_text(csv));
   const Json claims = to_json(outcome.claims);
   write_file((to / "summary.json").string(), Json{{"experiment", name}, {"claims", claims}}.dump(1) + "\n");

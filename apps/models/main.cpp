@@ -18,7 +18,7 @@ namespace {
 using namespace tegotae;
 
 void write_models(const std::string& folder, const std::vector<double>& ratios, bool all, int segments, int rings) {
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   const auto path = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
 
   shapes::Block block;
@@ -49,7 +49,7 @@ std::string number(double value) {
 
 /// Scenes of two parts, with their meshes.
 void write_puzzles(const std::string& folder) {
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   for (const shapes::Puzzle& p : shapes::puzzles()) {
     const std::string path = (std::filesystem::path(folder) / p.name).string();
     write_obj(p.held, path + "_held.obj");

@@ -83,9 +83,7 @@ std::string write_peg_scene(double ratio, const std::string& folder) {
   if (!(ratio >= kLoosestRatio && ratio <= kTightestRatio))
     throw Error("--ratio: " + ratio_text(ratio) + " is no number from " + ratio_text(kLoosestRatio) + " to " +
                 ratio_text(kTightestRatio));
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(folder + ": cannot be made: " + failed.message());
+  make_folder(folder);
 
   shapes::Block block;
   block.segments = facets(ratio);

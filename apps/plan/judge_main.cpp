@@ -93,7 +93,7 @@ std::string command(const Options& o) {
 
 void write_table(const Options& o, const std::string& rows) {
   const Page page = read_page(o.markdown);
-  replace_file(o.markdown, page.before + command(o) + kHead + rows + page.after);
+  write_file(o.markdown, page.before + command(o) + kHead + rows + page.after);
 }
 
 JudgedFigures figures(const Options& o, const JudgedScene& scene, JudgeRows& kept) {

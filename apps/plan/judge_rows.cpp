@@ -91,7 +91,7 @@ std::optional<JudgedFigures> JudgeRows::find(const std::string& scene, const std
 void JudgeRows::keep(const std::string& scene, const std::string& from, const JudgedFigures& figures) {
   if (path_.empty()) return;
   rows_[scene] = {{"from", from}, {"ours", to_json(figures.ours)}, {"baseline", to_json(figures.baseline)}};
-  replace_file(path_, rows_.dump(1) + "\n");
+  write_file(path_, rows_.dump(1) + "\n");
 }
 
 }  // namespace tegotae::plan

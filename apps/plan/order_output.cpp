@@ -42,14 +42,16 @@ std::string node(const std::string& text) {
   return out + '"';
 }
 
+bool has(const Parts& parts, std::size_t part) {
+  return std::find(parts.begin(), parts.end(), part) != parts.end();
+}
+
 /// The parts that stopped a step's parts when they were last tried in vain.
 Parts waited_for(const Disassembly& order, const Removal& step) {
   Parts out;
   for (const Blocked& b : order.blocked)
     for (const std::size_t by : b.by)
-      if (std::find(step.parts.begin(), step.parts.end(), b.part) != step.parts.end() &&
-          std::find(out.begin(), out.end(), by) == out.end())
-        out.push_back(by);
+      if (has(step.parts, b.part) && !has(out, by)) out.push_back(by);
   return out;
 }
 
@@ -227,9 +229,14 @@ std::string order_text(const Scene& scene, const Disassembly& order) {
   }
   text += left_text(scene, order) + (order.interrupted ? " (interrupted)" : "") + "\n";
   for (const Blocked& b : order.blocked) {
-    if (std::find(order.left.begin(), order.left.end(), b.part) == order.left.end()) continue;
-    text += "  " + scene.parts[b.part].name +
-            (b.error.empty() ? " was stopped by " + names(scene, b.by, ", ") : " was not tried: " + b.error) + "\n";
+    if (!has(order.left, b.part)) continue;
+    // What is out by now stops nothing any more.
+    Parts by;
+    std::copy_if(b.by.begin(), b.by.end(), std::back_inserter(by), [&](std::size_t p) { return has(order.left, p); });
+    if (!b.error.empty())
+      text += "  " + scene.parts[b.part].name + " was not tried: " + b.error + "\n";
+    else if (!by.empty())
+      text += "  " + scene.parts[b.part].name + " was stopped by " + names(scene, by, ", ") + "\n";
   }
   return text;
 }

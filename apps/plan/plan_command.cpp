@@ -1,10 +1,10 @@
 #include "plan/plan_command.hpp"
 
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <limits>
 
+#include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "plan/disassembly.hpp"
 #include "plan/order_output.hpp"
@@ -54,7 +54,7 @@ int run_all(const PlanCommand& o) {
   const SceneFile file = apps::load_with_progress(o.scene, how);
   apps::print_notes(file.scene);
   refuse_to_replace(order_files(o.folder), file.files);
-  std::filesystem::create_directories(o.folder);
+  make_folder(o.folder);
   DisassemblyOptions options;
   options.clearance = o.clearance;
   options.seed = o.seed.value_or(1);
@@ -110,7 +110,7 @@ int run_plan(const PlanCommand& o) {
   r.to_goal = !o.goal.empty();
   apps::print_notes(r.file.scene);
   refuse_to_replace(plan_files(o.folder), r.file.files);
-  std::filesystem::create_directories(o.folder);
+  make_folder(o.folder);
   {
     apps::StatusLine status;
     status.say("building hierarchies");

@@ -65,8 +65,10 @@ std::string not_found_text(const PlanReport& r) {
   const double all = static_cast<double>(stops(r.plan));
   for (std::size_t i = 0; i < std::min(kMaxListed, r.plan.in_the_way.size()); ++i) {
     const PartInTheWay& p = r.plan.in_the_way[i];
-    text += format("  in the way: \"%s\" stopped %.0f %% of the motions that were stopped\n",
-                   r.file.scene.parts[p.part].name.c_str(), 100 * static_cast<double>(p.stops) / all);
+    const double percent = 100 * static_cast<double>(p.stops) / all;
+    text +=
+        format("  in the way: \"%s\" stopped %s %% of the motions that were stopped\n",
+               r.file.scene.parts[p.part].name.c_str(), percent < 1 ? "less than 1" : format("%.0f", percent).c_str());
   }
   return text;
 }

@@ -14,9 +14,7 @@ namespace tegotae::study {
 
 std::string write_case_scene(const SceneFile& file, const Case& c, const std::string& folder) {
   const std::filesystem::path to = folder;
-  std::error_code failed;
-  std::filesystem::create_directories(to, failed);
-  if (failed) throw Error(folder + ": cannot be made: " + failed.message());
+  make_folder(folder);
   const std::string path = (to / "scene.toml").string();
   refuse_to_replace(path, file.files);
   toml::table top = parse_toml(scene_text(file, file.scene, folder), path);

@@ -90,19 +90,10 @@ void remove_left(const std::string& path) {
   }
 }
 
-/// As replace_file(), for a file that processes of several machines may replace.
+/// For a file that processes of several machines may replace; what a killed one leaves is found by remove_left().
 void replace_shared(const std::string& path, const std::string& text) {
-  const std::string partial =
-      (fs::path(path).parent_path() / (partial_start(path) + std::to_string(::getpid()))).string() + kEnding;
-  std::error_code failed;
-  try {
-    write_file(partial, text);
-  } catch (const Error&) {
-    fs::remove(partial, failed);
-    throw;
-  }
-  fs::rename(partial, path, failed);
-  if (failed) throw Error(path + ": cannot be written: " + failed.message());
+  const std::string partial = partial_start(path) + std::to_string(::getpid()) + kEnding;
+  write_file_by((fs::path(path).parent_path() / partial).string(), path, text);
 }
 
 }  // namespace
@@ -127,9 +118,7 @@ std::string table_text(const TableLayout& layout, const std::map<int, Result>& r
 
 CaseTable::CaseTable(std::string path, TableLayout layout) : path_(std::move(path)), layout_(std::move(layout)) {
   const fs::path folder = fs::path(path_).parent_path();
-  std::error_code failed;
-  fs::create_directories(folder.empty() ? "." : folder, failed);
-  if (failed) throw Error(folder.string() + ": cannot be made: " + failed.message());
+  make_folder(folder.empty() ? "." : folder.string());
   remove_left(path_);
   if (fs::exists(path_)) read();
 }

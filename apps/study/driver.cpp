@@ -135,8 +135,7 @@ bool drive(const std::string& driver, const DriverJob& job) {
   const fs::path folder = fs::path(job.out) / "driver";
   std::error_code failed;
   fs::remove_all(folder, failed);  // of an earlier call; what is done is in the shards
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(folder.string() + ": cannot be made: " + failed.message());
+  make_folder(folder.string());
   const std::string tasks = (folder / "tasks").string(), log = (folder / "log").string();
   write_file(tasks, task_lines(job));
   const int processors = job.processors > 0 ? job.processors : static_cast<int>(std::thread::hardware_concurrency());

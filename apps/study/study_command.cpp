@@ -112,7 +112,7 @@ int merge(const Opened& s, int replays) {
   refuse_to_replace(outputs, s.tasks->inputs());
   std::vector<Result> results;
   for (const auto& [number, r] : rows) results.push_back(r);
-  replace_file(outputs.front(), table_text(s.layout, rows));
+  write_file(outputs.front(), table_text(s.layout, rows));
   const std::atomic<bool>& interrupted = apps::catch_interrupts();
   const std::vector<int> made = make_replays(s, results, replays, interrupted);
   write_report(s.study, *s.tasks, results, made, s.out);

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "core/thread_signals.hpp"
 #include "tegotae/core/clock.hpp"
@@ -29,9 +28,9 @@ std::string cause(int error) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path)
+OutputFile::OutputFile(const std::string& path, const std::string& named)
     // Without O_NONBLOCK opening a pipe would wait for its reader.
-    : path_(path),
+    : path_(named.empty() ? path : named),
       fd_(above_standard(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666))) {
   if (fd_.get() < 0) error_ = errno;
   check();
@@ -69,26 +68,6 @@ void OutputFile::check() const {
 void OutputFile::close() {
   if (fd_.get() >= 0 && ::close(fd_.release()) != 0) fail_with(errno);
   check();
-}
-
-void write_file(const std::string& path, std::string_view bytes) {
-  OutputFile file(path);
-  file.hurry();
-  file.write(bytes);
-  file.close();
-}
-
-void replace_file(const std::string& path, std::string_view bytes) {
-  const std::string partial = path + ".partial";
-  std::error_code failed;
-  try {
-    write_file(partial, bytes);
-  } catch (const Error&) {
-    std::filesystem::remove(partial, failed);
-    throw;
-  }
-  std::filesystem::rename(partial, path, failed);
-  if (failed) throw Error(path + ": cannot be written: " + failed.message());
 }
 
 }  // namespace tegotae

@@ -12,8 +12,9 @@ namespace tegotae {
 /// ever: a pipe without a reader is refused, one whose reader does not take what is written within two seconds fails.
 class OutputFile {
  public:
-  /// Creates or replaces the file. Throws Error naming the path and the cause.
-  explicit OutputFile(const std::string& path);
+  /// Creates the file, or empties the one that is there. Throws Error naming the path, or what it is `named`, and the
+  /// cause.
+  explicit OutputFile(const std::string& path, const std::string& named = "");
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
@@ -41,10 +42,17 @@ class OutputFile {
   bool hurry_ = false;
 };
 
-/// Writes a whole file. Throws Error naming the path and the cause.
+/// Writes a whole file, by way of one beside it: what stood there is whole until the new one is, and stays when that
+/// fails. Symbolic links stay, and lead to the new one, which has the rights of the old one; a hard link keeps the old
+/// one. Pipes, devices and descriptors of this process (/dev/stdout) are written into. Throws Error naming the path and
+/// the cause.
 void write_file(const std::string& path, std::string_view bytes);
 
-/// The same, by way of a file beside it: what stood there is whole until the new one is.
-void replace_file(const std::string& path, std::string_view bytes);
+/// The same by way of the file `partial`, whatever `path` is. Several processes may do so if each has a name of its
+/// own.
+void write_file_by(const std::string& partial, const std::string& path, std::string_view bytes);
+
+/// Makes the folder and those above it, where they are not there. Throws Error naming it and the cause.
+void make_folder(const std::string& path);
 
 }  // namespace tegotae

@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 
+#include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "plan/plan_output.hpp"
 #include "python/arrays.hpp"
@@ -61,7 +62,7 @@ void make(plan::PlanReport& report, PlanOptions options, std::optional<double> s
   report.plan = plan_path(report.file.scene, options);
   measure(report, {}, ending.watch());
   if (folder.empty()) return;
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   write_plan(report, folder, ending.watch());
 }
 

@@ -135,6 +135,19 @@ TEST_CASE("tries do not replace the scene's files, and two outputs are two files
   CHECK(fs::exists(r.folder / "x"));
 }
 
+TEST_CASE("a folder that cannot be made is named with the cause", "[outputs]") {
+  const Recorded r;
+  r.folder.write("file", "");
+  for (const std::string command :
+       {"tegotae plan scene.toml --to file", "tegotae plan scene.toml --all --to file",
+        "tegotae try scene.toml --tries 1 --seconds 1 --out file", "tegotae import tet.obj --unit mm -o file",
+        "tegotae experiment friction --quick --out file", "tegotae-models --out file",
+        "tegotae-models --puzzles --out file", "peg_in_hole --fast --scene-out file"}) {
+    CAPTURE(command);
+    check_named(shell(r.folder, "$B/" + command), {"file", ": cannot be made: Not a directory"});
+  }
+}
+
 TEST_CASE("standard output that cannot be written is told by every program", "[outputs]") {
   const TempFolder folder;
   write_small_scene(folder);
@@ -201,6 +214,35 @@ TEST_CASE("a disk that is full while a run goes on", "[outputs]") {
   }
   check_named(o, {"No space left", "it has the first "});
   CHECK(nlohmann::json::parse(o.out).at("ticks") == 1000);
+}
+
+TEST_CASE("a report that has no room leaves the one that stood there", "[outputs]") {
+  const Recorded r;
+  struct Case {
+    std::string file, command;
+  };
+  const Case cases[] = {
+      {"page.html", "$0/tegotae review r.csv --out disk/page.html"},
+      {"path.csv", "$0/tegotae review r.csv --out /dev/null --csv disk/path.csv"},
+      {"page.html", "$0/tegotae replay r.csv scene.toml --html disk/page.html"},
+      {"order.csv", "$0/tegotae plan scene.toml --all --iterations 1 --to disk"},
+      {"path.csv", "$0/tegotae plan scene.toml --iterations 1 --to disk"},
+  };
+  fs::create_directory(r.folder / "disk");
+  for (const Case& c : cases) {
+    CAPTURE(c.command);
+    const Output o =
+        shell(r.folder, "unshare -m bash -c 'mount -t tmpfs -o size=64k t disk || exit 77; echo old >disk/" + c.file +
+                            "; head -c 60K /dev/zero >disk/fill; while echo >>disk/rest; do :; done 2>/dev/null; " +
+                            c.command + " >/dev/null; code=$?; cat disk/" + c.file +
+                            "; ls -A disk | tr \"\\n\" \" \"; exit $code' $B");
+    if (o.code == 77 || o.err.find("unshare") != std::string::npos) {
+      std::cout << "SKIPPED: no mount namespace here\n";
+      return;
+    }
+    check_named(o, {"disk/" + c.file, "No space left"});
+    CHECK(o.out == "old\nfill " + (c.file < "rest" ? c.file + " rest " : "rest " + c.file + " "));
+  }
 }
 
 TEST_CASE("/dev/shm without room is an error and no signal", "[outputs]") {

@@ -1,10 +1,7 @@
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "apps/run_program.hpp"
 #include "catch.hpp"
-#include "core/output_file.hpp"
 #include "core/same_file.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -29,16 +26,4 @@ TEST_CASE("a file is the same under every name", "[core]") {
   // Files that are not there yet are where they would be.
   CHECK_THROWS_WITH(refuse_to_replace({folder / "n", folder / "here/n"}, {}), Contains("writes it twice"));
   CHECK_NOTHROW(refuse_to_replace({folder / "n", folder / "m", "", ""}, {folder / "a"}));
-}
-
-TEST_CASE("a file is written whole or said not to be", "[core]") {
-  const test::TempFolder folder;
-  write_file(folder / "a", "one");
-  CHECK(test::read_text(folder / "a") == "one");
-  replace_file(folder / "a", "two");
-  CHECK(test::read_text(folder / "a") == "two");
-  CHECK_FALSE(fs::exists(folder / "a.partial"));
-  CHECK_THROWS_WITH(write_file("/dev/full", "one"), Contains("/dev/full: cannot be written: No space left"));
-  CHECK_THROWS_WITH(write_file(folder / "no/a", "one"), Contains("No such file"));
-  CHECK_THROWS_WITH(replace_file(folder / "no/a", "one"), Contains("No such file"));
 }

@@ -185,6 +185,11 @@ TEST_CASE("an assembly is taken apart") {
       run_program("tegotae", "plan " + scene("locked-in") + " --all --iterations 30 --to " + (folder / "in"));
   CHECK(stays.code == 1);
   CHECK_THAT(stays.out, Contains("Did not come apart: key, lock") && Contains("key was stopped by lock"));
+  // The cross is tried first, and in vain; once the cage is off it, nothing is in its way.
+  const Output burr = run_program("tegotae", "plan " + scene("burr") + " --all --to " + (folder / "burr"));
+  CHECK(burr.code == 0);
+  CHECK_THAT(burr.out, Contains("1. cage: ") && Contains("\nLeft: cross\n") && !Contains("stopped by"));
+  CHECK_THAT(read_text(folder / "burr" + "/order.dot"), Contains("\"cross\" -> \"cage\""));
   // The graph: two parts, and who stops whom.
   const std::string page = read_text(folder / "in" + "/order.html");
   const json report = json::parse(page_data(page));

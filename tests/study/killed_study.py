@@ -5,7 +5,7 @@ killed_study.py TEGOTAE shards|hosts|hypershell|clients --cases N --kills K [--s
 shards: two workers of the shard contract, each begun again when it is killed; two workers may even have the same shard.
 hosts: GNU parallel over three hosts, which are network namespaces of this machine where it allows them. A host dies with
 all that it runs. hypershell: `tegotae study run`, which is interrupted once and whose workers are killed. clients:
-HyperShell's clients, as on four hosts, are killed in the middle of a task."""
+HyperShell's clients, as on four hosts, are killed in the middle of a task, and passes made until nothing is missing."""
 import argparse
 import csv
 import os
@@ -21,7 +21,6 @@ import time
 import drivers
 
 KILL = signal.SIGKILL
-PATIENCE = 1500  # s
 
 # Stands in for ssh: `ssh HOST COMMAND`. Its commands run in a session that the test can kill, as when the host dies,
 # and have nothing of this machine's network where that can be had.
@@ -77,6 +76,14 @@ def children(of):
         below |= more
 
 
+def session(pid):
+    """Its number; 0 for a process that has ended."""
+    try:
+        return os.getsid(pid)
+    except ProcessLookupError:
+        return 0
+
+
 def kill(pids):
     """Whether one of them was there."""
     hit = False
@@ -116,14 +123,14 @@ def run_shards(o, folder, study, chance):
     return kills
 
 
-def watch(process, o, victims, chance, what):
-    """Kills one of victims() now and then until the process has ended."""
-    kills, end = 0, time.time() + PATIENCE
+def watch(process, o, most, victims, chance, what):
+    """Kills one of victims() now and then, at most so many, until the process has ended."""
+    kills, end = 0, time.time() + o.patience
     while process.poll() is None:
         if time.time() > end:
             kill([process.pid])
             sys.exit(what + " does not end")
-        if kills == o.kills:
+        if kills == most:
             time.sleep(0.05)
             continue
         time.sleep(o.wait * 2 * chance.random())
@@ -141,12 +148,12 @@ def watch(process, o, victims, chance, what):
 def interrupt(o, command):
     """Ctrl-C while shards are worked on: nothing goes on, and the exit code is 1."""
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=drivers.environment())
-    found, end = [], time.time() + PATIENCE
+    found, end = [], time.time() + o.patience
     while not found and process.poll() is None and time.time() < end:
         time.sleep(0.05)
         found = [pid for pid, args in children(process.pid) if "--shard" in args]
     process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=PATIENCE)[0]
+    said = process.communicate(timeout=o.patience)[0]
     if process.returncode != 1 or "interrupted; the same command continues" not in said:
         sys.exit("Ctrl-C at %d workers: ended with %d: %s" % (len(found), process.returncode, said))
     left = [args for pid, _, args in processes() if pid in found]  # a zombie has no arguments
@@ -161,26 +168,23 @@ def run_hypershell(o, folder, study, chance):
     interrupt(o, command)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=drivers.environment(), start_new_session=True)
     workers = lambda: [[pid] for pid, args in children(process.pid) if args.startswith(o.tegotae) and "--shard" in args]
-    return watch(process, o, workers, chance, "tegotae study run")
+    return watch(process, o, o.kills, workers, chance, "tegotae study run")
 
 
-def run_clients(o, folder, study, chance):
-    """The last of four clients lives on."""
-    if not drivers.program("hs"):
-        drivers.skip("no HyperShell (pip install hypershell)")
-    with open(folder + "/tasks", "w", encoding="utf-8") as file:
-        file.writelines("%s study %s --out %s/out --jobs 1 --shard %d/24\n" % (o.tegotae, study, folder, i) for i in range(1, 25))
+def serve(o, folder, tasks, kills, chance):
+    """One pass of HyperShell's server over the tasks, as docs/study.md has it, with a client on each of four hosts: how
+    many of them were killed, of at most so many and never the last one."""
     with socket.socket() as free:
         free.bind(("localhost", 0))
         port = free.getsockname()[1]
-    env = dict(drivers.environment(), HYPERSHELL_DATABASE_FILE=folder + "/tasks.db", HYPERSHELL_SERVER_EVICT="20",
-               HYPERSHELL_CLIENT_HEARTRATE="1")
     # `hs cluster` waits ten minutes for a client that says nothing, a server by itself as long as it is told.
+    env = dict(drivers.environment(), HYPERSHELL_SERVER_QUEUESIZE="4", HYPERSHELL_SERVER_EVICT="20", HYPERSHELL_CLIENT_HEARTRATE="1")
     common = ["-p", str(port), "-k", "the-key-of-this-test"]
     hs = drivers.program("hs")
-    process = subprocess.Popen([hs, "server", folder + "/tasks", "-r", "9", "-w", "1", "-Q", "1"] + common, env=env,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    clients = [subprocess.Popen([hs, "client", "-d", "5"] + common, env=env, stdout=subprocess.DEVNULL) for _ in range(4)]
+    process = subprocess.Popen([hs, "server", tasks, "--no-db"] + common, env=env, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    clients = [subprocess.Popen([hs, "client", "-d", "5", "-T", "30"] + common, env=env, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL) for _ in range(4)]
 
     def at_work():
         """Each client that works on a shard now, with what it runs, where it is not the last one."""
@@ -190,9 +194,27 @@ def run_clients(o, folder, study, chance):
         return busy if len(alive) > 1 else []
 
     try:
-        return watch(process, o, at_work, chance, "hs server")
+        return watch(process, o, kills, at_work, chance, "hs server")
     finally:
         kill([client.pid for client in clients if client.poll() is None])
+        kill([pid for pid, _, _ in processes() if session(pid) == process.pid])
+
+
+def run_clients(o, folder, study, chance):
+    """What a dead client took with it is of the next pass: a pass without a kill leaves nothing."""
+    if not drivers.program("hs"):
+        drivers.skip("no HyperShell (pip install hypershell)")
+    tasks = folder + "/tasks"
+    with open(tasks, "w", encoding="utf-8") as file:
+        file.writelines("%s study %s --out %s/out --jobs 1 --shard %d/24\n" % (o.tegotae, study, folder, i) for i in range(1, 25))
+    merge, kills, passes = [o.tegotae, "study", "merge", study, "--out", folder + "/out", "--replays", "0"], 0, 0
+    while subprocess.run(merge, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
+        begin, killed = time.time(), serve(o, folder, tasks, o.kills - kills, chance)
+        kills, passes = kills + killed, passes + 1
+        print("pass %d: %d clients killed, %.0f s" % (passes, killed, time.time() - begin), flush=True)
+        if killed == 0 and subprocess.run(merge, stdout=subprocess.DEVNULL).returncode != 0:
+            sys.exit("a pass without a kill left cases")
+    return kills
 
 
 def isolated():
@@ -226,17 +248,14 @@ def run_hosts(o, folder, study, chance):
                 numbers |= {int(line) for line in file.read().split()}
         sessions, at_work = {}, set()
         for pid, _, command in processes():
-            try:
-                session = os.getsid(pid)
-            except ProcessLookupError:
-                continue
-            if session in numbers:
-                sessions.setdefault(session, []).append(pid)
+            number = session(pid)
+            if number in numbers:
+                sessions.setdefault(number, []).append(pid)
                 if command.startswith(o.tegotae):
-                    at_work.add(session)
+                    at_work.add(number)
         return [sessions[session] for session in sorted(at_work)]
 
-    return watch(process, o, alive, chance, "parallel")
+    return watch(process, o, o.kills, alive, chance, "parallel")
 
 
 def main():
@@ -247,6 +266,7 @@ def main():
     parse.add_argument("--kills", type=int, required=True)
     parse.add_argument("--seed", type=int, default=1)
     o = parse.parse_args()
+    o.patience = 600 + o.cases  # s; less than that of the tests, so that what was started is ended
     chance = random.Random(o.seed)
     ways = {"shards": run_shards, "hosts": run_hosts, "hypershell": run_hypershell, "clients": run_clients}
     with tempfile.TemporaryDirectory(prefix="tegotae_study_") as folder:
