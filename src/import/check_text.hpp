@@ -97,6 +97,22 @@ bool take_number(std::string_view& text, T& value) {
   return error == std::errc();
 }
 
+/// Takes the next word of `text`'s first line from it, a coordinate; false when it is none. Some programs write the
+/// decimal comma of their country, which cannot be anything else there.
+inline bool take_coordinate(std::string_view& text, double& value) {
+  std::string_view rest = text;
+  if (take_number(rest, value)) {
+    text = rest;
+    return true;
+  }
+  text.remove_prefix(first_not_of(text, " \t\r"));
+  std::string word(text.substr(0, first_of(text, kBlank)));
+  text.remove_prefix(word.size());
+  std::replace(word.begin(), word.end(), ',', '.');
+  std::string_view number = word;
+  return take_number(number, value);
+}
+
 /// The number `word` with the value `value` as assimp reads it: with a digit in front, with no more digits before the
 /// point than its integers hold, and with none behind that it drops although an exponent makes them count.
 inline std::string plain_number(std::string_view word, double value) {

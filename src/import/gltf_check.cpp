@@ -11,6 +11,7 @@
 #include "import/check_text.hpp"
 #include "import/file_check.hpp"
 #include "import/gltf_buffers.hpp"
+#include "import/gltf_shape.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -379,6 +380,7 @@ CheckedGltf check_gltf(const std::string& path, std::string_view bytes) {
       throw Error(path + ": it requires a reader of glTF " + least + "; 2.0 is read");
     const GltfCheck check(path, top, out.chunk.size());
     out.notes = check.check_extensions();
+    keep_shape(top, out.notes);
     check.run();
     out.json = top.dump();
   } catch (const json::exception& e) {

@@ -41,8 +41,10 @@
 
 #include "import/load_files.hpp"
 #include "import/occt_entities.hpp"
+#include "import/occt_frames.hpp"
 #include "import/occt_places.hpp"
 #include "import/occt_reach.hpp"
+#include "import/occt_units.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -154,7 +156,13 @@ bool leave_out_unknown(const Handle(StepData_StepModel) & model, const Entity& e
                                  const Entity& entity) {
   const std::vector<Entity> unknown = unknown_in(model, entity);
   if (is_constructive(entity)) throw Error(path + ": " + named(model, entity) + ", which is not read");
-  if (!unknown.empty()) throw Error(path + ": " + named(model, unknown.front()) + ", which is not read");
+  if (!unknown.empty()) {
+    const std::string what = named(model, unknown.front());
+    // Of the contexts that are known without units only those of one kind are read.
+    const bool unitless = has(what, "REPRESENTATION_CONTEXT") && !has(what, "GLOBAL_UNIT_ASSIGNED_CONTEXT");
+    throw Error(path + ": " + what +
+                (unitless ? ", which states no unit of length: export the file with its unit" : ", which is not read"));
+  }
   throw Error(path + ": damaged: OpenCASCADE finds impossible entities: wrong or missing references (#" +
               std::to_string(model->IdentLabel(entity)) + ")");
 }
@@ -198,6 +206,8 @@ CheckedEntities check_entities(const std::string& path, const Handle(XSControl_W
       refuse_damaged(path, model, entity);
   }
   require_places(path, model, out.of_shape);
+  for (const Entity& unit : flatten_units(model)) out.changed.push_back(named(model, unit));
+  for (const Entity& place : plain_places(model, out.of_shape)) out.changed.push_back(named(model, place));
   return out;
 }
 

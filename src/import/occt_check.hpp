@@ -12,10 +12,13 @@ struct CheckedEntities {
   bool has_colors = true;
   /// Items of shapes that are of unknown kinds, each "#17 is a ...". OpenCASCADE sees them no more.
   std::vector<std::string> unread;
+  /// Units and places that OpenCASCADE would have read otherwise than they are meant, each "#17 is a ...".
+  std::vector<std::string> changed;
 };
 
-/// Looks through the entities that OpenCASCADE has read, before they become shapes. Throws Error when one that shapes
-/// or places are made of is damaged, or places a part in a way that OpenCASCADE drops.
+/// Looks through the entities that OpenCASCADE has read, before they become shapes, and tells units and places as it
+/// reads them right. Throws Error when one that shapes or places are made of is damaged, or places a part in a way that
+/// OpenCASCADE drops.
 CheckedEntities check_entities(const std::string& path, const Handle(XSControl_WorkSession) & session);
 
 /// The files of parts that the file `path` names and that are not there. Throws Error when one is not in the file's

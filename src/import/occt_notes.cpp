@@ -1,13 +1,7 @@
 #include "import/occt_notes.hpp"
 
-#include <StepBasic_ConversionBasedUnitAndLengthUnit.hxx>
-#include <StepBasic_LengthUnit.hxx>
-#include <StepBasic_SiUnitAndLengthUnit.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepGeom_Curve.hxx>
-#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
-#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
-#include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepShape_EdgeBasedWireframeModel.hxx>
 #include <StepShape_GeometricSet.hxx>
 #include <StepShape_GeometricSetSelect.hxx>
@@ -26,6 +20,7 @@
 #include <XSControl_TransferReader.hxx>
 
 #include "import/occt_entities.hpp"
+#include "import/occt_units.hpp"
 
 namespace tegotae {
 namespace {
@@ -45,30 +40,6 @@ std::vector<Entity> hidden_by(const StepVisual_InvisibleItem& item) {
     hidden.push_back(style.IsNull() ? on : Entity(style->Item()));
   }
   return hidden;
-}
-
-/// The units of a representation that OpenCASCADE looks at.
-Handle(StepRepr_GlobalUnitAssignedContext) units_of(const StepRepr_Representation& shape) {
-  using Plain = StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext;
-  using Uncertain = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
-  const auto plain = Handle(Plain)::DownCast(shape.ContextOfItems());
-  if (!plain.IsNull()) return plain->GlobalUnitAssignedContext();
-  const auto uncertain = Handle(Uncertain)::DownCast(shape.ContextOfItems());
-  if (!uncertain.IsNull()) return uncertain->GlobalUnitAssignedContext();
-  return {};
-}
-
-bool has_unit_of_length(const StepRepr_Representation& shape) {
-  const Handle(StepRepr_GlobalUnitAssignedContext) units = units_of(shape);
-  if (units.IsNull() || units->Units().IsNull()) return false;
-  for (int i = 1; i <= units->NbUnits(); ++i) {
-    const Entity unit = units->UnitsValue(i);
-    if (!unit.IsNull() && (unit->IsKind(STANDARD_TYPE(StepBasic_SiUnitAndLengthUnit)) ||
-                           unit->IsKind(STANDARD_TYPE(StepBasic_ConversionBasedUnitAndLengthUnit)) ||
-                           unit->IsKind(STANDARD_TYPE(StepBasic_LengthUnit))))
-      return true;
-  }
-  return false;
 }
 
 bool is_bare_curve(const Entity& item) {
@@ -130,7 +101,7 @@ std::vector<std::string> without_unit(const Handle(XSControl_WorkSession) & sess
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
   std::vector<std::string> out;
   for (const Handle(StepShape_ShapeRepresentation) & shape : shapes_of(session, reached))
-    if (!has_unit_of_length(*shape)) out.push_back("#" + std::to_string(model->IdentLabel(shape)));
+    if (!unit_of_length(*shape)) out.push_back("#" + std::to_string(model->IdentLabel(shape)));
   return out;
 }
 

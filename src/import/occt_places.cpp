@@ -1,7 +1,6 @@
 #include "import/occt_places.hpp"
 
 #include <StepGeom_Axis2Placement3d.hxx>
-#include <StepGeom_CartesianPoint.hxx>
 #include <StepGeom_CartesianTransformationOperator3d.hxx>
 #include <StepGeom_Direction.hxx>
 #include <StepRepr_ItemDefinedTransformation.hxx>
@@ -14,6 +13,7 @@
 #include <gp_Vec.hxx>
 
 #include "import/occt_entities.hpp"
+#include "import/occt_frames.hpp"
 #include "tegotae/core/error.hpp"
 
 namespace tegotae {
@@ -57,11 +57,8 @@ std::string not_rigid(const Operator& map) {
 
 /// Whether a frame is the one of the coordinates in it.
 bool is_identity(const Frame& frame) {
-  const Handle(StepGeom_CartesianPoint) at = frame.Location();
-  for (int i = 1; !at.IsNull() && i <= at->NbCoordinates(); ++i)
-    if (std::abs(at->CoordinatesValue(i)) > 1e-9) return false;
-  const gp_Vec z = vector_of(frame.Axis(), gp_Vec(0, 0, 1)), x = vector_of(frame.RefDirection(), gp_Vec(1, 0, 0));
-  return (z - gp_Vec(0, 0, 1)).Magnitude() < 1e-9 && (beside(x, z, gp_Vec()) - gp_Vec(1, 0, 0)).Magnitude() < 1e-9;
+  const auto X = frame_of(frame);
+  return X && (*X - Matrix34::Identity()).cwiseAbs().maxCoeff() < 1e-9;
 }
 
 class Places {

@@ -39,6 +39,8 @@ class OffReader {
     require_single_bytes(path_, rest_);
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 32 && kBlank.find(c) == kBlank.npos; };
     if (rest_.substr(0, 3) == "\xef\xbb\xbf") rest_.remove_prefix(3);
+    if (rest_.substr(0, first_of(rest_, "\r\n")).find("BINARY") != rest_.npos)
+      refuse(path_, "binary OFF is not read (text OFF only): save it as text");
     if (std::any_of(rest_.begin(), rest_.end(), control))
       refuse(path_, "damaged: it has control characters (text OFF only)");
     std::string_view counts = next_line();
@@ -103,8 +105,8 @@ class OffReader {
     Vec3 p;
     double w = 1;
     bool whole = true;
-    for (double& x : p) whole = whole && take_number(line, x);
-    if (homogeneous_) whole = whole && take_number(line, w);
+    for (double& x : p) whole = whole && take_coordinate(line, x);
+    if (homogeneous_) whole = whole && take_coordinate(line, w);
     if (!whole)
       refuse(path_, "truncated or damaged at vertex " + std::to_string(number) + ", which takes a line of its own");
     if (w == 0) refuse(path_, "vertex " + std::to_string(number) + " lies at infinity");

@@ -89,7 +89,7 @@ class Body {
   bool next(Scalar type, double& value) {
     if (encoding_ != Encoding::ascii) return with_type(type, [&](auto zero) { return take(value, zero); });
     std::string_view rest = bytes_.substr(at_);
-    const bool number = take_number(rest, value);
+    const bool number = take_coordinate(rest, value);
     at_ = bytes_.size() - rest.size();
     return number && with_type(type, [&](auto zero) { return fits(value, zero); });
   }

@@ -130,7 +130,9 @@ class TextStl {
     expect("vertex");
     out_ += "vertex";
     for (int k = 0; k < 3; ++k) {
-      const std::string_view word = next();
+      std::string word(next());
+      // Some programs write the decimal comma of their country; it cannot be anything else here.
+      std::replace(word.begin(), word.end(), ',', '.');
       std::string_view text = word;
       double value = 0;
       if (!take_number(text, value)) refuse(path_, "truncated or damaged: a vertex without three numbers");

@@ -136,6 +136,8 @@ class StepReader {
     if (options_.progress) options_.progress("reading the file", 0, 0);
     STEPCAFControl_Controller::Init();
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    // Else a frame among the items of a shape moves the mapped items beside it.
+    Interface_Static::SetCVal("read.step.root.transformation", "OFF");
     const Handle(XCAFApp_Application) application = XCAFApp_Application::GetApplication();
     application->NewDocument("MDTV-XCAF", document_);
     STEPCAFControl_Reader reader;
@@ -191,6 +193,9 @@ class StepReader {
 
   void check_named_file(const std::string& name, const STEPCAFControl_ExternFile& file) {
     const CheckedEntities checked = check_entities(path_ + ": " + name, file.GetWS());
+    if (!checked.changed.empty())
+      throw Error(path_ + ": " + name + ": " + checked.changed.front() +
+                  ", which is read in the file that is opened only: export all parts into one file");
     for (const std::string& item : checked.unread) unread_.push_back(name + ": " + item);
     for (const std::string& solid : unread_solids(file.GetWS(), checked.of_shape))
       unread_.push_back(name + ": " + solid);

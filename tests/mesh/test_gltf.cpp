@@ -42,8 +42,10 @@ TEST_CASE("glTF: errors name what they are about", "[gltf]") {
   CHECK_THAT(why("accessors", "type", "VEC2"), Catch::Contains("mesh 0, primitive 0 (node 1): "));
   CHECK_THAT(why("nodes", "skin", 3), Catch::Contains("node 0 names skins 3 of 0"));
   doc.j["skins"] = {{{"joints", {7}}}};
+  doc.j["nodes"][0]["skin"] = 0;
   CHECK_THAT(refused(doc.save(folder)), Catch::Contains("skin 0 names nodes 7 of 2"));
   doc.j.erase("skins");
+  doc.j["nodes"][0].erase("skin");
   doc.j["scene"] = 4;
   CHECK_THAT(refused(doc.save(folder)), Catch::Contains("the file names scenes 4 of 1"));
   doc.j["scene"] = 0;

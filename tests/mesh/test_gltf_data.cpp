@@ -244,3 +244,70 @@ TEST_CASE("glTF: sparse indices", "[gltf]") {
   REQUIRE(a.parts.size() == 2);
   for (const auto& shape : a.shapes) CHECK(volume(*shape) == Approx(1.0 / 6));
 }
+
+TEST_CASE("glTF: what is wrong with neither shape nor place refuses no file", "[gltf]") {
+  const TempFolder folder;
+  const auto with = [&](const std::function<void(GltfDoc&, Json&)>& spoil) {
+    GltfDoc doc;
+    Json primitive = doc.tetrahedron();
+    spoil(doc, primitive);
+    doc.node({{"mesh", doc.mesh(primitive)}, {"camera", 9}});
+    return doc;
+  };
+  const std::vector<std::pair<const char*, std::function<void(GltfDoc&, Json&)>>> spoils = {
+      {"texture",
+       [](GltfDoc& doc, Json& primitive) {
+         doc.j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 7}}}}}}};
+         primitive["material"] = 0;
+       }},
+      {"image",
+       [](GltfDoc& doc, Json&) {
+         doc.j["textures"] = {{{"source", 5}, {"sampler", 6}}};
+         doc.j["images"] = {{{"bufferView", 77}, {"mimeType", "image/png"}}};
+       }},
+      {"light",
+       [](GltfDoc& doc, Json&) {
+         doc.uses("KHR_lights_punctual");
+         doc.node({{"extensions", {{"KHR_lights_punctual", {{"light", 3}}}}}});
+       }},
+      {"attributes",
+       [](GltfDoc& doc, Json& primitive) {
+         doc.j["accessors"].push_back({{"bufferView", 0}, {"componentType", 5126}, {"count", 999}, {"type", "VEC2"}});
+         primitive["attributes"]["TEXCOORD_0"] = doc.j["accessors"].size() - 1;
+         primitive["attributes"]["NORMAL"] = 88;
+         primitive["targets"] = {{{"NORMAL", 88}}};
+       }},
+      {"data that nobody names",
+       [](GltfDoc& doc, Json&) {
+         doc.j["bufferViews"].push_back({{"buffer", 44}, {"byteLength", 1}});
+         doc.j["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 123456789}});
+         doc.j["accessors"].push_back({{"bufferView", 55}, {"componentType", 1}, {"count", 3}, {"type", "VEC9"}});
+         doc.j["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 66}}}}}}});
+         doc.j["skins"].push_back({{"joints", {55}}});
+         doc.j["scenes"].push_back({{"nodes", {99}}});
+       }},
+      {"the file of a picture's buffer", [](GltfDoc& doc, Json&) {
+         doc.j["buffers"] = {{{"byteLength", 10}, {"uri", "missing.bin"}}};
+         doc.j["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 10}});
+         doc.j["images"] = {{{"bufferView", doc.j["bufferViews"].size() - 1}, {"mimeType", "image/png"}}};
+       }}};
+  for (const auto& [name, spoil] : spoils) {
+    INFO(name);
+    const Assembly a = read(with(spoil).save(folder));
+    REQUIRE(a.parts.size() == 1);
+    check_near(box_of(a, 0), Vec3::Zero(), Vec3::Ones());
+    CHECK(a.notes.empty());
+  }
+  const Assembly moving = read(with([](GltfDoc& doc, Json&) {
+                                 doc.j["animations"] = {{{"channels", {{{"sampler", 5}, {"target", {{"node", 99}}}}}},
+                                                         {"samplers", {{{"input", 70}, {"output", 80}}}}}};
+                               }).save(folder));
+  CHECK(has_note(moving, "animations"));
+  const Assembly pale = read(with([](GltfDoc&, Json& primitive) { primitive["material"] = 4; }).save(folder));
+  REQUIRE(pale.parts.size() == 1);
+  CHECK(!pale.parts[0].color);
+  CHECK(has_note(pale, "colors of materials"));
+  // What the shape is made of still has to be there.
+  CHECK_THAT(refused(with([](GltfDoc&, Json& primitive) { primitive["indices"] = 88; }).save(folder)),
+             Catch::Contains("names accessors 88 of"));
+}

@@ -319,22 +319,24 @@ TEST_CASE("STEP: a shape without a unit of length is taken for millimeters, and 
   }
   CHECK(!has_note(read(Plate().s), "no unit of length"));
   CHECK_THAT(test::refusal([&] { read_step_text(with_units("")); }),
-             Catch::Contains("is a GEOMETRIC_REPRESENTATION_CONTEXT+REPRESENTATION_CONTEXT, which is not read"));
+             Catch::Contains("is a GEOMETRIC_REPRESENTATION_CONTEXT+REPRESENTATION_CONTEXT, which states no unit of "
+                             "length: export the file with its unit"));
 }
 
 TEST_CASE("STEP: angles of cones are in the unit of the file", "[step]") {
   // A frustum of the radii 10 and 5 mm, 5 mm high: half the cone's angle is 45 degrees.
-  for (const bool degrees : {true, false}) {
-    INFO(degrees);
+  for (const std::string unit : {"radian", "degree", "minute of degrees"}) {
+    INFO(unit);
     StepText s;
-    std::string unit;
-    if (degrees) {
-      const int radian = s.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
-      const int size =
-          s.add("PLANE_ANGLE_MEASURE_WITH_UNIT(PLANE_ANGLE_MEASURE(0.0174532925199433)," + r(radian) + ")");
+    if (unit != "radian") {
       const int none = s.add("DIMENSIONAL_EXPONENTS(0.,0.,0.,0.,0.,0.,0.)");
-      s.set_unit(".MILLI.", s.add("(CONVERSION_BASED_UNIT('DEGREE'," + r(size) + ")NAMED_UNIT(" + r(none) +
-                                  ")PLANE_ANGLE_UNIT())"));
+      const auto so_many = [&](const std::string& size, int of) {
+        const int measure = s.add("PLANE_ANGLE_MEASURE_WITH_UNIT(PLANE_ANGLE_MEASURE(" + size + ")," + r(of) + ")");
+        return s.add("(CONVERSION_BASED_UNIT('own'," + r(measure) + ")NAMED_UNIT(" + r(none) + ")PLANE_ANGLE_UNIT())");
+      };
+      int angle = so_many("0.0174532925199433", s.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"));
+      if (unit != "degree") angle = so_many("0.0166666666666667", angle);
+      s.set_unit(".MILLI.", angle);
     }
     const int product = s.product("cone");
     const auto up = [&](double z, double axis) {
@@ -357,7 +359,7 @@ TEST_CASE("STEP: angles of cones are in the unit of the file", "[step]") {
     const int along = s.add("VECTOR(''," + r(s.direction(-1, 0, 1)) + ",1.)");
     const int line = s.add("LINE(''," + r(s.point(10, 0, 0)) + "," + r(along) + ")");
     const int seam = s.add("EDGE_CURVE(''," + r(low) + "," + r(high) + "," + r(line) + ",.T.)");
-    const std::string half = degrees ? "45." : std::to_string(M_PI / 4);
+    const std::string half = unit == "radian" ? std::to_string(M_PI / 4) : unit == "degree" ? "45." : "2700.";
     const int side = face({{wide, ".T."}, {seam, ".T."}, {narrow, ".F."}, {seam, ".F."}},
                           "CONICAL_SURFACE(''," + r(up(5, -1)) + ",5.," + half + ")");
     const int bottom = face({{wide, ".F."}}, "PLANE(''," + r(up(0, -1)) + ")");

@@ -257,6 +257,19 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   CHECK(less.parts.size() == 2);
   CHECK(has_note(less, "child.stp: " + r(pin) + " is a BLOCK"));
   CHECK(has_note(less, "child.stp: " + r(hose) + " is a SWEPT_DISK_SOLID"));
+  // OpenCASCADE reads it before anyone can tell its places and units anew.
+  StepText thou;
+  int unit = thou.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))");
+  for (const char* size : {"2.54", "0.001"}) {
+    const int measure = thou.add("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(" + std::string(size) + ")," + r(unit) + ")");
+    const int exponents = thou.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
+    unit = thou.add("(CONVERSION_BASED_UNIT('own'," + r(measure) + ")LENGTH_UNIT()NAMED_UNIT(" + r(exponents) + "))");
+  }
+  thou.shape(thou.product("child"), {thou.origin(), thou.block()});
+  folder.write("child.stp", thou.text());
+  CHECK_THAT(test::refusal(folder / "a.step"),
+             Catch::Contains("child.stp: " + r(unit) + " is a CONVERSION_BASED_UNIT") &&
+                 Catch::Contains("in the file that is opened only"));
   folder.write("a.step", naming("other.stp"));
   const Assembly one = read_assembly(folder / "a.step");
   CHECK(one.parts.size() == 1);
