@@ -17,9 +17,7 @@ namespace tegotae::view {
 
 Address parse_address(const std::string& text) {
   const auto fail = [&] {
-    throw Error("\"" + text +
-                "\" is not an address to listen on; write an IP address and a port, like 127.0.0.1:8080 or " +
-                "[::1]:8080");
+    throw Error("\"" + text + "\" is not an address to listen on; write an IP address and a port, like 127.0.0.1:8080");
   };
   Address address;
   const std::size_t colon = text.find(':', text.find(']') == std::string::npos ? 0 : text.find(']'));
@@ -37,10 +35,11 @@ Address parse_address(const std::string& text) {
   return address;
 }
 
-std::string why_not_listening(const Address& address) {
+std::string why_not_listening(const Address& address, bool server_has_six) {
   sockaddr_storage place{};
   const auto port = htons(static_cast<std::uint16_t>(address.port));
   const bool six = address.host.front() == '[';
+  if (six && !server_has_six) return "the page's server has no IPv6 here; take an address like 127.0.0.1";
   if (six) {
     auto& at = reinterpret_cast<sockaddr_in6&>(place);
     at.sin6_family = AF_INET6;

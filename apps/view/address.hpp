@@ -18,7 +18,7 @@ struct Address {
 Address parse_address(const std::string& text);
 
 /// Why nobody can listen there now, and what to do; empty when one can.
-std::string why_not_listening(const Address& address);
+std::string why_not_listening(const Address& address, bool server_has_six);
 
 /// The addresses by which others may reach this machine, none of the loopback; those of IPv6 with their brackets.
 std::vector<std::string> machine_addresses(bool six);

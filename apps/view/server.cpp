@@ -263,7 +263,8 @@ Server::Server(const Address& address, ViewSource& source) : impl_(std::make_uni
   };
   impl_->context = mg_start(&callbacks, impl_.get(), options);
   if (!impl_->context) {
-    const std::string why = why_not_listening(address);  // CivetWeb says no more than that it failed
+    const std::string why = why_not_listening(
+        address, mg_check_feature(MG_FEATURES_IPV6) != 0);  // CivetWeb says no more than that it failed
     throw Error("cannot listen on " + port + ": " + (why.empty() ? impl_->log : why));
   }
   impl_->started = true;

@@ -15,7 +15,9 @@ class FrictionRows {
   /// `capacity` contacts.
   FrictionRows(std::vector<double> mu_of_part, int capacity);
 
-  /// Takes the contacts, in their order; whether one of them has friction. `metric` is oriented as the held part is.
+  /// Takes the contacts, in their order; whether one of them has friction. `metric` is always the same one, oriented as
+  /// the held part is. Rows of contacts that are where they were the last time are kept: those of the end of a tick are
+  /// those of the next one's beginning.
   bool fill(const std::vector<Contact>& contacts, const Metric& metric) noexcept;
   FrictionProblem problem(const LowRankMatrix& normals, const double* bounds, const Vec6& wanted,
                           std::int64_t deadline_ns) const noexcept {
@@ -28,6 +30,13 @@ class FrictionRows {
   std::vector<double> mu_of_part_;
   std::vector<double> mu_;
   std::vector<TangentRows> tangents_;
+  /// Of the contact that a row was made for.
+  struct Place {
+    Vec3 n = Vec3::Zero(), r = Vec3::Zero();
+  };
+  std::vector<Place> places_;
+  std::size_t made_ = 0;      ///< rows, the first ones
+  Mat3 axes_ = Mat3::Zero();  ///< of the metric that they were made with
   bool any_;
 };
 

@@ -20,6 +20,9 @@ class Metric {
   /// Turns the principal axes along with the part.
   void set_orientation(const Quat& q_WA) { axes_W_ = q_WA.toRotationMatrix() * axes_; }
 
+  /// The principal axes as columns, in the world.
+  const Mat3& axes() const { return axes_W_; }
+
   Vec6 whiten(const Displacement& d) const {
     Vec6 z;
     z.head<3>() = d.dp;

@@ -30,6 +30,9 @@ TEST_CASE("addresses") {
     INFO(bad);
     CHECK_THROWS_AS(parse_address(bad), Error);
   }
+  // Debian's CivetWeb has no IPv6, and says of such an address only that it failed.
+  CHECK(why_not_listening(parse_address("[::1]:0"), false).find("no IPv6") != std::string::npos);
+  CHECK(why_not_listening(parse_address("127.0.0.1"), false).empty());
 }
 
 TEST_CASE("who may ask") {

@@ -18,7 +18,7 @@ struct ContactForce {
   Feature feature_a = {};        ///< of A's mesh; not in recordings
   Feature feature_b = {};        ///< of B's mesh; not in recordings
   Vec3 friction = Vec3::Zero();  ///< N, perpendicular to `n`, world; at most mu × force long
-  double mu = 0;                 ///< coefficient of friction of the two parts
+  double mu = 0;                 ///< coefficient of friction of the two parts; 0 of a plane that holds one motion only
   bool slides = false;           ///< the point slid in this tick; false: it sticks, or there is no friction
 };
 
