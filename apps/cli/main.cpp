@@ -35,6 +35,50 @@ void add_progress(CLI::App& app) {
   }
 }
 
+CLI::App* add_check(CLI::App& app, CheckOptions& options) {
+  CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
+  check->add_option("FILE", options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")->required();
+  check->add_flag("--clash", options.clash, "List the pairs of a scene's parts that touch or overlap");
+  add_length_option(*check, "--within", options.within, "With --clash: also those apart by up to this")
+      ->needs("--clash");
+  return check;
+}
+
+CLI::App* add_bench(CLI::App& app, bench::BenchOptions& options) {
+  CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear program");
+  std::vector<std::string> names = bench::scene_names();
+  names.emplace_back(bench::kStart);
+  measure->add_option("--scene", options.scenes, "Only this scene, or the start (may be repeated)")
+      ->check(one_of(names))
+      ->type_name("NAME");
+  measure->add_flag("--quick", options.quick, "A short look: one round of the pen, small programs");
+  measure->add_option("--friction", options.mu, "Also with this coefficient of friction between the parts")
+      ->check(between(0.0, 10.0));
+  measure->add_flag("--budgets", options.budgets, "Also with tick budgets of 0.1 and 0.3 ms");
+  measure->add_option("--resolver", options.resolver, "Contact resolver (default: the library's)")->type_name("NAME");
+  measure->add_flag("--json", options.json, "Print the figures as one line of JSON");
+  measure->add_option("--markdown", options.markdown, "Also replace the generated part of this file")
+      ->type_name("FILE");
+  return measure;
+}
+
+CLI::App* add_experiment(CLI::App& app, experiments::Options& options) {
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
+  experiment->add_option("NAME", options.name, "Which one, or all")
+      ->required()
+      ->check(one_of(experiments::names()));
+  experiment->add_option("--out", options.out, "Folder for the results")->capture_default_str()->type_name("DIR");
+  experiment->add_option("--seeds", options.seeds, "Runs of each kind (each experiment has its own number)")
+      ->check(between(1, 10000))
+      ->type_name("N");
+  experiment->add_option("--threads", options.threads, "Threads (default: all processors); no result depends on it")
+      ->check(between(1, 1024))
+      ->type_name("N");
+  experiment->add_flag("--quick", options.quick, "A short form: fewer cases and seeds");
+  return experiment;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -51,13 +95,7 @@ int main(int argc, char** argv) {
   CLI::App* view = add_view(app, view_options);
 
   CheckOptions check_options;
-  CLI::App* check = app.add_subcommand("check", "Report on mesh files, or on a whole scene (.toml)");
-  check->add_option("FILE", check_options.files, "Mesh files (STL, OBJ, PLY, OFF, glTF, 3MF) and scene files")
-      ->required();
-
-  check->add_flag("--clash", check_options.clash, "List the pairs of a scene's parts that touch or overlap");
-  add_length_option(*check, "--within", check_options.within, "With --clash: also those apart by up to this")
-      ->needs("--clash");
+  CLI::App* check = add_check(app, check_options);
 
   ImportOptions import_options;
   const CLI::App* import = add_import(app, import_options);
@@ -80,36 +118,12 @@ int main(int argc, char** argv) {
     reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
 
   bench::BenchOptions bench_options;
-  CLI::App* measure = app.add_subcommand("bench", "Measure the contact loop, FCL beside it, and the linear program");
-  std::vector<std::string> bench_names = bench::scene_names();
-  bench_names.emplace_back(bench::kStart);
-  measure->add_option("--scene", bench_options.scenes, "Only this scene, or the start (may be repeated)")
-      ->check(one_of(bench_names))
-      ->type_name("NAME");
-  measure->add_flag("--quick", bench_options.quick, "A short look: one round of the pen, small programs");
-  measure->add_option("--friction", bench_options.mu, "Also with this coefficient of friction between the parts")
-      ->check(between(0.0, 10.0));
-  measure->add_flag("--budgets", bench_options.budgets, "Also with tick budgets of 0.1 and 0.3 ms");
-  measure->add_option("--resolver", bench_options.resolver, "Contact resolver (default: the library's)")
-      ->type_name("NAME");
-  measure->add_flag("--json", bench_options.json, "Print the figures as one line of JSON");
-  measure->add_option("--markdown", bench_options.markdown, "Also replace the generated part of this file")
-      ->type_name("FILE");
+  const CLI::App* measure = add_bench(app, bench_options);
   bench_options.command = "tegotae";
   for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
 
   experiments::Options trials;
-  CLI::App* experiment =
-      app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
-  experiment->add_option("NAME", trials.name, "Which one, or all")->required()->check(one_of(experiments::names()));
-  experiment->add_option("--out", trials.out, "Folder for the results")->capture_default_str()->type_name("DIR");
-  experiment->add_option("--seeds", trials.seeds, "Runs of each kind (each experiment has its own number)")
-      ->check(between(1, 10000))
-      ->type_name("N");
-  experiment->add_option("--threads", trials.threads, "Threads (default: all processors); no result depends on it")
-      ->check(between(1, 1024))
-      ->type_name("N");
-  experiment->add_flag("--quick", trials.quick, "A short form: fewer cases and seeds");
+  const CLI::App* experiment = add_experiment(app, trials);
 
   add_progress(app);
 

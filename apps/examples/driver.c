@@ -75,7 +75,7 @@ static void obey(const struct tegotae_shm_application* a, const double p[3]) {
 }
 
 /* The spring and damper between the part X and the pen Y, for a part that does not turn. Returns the reason when there
- * is no force. */
+ * is not a force. */
 static uint32_t wrench(const struct tegotae_shm_application* a, int64_t now, const struct tegotae_shm_device* d,
                        double force[3]) {
   double square = 0;

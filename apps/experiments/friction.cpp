@@ -208,6 +208,28 @@ void add_insertion(const Work& work, Outcome& out) {
   out.csv.push_back(csv);
 }
 
+/// `lost` and `late` of the rounds to and fro, `given` on closed ways (J).
+void add_rest_claims(int ticks, const std::vector<Creep>& rests, const std::vector<Jitter>& jitters, double lost,
+                     double late, const std::vector<double>& given, Outcome& out) {
+  const std::string so_many = std::to_string(ticks) + " ticks at rest: ";
+  out.claims.push_back(
+      at_most(so_many + "creep", kNano * largest(rests, [](const Creep& c) { return c.way; }), 1, "nm"));
+  out.claims.push_back(
+      at_most(so_many + "turn", kMicro * largest(rests, [](const Creep& c) { return c.turn; }), 1, "µrad"));
+  out.claims.push_back(at_most("to and fro: energy lost, off 4 mu N (a - mu N / k)", 100 * lost, 0.5, "%"));
+  out.claims.push_back(at_most("to and fro: breaks away, off mu N / k", late, 1.01, "steps of the pen"));
+  const std::string off = "a pen off by " + std::to_string(std::lround(kMicro * kPenNoise)) + " µm, ";
+  out.claims.push_back(
+      at_most(off + "at rest: way", kNano * largest(jitters, [](const Jitter& j) { return j.way; }), 1, "nm"));
+  out.claims.push_back(at_most(off + "at rest: change of the force, by stiffness times that",
+                               largest(jitters, [](const Jitter& j) { return j.share; }), 1.001, ""));
+  out.claims.push_back(at_most(off + "sliding: |F_t / (mu N) - 1|",
+                               100 * largest(jitters, [](const Jitter& j) { return j.worst; }), 1, "%"));
+  out.claims.push_back(at_most(off + "sliding: goes back",
+                               largest(jitters, [](const Jitter& j) { return double(j.back); }), 0, "ticks"));
+  out.claims.push_back(at_most("closed ways: the hand gets", *std::max_element(given.begin(), given.end()), 1e-9, "J"));
+}
+
 void add_rest(const Work& work, Outcome& out) {
   const std::vector<double> mus = work.options.quick ? std::vector<double>{0.3} : std::vector<double>{0.1, 0.3, 0.8};
   const int ticks = work.options.quick ? 5000 : 100000;
@@ -248,23 +270,7 @@ void add_rest(const Work& work, Outcome& out) {
     csv.rows.push_back({mus[i], kNano * rests[i].way, kMicro * rests[i].turn, h.lost, h.expected, 1e3 * h.breakaway,
                         1e3 * h.breakaway_expected, given[i], kNano * j.way, j.share, 100 * j.worst, j.back});
   }
-  const std::string so_many = std::to_string(ticks) + " ticks at rest: ";
-  out.claims.push_back(
-      at_most(so_many + "creep", kNano * largest(rests, [](const Creep& c) { return c.way; }), 1, "nm"));
-  out.claims.push_back(
-      at_most(so_many + "turn", kMicro * largest(rests, [](const Creep& c) { return c.turn; }), 1, "µrad"));
-  out.claims.push_back(at_most("to and fro: energy lost, off 4 mu N (a - mu N / k)", 100 * lost, 0.5, "%"));
-  out.claims.push_back(at_most("to and fro: breaks away, off mu N / k", late, 1.01, "steps of the pen"));
-  const std::string off = "a pen off by " + std::to_string(std::lround(kMicro * kPenNoise)) + " µm, ";
-  out.claims.push_back(
-      at_most(off + "at rest: way", kNano * largest(jitters, [](const Jitter& j) { return j.way; }), 1, "nm"));
-  out.claims.push_back(at_most(off + "at rest: change of the force, by stiffness times that",
-                               largest(jitters, [](const Jitter& j) { return j.share; }), 1.001, ""));
-  out.claims.push_back(at_most(off + "sliding: |F_t / (mu N) - 1|",
-                               100 * largest(jitters, [](const Jitter& j) { return j.worst; }), 1, "%"));
-  out.claims.push_back(at_most(off + "sliding: goes back",
-                               largest(jitters, [](const Jitter& j) { return double(j.back); }), 0, "ticks"));
-  out.claims.push_back(at_most("closed ways: the hand gets", *std::max_element(given.begin(), given.end()), 1e-9, "J"));
+  add_rest_claims(ticks, rests, jitters, lost, late, given, out);
   out.sections.push_back(
       {"At rest and to and fro",
        "A block is pressed by 1.6 N, pulled to 0.8 of its friction and twisted, and watched; then led to "

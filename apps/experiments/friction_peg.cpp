@@ -163,7 +163,7 @@ std::vector<DepthForce> insert_peg(const PegLead& lead, int points) {
     // Once it slides, at even depths.
     const double next = kFrom + 0.002 + (kTo - kFrom - 0.002) * static_cast<double>(out.size()) / (points - 1);
     if (depth < next) continue;
-    // The gap that contacts keep is no play.
+    // The gap that contacts keep is not play.
     PegLead left = lead;
     left.play -= kept;
     out.push_back({depth, rig.felt(Y).force.z(), insertion_force(left, depth)});

@@ -52,6 +52,28 @@ Plot plot(const std::string& title, const std::vector<std::string>& names, const
   return p;
 }
 
+/// By resolver, operator, ratio and seed.
+Times run_tasks(const Work& work, const std::vector<std::string>& names, const std::vector<double>& ratios,
+                std::size_t n_seeds) {
+  const std::vector<OperatorProfile>& people = operator_profiles();
+  Times all(names.size(),
+            std::vector<std::vector<std::vector<Result>>>(
+                people.size(), std::vector<std::vector<Result>>(ratios.size(), std::vector<Result>(n_seeds))));
+  // One task a ratio and resolver, shared by its runs.
+  std::vector<PegTask> pegs;
+  for (const std::string& name : names)
+    for (const double ratio : ratios) pegs.emplace_back(ratio, name);
+  const int n = static_cast<int>(pegs.size() * people.size() * n_seeds);
+  work.each("task-time", n, [&](int i) {
+    const std::size_t seed = static_cast<std::size_t>(i) % n_seeds, rest = static_cast<std::size_t>(i) / n_seeds;
+    const std::size_t person = rest % people.size(), which = rest / people.size();
+    const Attempt a = attempt(pegs[which], people[person], pegs[which].task(), 1000 * person + seed, kTaskGiveUp, true);
+    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kTaskGiveUp,
+                                                                       a.vibration};
+  });
+  return all;
+}
+
 }  // namespace
 
 Outcome task_time(const Work& work) {
@@ -61,21 +83,7 @@ Outcome task_time(const Work& work) {
       work.options.quick ? std::vector<double>{0.91, 0.94} : std::vector<double>{0.91, 0.92, 0.93, 0.94};
   const int seeds = work.seeds(12, 1);
   const std::size_t n_seeds = static_cast<std::size_t>(seeds);
-  Times all(names.size(),
-            std::vector<std::vector<std::vector<Result>>>(
-                people.size(), std::vector<std::vector<Result>>(ratios.size(), std::vector<Result>(n_seeds))));
-  // One task a ratio and resolver, shared by its runs.
-  std::vector<PegTask> pegs;
-  for (const std::string& name : names)
-    for (const double ratio : ratios) pegs.emplace_back(ratio, name);
-  const int n = static_cast<int>(pegs.size() * people.size()) * seeds;
-  work.each("task-time", n, [&](int i) {
-    const std::size_t seed = static_cast<std::size_t>(i) % n_seeds, rest = static_cast<std::size_t>(i) / n_seeds;
-    const std::size_t person = rest % people.size(), which = rest / people.size();
-    const Attempt a = attempt(pegs[which], people[person], pegs[which].task(), 1000 * person + seed, kTaskGiveUp, true);
-    all[which / ratios.size()][person][which % ratios.size()][seed] = {a.reached, a.reached ? a.time : kTaskGiveUp,
-                                                                       a.vibration};
-  });
+  const Times all = run_tasks(work, names, ratios, n_seeds);
 
   Outcome out;
   out.title = "Task time against the ratio of peg and hole";

@@ -48,6 +48,24 @@ Entry try_in(double ratio, const std::string& resolver, double stiffness) {
   return {resolver, ratio, a.completed, -(a.samples.back().X * peg.tip()).z()};
 }
 
+/// Pegs larger than their hole, with the resolver `own` and with springs of `stiffness`; how many went in with `own`.
+Table too_large_pegs(const Work& work, const std::string& own, double stiffness, int& entered) {
+  const bool quick = work.options.quick;
+  std::vector<Entry> entries(quick ? 2 : 2 * std::size(kOversize));
+  work.each("widening: too large pegs", static_cast<int>(entries.size()), [&](int i) {
+    const double ratio = kOversize[quick ? 1 : i / 2];
+    entries[static_cast<std::size_t>(i)] = try_in(ratio, i % 2 == 0 ? own : "penalty", stiffness);
+  });
+  Table pegs{"Pegs larger than their hole, pressed by the operator \"average\" for " +
+                 std::to_string(static_cast<int>(kPegGiveUp)) + " s",
+             {"peg by hole", "resolver", "at the bottom", "tip below the surface (mm)"}};
+  for (const Entry& e : entries) {
+    pegs.rows.push_back({apps::ratio_text(e.ratio), e.who, e.in ? "yes" : "no", 1e3 * e.depth});
+    entered += e.who == own && e.in ? 1 : 0;
+  }
+  return pegs;
+}
+
 }  // namespace
 
 Outcome widening(const Work& work) {
@@ -64,11 +82,8 @@ Outcome widening(const Work& work) {
                     : measure(PegTask(kRatio, "penalty", kSegments), stiffnesses[k]);
   });
   const Point& own = points.back();
-  std::vector<Entry> entries(quick ? 2 : 2 * std::size(kOversize));
-  work.each("widening: too large pegs", static_cast<int>(entries.size()), [&](int i) {
-    const double ratio = kOversize[quick ? 1 : i / 2];
-    entries[static_cast<std::size_t>(i)] = try_in(ratio, i % 2 == 0 ? first : "penalty", standard);
-  });
+  int entered = 0;
+  const Table pegs = too_large_pegs(work, first, standard, entered);
 
   Outcome out;
   out.title = "Widening: how large a hole appears";
@@ -101,14 +116,6 @@ Outcome widening(const Work& work) {
     if (p.stiffness <= standard) widest = std::max(widest, p.play);
   }
   plot.series = {penalty, mine, truth};
-  Table pegs{"Pegs larger than their hole, pressed by the operator \"average\" for " +
-                 std::to_string(static_cast<int>(kPegGiveUp)) + " s",
-             {"peg by hole", "resolver", "at the bottom", "tip below the surface (mm)"}};
-  int entered = 0;
-  for (const Entry& e : entries) {
-    pegs.rows.push_back({apps::ratio_text(e.ratio), e.who, e.in ? "yes" : "no", 1e3 * e.depth});
-    entered += e.who == first && e.in ? 1 : 0;
-  }
   out.claims = {at_most(first + ": play by the true clearance", 100 * own.play / clearance, 100, "%"),
                 at_least(first + ": play by the true clearance", 100 * own.play / clearance, 85, "%"),
                 at_most(first + ": pegs larger than the hole that go in", entered, 0, ""),

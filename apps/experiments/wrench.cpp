@@ -103,13 +103,9 @@ Worst worst_of(const std::vector<Reading>& r) {
           100 * worst(r, [](const Reading& x) { return x.noise; })};
 }
 
-}  // namespace
-
-Outcome wrench(const Work& work) {
-  // The baselines answer no such question: one bounces, the other yields by design.
-  const std::vector<std::string> names = {"qp", "lp"};
-  std::vector<WrenchScene> scenes = wrench_scenes(work.seeds(8, 2));
-  for (WrenchScene& cage : cage_scenes(work.seeds(8, 2))) scenes.push_back(std::move(cage));
+/// By resolver, scene and probe.
+std::vector<std::vector<std::vector<Reading>>> read_all(const Work& work, const std::vector<std::string>& names,
+                                                        const std::vector<WrenchScene>& scenes) {
   std::vector<std::vector<std::vector<Reading>>> all(names.size());
   struct Job {
     std::size_t resolver, scene, probe;
@@ -125,6 +121,17 @@ Outcome wrench(const Work& work) {
     const Job& j = jobs[static_cast<std::size_t>(i)];
     all[j.resolver][j.scene][j.probe] = read(scenes[j.scene], scenes[j.scene].probes[j.probe], names[j.resolver]);
   });
+  return all;
+}
+
+}  // namespace
+
+Outcome wrench(const Work& work) {
+  // The baselines answer no such question: one bounces, the other yields by design.
+  const std::vector<std::string> names = {"qp", "lp"};
+  std::vector<WrenchScene> scenes = wrench_scenes(work.seeds(8, 2));
+  for (WrenchScene& cage : cage_scenes(work.seeds(8, 2))) scenes.push_back(std::move(cage));
+  const auto all = read_all(work, names, scenes);
 
   Outcome out;
   out.title = "Wrench: force and torque against closed forms";

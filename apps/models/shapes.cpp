@@ -56,6 +56,25 @@ TriangleMesh sphere(double diameter, int segments, int rings) {
   return revolved("sphere", profile, segments);
 }
 
+/// Four bottom corners carry the sides and the bottom of a block with the outline `top`: of every side's top edge, half
+/// fans to each of its corners.
+void close_block(MeshBuilder& b, const Block& p, const Ring& top) {
+  const int side = p.segments / 4, half = p.segments / 8;
+  std::array<std::uint32_t, 4> corner;
+  for (int c = 0; c < 4; ++c) {
+    const double x = c == 0 || c == 3 ? 1 : -1, y = c < 2 ? 1 : -1;
+    corner[c] = b.vertex({x * p.size.x() / 2, y * p.size.y() / 2, -p.size.z()});
+  }
+  for (int c = 0; c < 4; ++c) {
+    const auto at = [&](int i) { return top[static_cast<std::size_t>((half + c * side + i) % p.segments)]; };
+    const std::uint32_t left = corner[c], right = corner[(c + 1) % 4];
+    for (int i = 0; i < side; ++i) b.face(at(i + 1), at(i), i < half ? left : right);
+    b.face(at(half), left, right);
+  }
+  b.face(corner[0], corner[2], corner[1]);
+  b.face(corner[0], corner[3], corner[2]);
+}
+
 TriangleMesh block_with_hole(const Block& p) {
   const double stretch = 1 / std::cos(kPi / p.segments);  // corner radius of a circumscribed polygon of radius 1
   const double r = p.hole_diameter / 2 * stretch;
@@ -103,21 +122,7 @@ TriangleMesh block_with_hole(const Block& p) {
   }
   b.disk(ring, b.vertex({0, 0, floor}));
 
-  // Four bottom corners carry the sides: of every side's top edge, half fans to each of its corners.
-  const int side = p.segments / 4, half = p.segments / 8;
-  std::array<std::uint32_t, 4> corner;
-  for (int c = 0; c < 4; ++c) {
-    const double x = c == 0 || c == 3 ? 1 : -1, y = c < 2 ? 1 : -1;
-    corner[c] = b.vertex({x * p.size.x() / 2, y * p.size.y() / 2, -p.size.z()});
-  }
-  for (int c = 0; c < 4; ++c) {
-    const auto at = [&](int i) { return top[static_cast<std::size_t>((half + c * side + i) % p.segments)]; };
-    const std::uint32_t left = corner[c], right = corner[(c + 1) % 4];
-    for (int i = 0; i < side; ++i) b.face(at(i + 1), at(i), i < half ? left : right);
-    b.face(at(half), left, right);
-  }
-  b.face(corner[0], corner[2], corner[1]);
-  b.face(corner[0], corner[3], corner[2]);
+  close_block(b, p, top);
   return b.take();
 }
 

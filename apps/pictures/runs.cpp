@@ -80,7 +80,7 @@ struct Run {
   int contact_period_ms = 1;
   std::function<bool(int ms)> silent = [](int) { return false; };  // the application publishes nothing
 
-  void operator()(const std::function<void(int ms, const PenSample&, const TickReport&)>& look) {
+  void operator()(const std::function<void(int ms, const PenSample&, const TickReport&)>& observe) {
     HapticLoop loop(scene);
     SimulatedDevice pen({}, script, loop.center());
     Channel channel = Channel::create();
@@ -97,7 +97,7 @@ struct Run {
         const TickReport& tick = loop.step(sample.state.pose, 1e-3 * contact_period_ms);
         if (!silent(ms)) link.publish(tick.proxy, ms, sample.state.sequence, now_ns, tick.planes);
       }
-      look(ms, sample, loop.report());
+      observe(ms, sample, loop.report());
       pen.advance(1e-3);
     }
     pen.stop();

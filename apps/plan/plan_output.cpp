@@ -93,7 +93,7 @@ void write_plan(const PlanReport& r, const std::string& folder, const review::Pr
   Recorder recorder(folder + "/recording.csv", RecordMode::synchronous, info);
   for (const RecordFrame& row : r.rows) recorder.push(row);
   recorder.close();
-  // A report on another path is no neighbor of this one.
+  // A report on another path is not a neighbor of this one.
   if (r.band)
     write_review(r, folder, progress);
   else

@@ -57,7 +57,7 @@ std::string found_text(const PlanReport& r) {
 
 std::string not_found_text(const PlanReport& r) {
   std::string text =
-      format("no way %s was found for \"%s\" in %.1f s (%lld iterations)%s; that is no proof that there is none\n",
+      format("no way %s was found for \"%s\" in %.1f s (%lld iterations)%s; this is no proof that there is none\n",
              r.to_goal ? "to the goal" : "out", held_part(r.file.scene).name.c_str(), r.plan.seconds,
              static_cast<long long>(r.plan.iterations), r.plan.interrupted ? ", interrupted" : "");
   text += "  it came " + number_text(1e3 * r.plan.way, 4) + " mm from its start at most, and turned by up to " +

@@ -14,7 +14,7 @@
 namespace tegotae::review {
 namespace {
 
-// Breaks that are no end of an episode, s: a part that slides over facets lets go for a tick now and then.
+// Breaks that do not end an episode, s: a part that slides over facets lets go for a tick now and then.
 constexpr double kJoin = 0.05;
 constexpr double kMinTwoSided = 5e-3;  // s
 // By so much a run's last row may be before its end, s: a tick or, in real time, a few.

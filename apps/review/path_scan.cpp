@@ -67,7 +67,7 @@ std::vector<LedRow> lead(view::Follower& follower, const Scene& scene, const std
   for (std::size_t i = 0; i < rows.size(); ++i) {
     follower.step(rows[i]);
     if (follower.loop().report().shrunk > 0)
-      watch.look(follower.loop(), rows[i].y, i > 0 ? rows[i].t - rows[i - 1].t : 0, held_fast);
+      watch.update(follower.loop(), rows[i].y, i > 0 ? rows[i].t - rows[i - 1].t : 0, held_fast);
     if (scanned[out.size()].row == i) out.push_back(led_row(follower));
   }
   return out;

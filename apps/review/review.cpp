@@ -55,7 +55,7 @@ std::optional<double> recorded_number(const std::string& path, const std::string
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value >= 0) || !std::isfinite(value))
-    throw Error(path + ": the goal that it names: " + text + " is no tolerance and no time");
+    throw Error(path + ": the goal that it names: " + text + " is neither a tolerance nor a time");
   return value;
 }
 

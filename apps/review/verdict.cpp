@@ -27,13 +27,13 @@ class Judge {
     const Headline h = headline(f_, scene_, inwards_);
     v_.outcome = h.outcome;
     v_.headline = h.text;
-    if (f_.goal) tell_goal();
-    tell_intersections();
-    tell_start();
-    tell_held_fast();
-    tell_clearance();
-    tell_loads();
-    tell_contacts();
+    if (f_.goal) report_goal();
+    report_intersections();
+    report_start();
+    report_held_fast();
+    report_clearance();
+    report_loads();
+    report_contacts();
     if (!damage.empty()) bad("The end of the recording is missing: " + damage + ".");
     return v_;
   }
@@ -44,7 +44,7 @@ class Judge {
   void bad(const std::string& text) { add(Evidence::Kind::bad, text); }
   void plain(const std::string& text) { add(Evidence::Kind::plain, text); }
 
-  void tell_goal() {
+  void report_goal() {
     const GoalFindings& g = *f_.goal;
     const std::string text =
         format("At the end it is %s and %.1f° from its goal (tolerance %s, 5.7°), %s of %s on the way.",
@@ -58,7 +58,7 @@ class Judge {
   const std::string& name(const StartFinding& f) const { return scene_.parts[f.pair.part].name; }
   static bool was_active(const StartFinding& f) { return f.pair.state == InitialContactState::active; }
 
-  void tell_intersections() {
+  void report_intersections() {
     const auto& pairs = f_.start.pairs;
     if (f_.start.intersecting == 0)
       good(std::string("No pose intersects another part") +
@@ -68,7 +68,7 @@ class Judge {
       bad(format("%lld poses intersect another part.", static_cast<long long>(f_.start.intersecting)));
   }
 
-  void tell_start() {
+  void report_start() {
     std::vector<std::size_t> touching;
     for (const StartFinding& f : f_.start.pairs)
       if (was_active(f)) touching.push_back(f.pair.part);
@@ -88,19 +88,19 @@ class Judge {
     }
   }
 
-  void tell_held_fast() {
+  void report_held_fast() {
     for (const std::string& by : apps::held_fast_by(scan_.held_fast, scan_.start, scene_))
       add(v_.outcome == Outcome::does_not_go ? Evidence::Kind::bad : Evidence::Kind::plain, "Held fast " + by + ".");
   }
 
-  void tell_clearance() {
+  void report_clearance() {
     if (f_.clearances.empty()) return;
     const PartClearance& c = f_.clearances.front();
     plain("Least clearance " + length_text(c.distance) + " to " + scene_.parts[c.part].name + " at " +
           place_text(c.place_W) + ", after " + seconds_text(c.t) + ".");
   }
 
-  void tell_loads() {
+  void report_loads() {
     const Loads& l = f_.loads;
     const bool within = l.asked_force <= l.limit_force && l.asked_torque <= l.limit_torque;
     const std::string text =
@@ -114,7 +114,7 @@ class Judge {
                  number_text(l.continuous, 2).c_str()));
   }
 
-  void tell_contacts() {
+  void report_contacts() {
     if (f_.contacts.empty()) plain("Nothing was touched.");
     if (!f_.two_sided.empty()) {
       double total = 0;

@@ -14,7 +14,7 @@
 namespace tegotae::apps {
 namespace {
 
-constexpr double kLooksBack = 0.5;  // s
+constexpr double kWindow = 0.5;  // s
 
 struct Touched {
   std::size_t ticks = 0;
@@ -48,7 +48,7 @@ Blocker find_blocker(const Scene& scene, const InitialContactReport& start, cons
   std::map<std::size_t, Touched> touched;
   const Pose* last = nullptr;
   for (const TickPoses& tick : ticks) {
-    if (tick.t < ticks.back().t - kLooksBack) continue;
+    if (tick.t < ticks.back().t - kWindow) continue;
     const bool stands = last && last->p == tick.x.p && last->q.coeffs() == tick.x.q.coeffs();
     if (!stands) probe.at(tick.x, reach, near);
     last = &tick.x;

@@ -10,7 +10,7 @@ namespace tegotae::apps {
 
 namespace {
 
-/// Meters; negative when `text` is no length.
+/// Meters; negative when `text` is not a length.
 double parse_length(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -23,7 +23,7 @@ double parse_length(const std::string& text) {
 }
 
 std::string check_length(const std::string& text) {
-  return parse_length(text) >= 0 ? "" : text + " is no length with a unit (m, cm, mm, um, in), like 5um";
+  return parse_length(text) >= 0 ? "" : text + " is not a length with a unit (m, cm, mm, um, in), like 5um";
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLongest = 1e3;  // m: farther than any mock-up is wide
 
-/// Empty when `text` is no pose.
+/// Empty when `text` is not a pose.
 std::vector<double> numbers(const std::string& text) {
   std::vector<double> out;
   for (const char *at = text.data(), *end = at + text.size(); at <= end;) {

@@ -67,10 +67,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   page.no_browser->needs(view);
 }
 
-int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal) {
-  if (!options.resolver.empty()) file.scene.contact.resolver = resolver_kind(options.resolver);
-  if (!options.guide.empty()) file.files.push_back(options.guide);  // a recording must not replace it
-  RunProgress progress;
+namespace {
+
+RunSettings settings_of(const RunOptions& options) {
   RunSettings settings;
   settings.device = options.device;
   settings.real_time = !options.fast;
@@ -78,12 +77,22 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   settings.record = options.record;
   settings.guide_path = options.guide;
   settings.program = "tegotae " TEGOTAE_VERSION_STRING;
+  settings.check_all = options.check_all;
+  return settings;
+}
+
+}  // namespace
+
+int run_and_report(SceneFile file, const RunOptions& options, const std::string& goal) {
+  if (!options.resolver.empty()) file.scene.contact.resolver = resolver_kind(options.resolver);
+  if (!options.guide.empty()) file.files.push_back(options.guide);  // a recording must not replace it
+  RunSettings settings = settings_of(options);
+  RunProgress progress;
   settings.progress = &progress;
   BlockerWatch watch;
   settings.observer = &watch;
   std::atomic<bool>& interrupted = catch_interrupts();
   settings.stop = settings.stop_check = &interrupted;
-  settings.check_all = options.check_all;
   std::optional<StatusLine> building;  // until the first tick; then the progress line tells
   settings.on_build = [&](const std::string& what, std::size_t done, std::size_t total) {
     if (!building) building.emplace(!options.json);

@@ -18,7 +18,7 @@ namespace tegotae::apps {
 /// Adds --progress to a command: what is under way is also written into pipes (say_progress_in_pipes).
 void add_progress_option(CLI::App& command);
 
-/// Lets this process report what is under way also where stderr is no terminal: a line at most every two seconds, or
+/// Lets this process report what is under way also where stderr is not a terminal: a line at most every two seconds, or
 /// the seconds of TEGOTAE_PROGRESS_SECONDS in the environment.
 /// Call it before there are other threads.
 void say_progress_in_pipes();

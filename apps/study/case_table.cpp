@@ -137,7 +137,7 @@ void CaseTable::read() {
     Result r;
     // A line without an end is half a line.
     if (in.eof() || !read_row(line, r))
-      throw Error(path_ + ":" + std::to_string(number) + ": is no " + layout_.number + "; delete the line");
+      throw Error(path_ + ":" + std::to_string(number) + ": is not a " + layout_.number + "; delete the line");
     rows_[r.number] = r;
   }
 }

@@ -13,7 +13,7 @@ namespace tegotae::view {
 /// two seconds is ended, and within a tenth of one where many wait. The server that it watches is one of this process.
 class Doorkeeper {
  public:
-  /// `port`: where the server listens. Who has sent `token`, and waits for a thread to read it, is no stranger.
+  /// `port`: where the server listens. Who has sent `token`, and waits for a thread to read it, is not a stranger.
   Doorkeeper(int port, std::string token);
   ~Doorkeeper();
   Doorkeeper(const Doorkeeper&) = delete;

@@ -9,7 +9,7 @@
 namespace tegotae::view {
 namespace {
 
-// Whole numbers above 2^24 are no floats any more, and neither are milliseconds of a long run: two floats each.
+// Floats do not hold whole numbers above 2^24, nor milliseconds of a long run: two floats each.
 constexpr std::uint64_t kTickSplit = 1u << 20;
 constexpr int kMaxDepth = 3;
 // Kinds of features (vertex, edge, face) of both parts.

@@ -29,7 +29,7 @@ std::string frame_message(const Frame& frame);
 std::string status_message(std::string_view json);
 
 /// What a page sends: a JSON object of a few numbers in two levels, for ViewSource::command. Throws Error when it is
-/// deeper, json::exception when it is no JSON.
+/// deeper, json::exception when it is not JSON.
 nlohmann::json parse_command(std::string_view text);
 
 }  // namespace tegotae::view

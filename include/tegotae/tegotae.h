@@ -103,7 +103,8 @@ TEGOTAE_C_EXPORT int tegotae_rig_part(const tegotae_rig* rig, double pose[7]);
 TEGOTAE_C_EXPORT int tegotae_rig_lead(tegotae_rig* rig, const double pose[7]);
 /** Continues in the present state of the scene; the held part continues from where it is. Any thread may call it. Waits
  * at most `seconds` until the change is in force, for which another thread must step the rig. After that time it
- * cancels the change and fails. With 0 seconds it does not wait, and the change comes into force when it can. */
+ * cancels the change and fails; it also fails when a later change has replaced this one. With 0 seconds it does not
+ * wait, and the change comes into force when it can. */
 TEGOTAE_C_EXPORT int tegotae_rig_change(tegotae_rig* rig, const tegotae_scene* scene, double seconds);
 
 #ifdef __cplusplus

@@ -8,8 +8,8 @@
 
 namespace tegotae {
 
-int ContactSet::cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
-                    std::int64_t deadline_ns) {
+int ContactSet::add_cutting_planes(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
+                                   std::int64_t deadline_ns) {
   int added = 0;
   const Vec3 c = X_ * center_;
   for (const FacePair& t : triangles) {

@@ -49,9 +49,10 @@ class ContactSet {
   /// Adds constraints for this tick only: for each triangle pair (free at the last track()) the separating axis that
   /// limits the displacement `d` least, of those that leave `clearance` (m). Returns how many were added. Ends
   /// early after `deadline_ns`.
-  int cut(const std::vector<FacePair>& triangles, const Displacement& d, double clearance, std::int64_t deadline_ns);
-  /// Whether the two triangles that constraint number `constraint`, from cut(), keeps apart are at most `distance` (m)
-  /// from each other at the pose of the last track().
+  int add_cutting_planes(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
+                         std::int64_t deadline_ns);
+  /// Whether the two triangles that constraint number `constraint`, from add_cutting_planes(), keeps apart are at most
+  /// `distance` (m) from each other at the pose of the last track().
   bool touches(std::size_t constraint, double distance) const noexcept;
   /// Constraint number `constraint` carries force: the next track() keeps its pair, whatever it drops.
   void carries(std::size_t constraint) noexcept;
@@ -84,7 +85,7 @@ class ContactSet {
   FeaturePair follow(const Pair& pair) const;
   void choose();
   void keep(const std::vector<std::uint8_t>& kept);
-  /// Drops pairs that other pairs speak for: a corner or edge inside a flat region is no minimum of its own.
+  /// Drops pairs that other pairs speak for: a corner or edge inside a flat region is not a minimum of its own.
   bool redundant(std::uint32_t part, Feature a, Feature b) const;
   /// Whether contacts around that point the same way hold what this constraint of `part` would.
   bool spoken_for(const Contact& constraint, std::uint32_t part, const std::vector<Contact>& constraints,

@@ -62,7 +62,7 @@ void OutputFile::write(std::string_view bytes) noexcept {
 }
 
 void OutputFile::check() const {
-  if (error_ != 0) throw Error(path_ + ": cannot be written: " + cause(error_));
+  if (error_ != 0) throw Error(ErrorKind::file, path_ + ": cannot be written: " + cause(error_), {path_, 0, {}, {}});
 }
 
 void OutputFile::close() {

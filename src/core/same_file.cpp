@@ -31,8 +31,10 @@ void refuse_to_replace(const std::string& path, const std::vector<std::string>& 
   if (path.empty() || holds_nothing(path)) return;
   for (const std::string& input : inputs) {
     if (input.empty() || !same(path, input)) continue;
-    throw Error(path + ": would be replaced, but is read by the same command" + (input == path ? "" : " as " + input) +
-                "; write to another file");
+    throw Error(ErrorKind::file,
+                path + ": would be replaced, but is read by the same command" + (input == path ? "" : " as " + input) +
+                    "; write to another file",
+                {path, 0, {}, {}});
   }
 }
 
@@ -42,7 +44,8 @@ void refuse_to_replace(const std::vector<std::string>& outputs, const std::vecto
     if (outputs[i].empty() || holds_nothing(outputs[i])) continue;
     for (std::size_t k = 0; k < i; ++k)
       if (!outputs[k].empty() && same(outputs[i], outputs[k]))
-        throw Error(outputs[i] + ": the same command writes it twice; give each output its own file");
+        throw Error(ErrorKind::file, outputs[i] + ": the same command writes it twice; give each output its own file",
+                    {outputs[i], 0, {}, {}});
   }
 }
 

@@ -19,7 +19,7 @@ void Passivity::observe(const Displacement& moved, const Wrench& rendered, doubl
                          settings_.device_torsional_damping * moved.dr.squaredNorm()) /
                         dt;
   const double gained = put_in + damped - (stored - stored_before);
-  // Steps make up for what is missing in this tick alone; they are no credit.
+  // Steps make up for what is missing in this tick alone; they are not a credit.
   const double energy = energy_ + (gained < 0 ? std::min(gained + steps, 0.0) : gained);
   // A jump of the pen is not this link's business, but must not spoil the sum for ever.
   energy_ = std::isfinite(energy) ? std::min(energy, settings_.credit) : 0;

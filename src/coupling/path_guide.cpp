@@ -20,7 +20,7 @@ PathGuide::PathGuide(const std::vector<Pose>& path, const PathGuideSettings& set
       radius_(settings.coupling.stiffness > 0
                   ? std::sqrt(settings.coupling.torsional_stiffness / settings.coupling.stiffness)
                   : 0) {
-  if (path.empty()) throw Error("guide: a path needs a pose");
+  if (path.empty()) throw Error(ErrorKind::setting, "guide: a path needs a pose");
   double length = 0;
   Pose from = path.front();
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -49,7 +49,7 @@ PathGuide::Place PathGuide::place_on(std::size_t segment, const Pose& Y) const n
   return {segment, s.begin + share * (s.end - s.begin), (way - share * step).norm()};
 }
 
-void PathGuide::look(std::size_t first, std::size_t count, const Pose& Y, Place& best) const noexcept {
+void PathGuide::search(std::size_t first, std::size_t count, const Pose& Y, Place& best) const noexcept {
   const std::size_t end = std::min(first + count, segments_.size());
   for (std::size_t i = first; i < end; ++i) {
     const Place place = place_on(i, Y);
@@ -59,9 +59,9 @@ void PathGuide::look(std::size_t first, std::size_t count, const Pose& Y, Place&
 
 void PathGuide::follow(const Pose& Y) noexcept {
   Place best = place_on(nearest_.segment, Y);
-  look(nearest_.segment > kWindow ? nearest_.segment - kWindow : 0, 2 * kWindow + 1, Y, best);
+  search(nearest_.segment > kWindow ? nearest_.segment - kWindow : 0, 2 * kWindow + 1, Y, best);
   if (best.distance > kReach) {
-    look(sweep_, kSweep, Y, best);
+    search(sweep_, kSweep, Y, best);
     sweep_ = sweep_ + kSweep < segments_.size() ? sweep_ + kSweep : 0;
   }
   nearest_ = best;

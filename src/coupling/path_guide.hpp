@@ -24,7 +24,7 @@ struct PathGuideSettings {
 /// than `force`. It follows the nearest point from tick to tick: a screw's path comes by the same pose again and again.
 ///
 /// It is active: it gives the hand up to `force` times the length of the path each time that the hand goes along it,
-/// and is no gradient of an energy. Allocates only when it is made.
+/// and is not a gradient of an energy. Allocates only when it is made.
 class PathGuide {
  public:
   static constexpr double kForce = 1.0;   ///< N, what it pulls with where device and weight allow it
@@ -59,7 +59,7 @@ class PathGuide {
   Vec6 whiten(const Displacement& d) const noexcept;
   Place place_on(std::size_t segment, const Pose& Y) const noexcept;
   /// The nearest place among `count` segments from `first` on, if it is nearer than `best`.
-  void look(std::size_t first, std::size_t count, const Pose& Y, Place& best) const noexcept;
+  void search(std::size_t first, std::size_t count, const Pose& Y, Place& best) const noexcept;
   void follow(const Pose& Y) noexcept;
   Pose at(double along) const noexcept;
 

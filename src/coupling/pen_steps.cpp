@@ -7,7 +7,7 @@ namespace tegotae {
 
 namespace {
 
-// Of a step: less is how poses are rounded, more is no single step.
+// Of a step: less is how poses are rounded, more is not a single step.
 constexpr double kNoStep = 0.01, kOneStep = 1.5;
 // Ticks; a pen that has waited longer has stood still.
 constexpr int kLongestWait = 1000;

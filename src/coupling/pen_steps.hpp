@@ -11,7 +11,7 @@ namespace tegotae {
 /// What of the energy that a sampled coupling seems to make comes from the steps of the pen's resolution alone. Held
 /// over a tick, springs make ½ k Δx² of a pen that moves by Δx, and the damper, whose velocity is known to a step a
 /// tick, up to d Δx² / T. A pen that is a step farther after N ticks has not moved by a step in one tick, but by the
-/// Nth part of it in each, which makes the Nth part of that: the rest, (1 - 1/N) of it, is no energy. The first step
+/// Nth part of it in each, which makes the Nth part of that: the rest, (1 - 1/N) of it, is not energy. The first step
 /// back is nothing at all, since the pen may have turned within it. So one that swings over more than a step, faster
 /// than a step a tick, or both, is counted as it is.
 class PenSteps {

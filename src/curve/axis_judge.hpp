@@ -23,7 +23,7 @@ class AxisJudge {
   /// Within kSharpTolerance at the middle of the chords.
   double share_at(const ScrewMotion& motion) const;
   /// Within four tolerances, without what turns about the axis: the cone beside a flank leans by the thread's rise from
-  /// it, and is no chance.
+  /// it, and is not chance.
   double share_beside(const ScrewMotion& motion) const;
   /// Whether the facets `of` look to enough sides of the axis.
   bool turns(const std::vector<std::size_t>& of, const ScrewMotion& motion) const;

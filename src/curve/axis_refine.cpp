@@ -26,7 +26,7 @@ constexpr double kWindow = 0.08, kStepsPerTurn = 24, kLeaning = 0.3, kBetter = 1
 constexpr std::size_t kMaxLaid = 1500, kHarmonics = 4;
 /// Keeps what the facets leave open where it is, relative to the trace.
 constexpr double kDamping = 1e-9;
-/// Changes of the axis beyond this say that the facets are no screw surface.
+/// Changes of the axis beyond this say that the facets are not a screw surface.
 constexpr double kMaxChange = 0.1;
 
 using Vec5 = Eigen::Matrix<double, 5, 1>;

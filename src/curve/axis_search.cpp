@@ -55,7 +55,7 @@ class Search {
       for (const std::size_t k : kNearest)
         if (try_seed(seed, k)) break;
     }
-    look_beside();
+    search_beside();
     std::stable_sort(found_.begin(), found_.end(),
                      [](const ScrewAxis& a, const ScrewAxis& b) { return a.area > b.area; });
     return found_;
@@ -64,7 +64,7 @@ class Search {
  private:
   /// A thread about the axis of what turns without a rise may have been missed, or fitted badly from a place where it
   /// is cut by chamfers.
-  void look_beside() {
+  void search_beside() {
     const std::vector<ScrewAxis> known = found_;
     for (const ScrewAxis& axis : known) {
       if (axis.rise != 0) continue;

@@ -6,7 +6,7 @@
 namespace tegotae {
 namespace {
 
-/// A corner of a chord of length d over the radius r is off by d / 2r, and more where the facet is no chord's half; so
+/// A corner of a chord of length d over the radius r is off by d / 2r, and more where the facet is not half a chord; so
 /// much (rad) is explained at most.
 constexpr double kWidthShare = 0.75, kMaxWidth = 0.15;
 /// Squares that differ by less than this part of them are told apart by the angles themselves.
@@ -43,21 +43,21 @@ double angle_off(const Facet& f, const ScrewMotion& m) {
 bool is_within(const Facet& f, const ScrewMotion& m, double tolerance) {
   // Most facets that are asked about are far off, and squares tell: no root, and at the first corner no width.
   std::array<double, 3> across2, speed2;
-  const auto look = [&](std::size_t i) {
+  const auto visit = [&](std::size_t i) {
     const Vec3 v = m.velocity(f.corner[i]);
     const double across = f.normal.dot(v);
     across2[i] = across * across;
     speed2[i] = v.squaredNorm();
   };
   const auto exceeds = [&](std::size_t i, double limit2) { return across2[i] > (1 + kClear) * limit2 * speed2[i]; };
-  look(0);
+  visit(0);
   if (exceeds(0, (tolerance + kMaxWidth) * (tolerance + kMaxWidth))) return false;
   const Vec3 middle = m.velocity(f.center);
   const double middle2 = middle.squaredNorm();
   if (!(middle2 > 0)) return angle_off(f, m) <= tolerance;
   const double limit = tolerance + explained(f, middle, middle2);
-  look(1);
-  look(2);
+  visit(1);
+  visit(2);
   bool clear = true;
   for (std::size_t i = 0; i < 3; ++i) {
     if (exceeds(i, limit * limit)) return false;

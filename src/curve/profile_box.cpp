@@ -12,7 +12,7 @@ namespace {
 /// A triangle is cut into pieces over which r deviates from linear by at most this part of it, as far as so many cuts
 /// go.
 constexpr double kSagitta = 3e-5;
-constexpr int kMaxCuts = 8;
+constexpr int kMaxExhausted = 8;
 /// Rounding of the sums that make one bound, relative to their terms (some 10 operations of 1.1e-16).
 constexpr double kRounding = 1e-14;
 /// Enlargement of arcs: covers the rounding of angles and of their sines and cosines.
@@ -92,7 +92,7 @@ ProfileSum profile_of(const std::array<Vec3, 3>& v, double rise) {
     return p;
   }
   const double ratio = longest / p.r_lo;
-  const int cuts = std::clamp(static_cast<int>(std::ceil(ratio / std::sqrt(6 * kSagitta))), 1, kMaxCuts);
+  const int cuts = std::clamp(static_cast<int>(std::ceil(ratio / std::sqrt(6 * kSagitta))), 1, kMaxExhausted);
   const Vec3 middle = (v[0] + v[1] + v[2]) / 3;
   const double about = std::atan2(middle.y(), middle.x());
   double first = std::numeric_limits<double>::infinity(), last = -first;

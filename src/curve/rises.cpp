@@ -6,7 +6,7 @@
 namespace tegotae {
 namespace {
 
-/// What is left of a chord's angle at its middle, for facets that are no chord's half.
+/// What is left of a chord's angle at its middle, for facets that are not half a chord.
 constexpr double kChordError = 0.05;
 /// Rises from which the most frequent one is looked for, steps of each.
 constexpr int kStarts = 16, kSteps = 12;

@@ -25,7 +25,7 @@ class Gamepad final : public InputDriver {
     SDL_GameControllerUpdate();  // also finds pads that came since
     for (int i = 0; i < SDL_NumJoysticks() && pad_ == nullptr; ++i)
       if (SDL_IsGameController(i)) pad_ = SDL_GameControllerOpen(i);
-    if (pad_ == nullptr) throw Error("gamepad: none found; connect one that SDL2 knows");
+    if (pad_ == nullptr) throw Error(ErrorKind::device, "gamepad: none found; connect one that SDL2 knows");
   }
 
   void close() noexcept override {
@@ -58,7 +58,7 @@ class Gamepad final : public InputDriver {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");                // signals are the program's
     SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // there is no window that could have the focus
     if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
-      throw Error(std::string("gamepad: SDL2 cannot be used: ") + SDL_GetError());
+      throw Error(ErrorKind::device, std::string("gamepad: SDL2 cannot be used: ") + SDL_GetError());
     initialized_ = true;
   }
 

@@ -10,12 +10,13 @@ HdApi::HdApi(const std::string& library) {
   void* loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (loaded == nullptr) {
     const char* cause = dlerror();
-    throw Error("OpenHaptics: " + std::string(cause != nullptr ? cause : library + " cannot be loaded") +
-                "; install the vendor's OpenHaptics runtime, or name its folder in LD_LIBRARY_PATH");
+    throw Error(ErrorKind::device,
+                "OpenHaptics: " + std::string(cause != nullptr ? cause : library + " cannot be loaded") +
+                    "; install the vendor's OpenHaptics runtime, or name its folder in LD_LIBRARY_PATH");
   }
   const auto find = [&](auto& function, const char* name) {
     void* symbol = dlsym(loaded, name);
-    if (symbol == nullptr) throw Error("OpenHaptics: " + library + " has no function " + name);
+    if (symbol == nullptr) throw Error(ErrorKind::device, "OpenHaptics: " + library + " has no function " + name);
     function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(symbol);
   };
   find(init_device, "hdInitDevice");

@@ -16,8 +16,8 @@ namespace {
 
 // A servo that was held up for longer does not make up for it.
 constexpr std::int64_t kMaxStepNs = 20'000'000;
-constexpr std::chrono::milliseconds kLookAgain(500);
-constexpr std::chrono::milliseconds kLookStep(10);  // in which a stop is noticed
+constexpr std::chrono::milliseconds kRetry(500);
+constexpr std::chrono::milliseconds kRetryStep(10);  // in which a stop is noticed
 
 /// InputState as words.
 struct Message {
@@ -120,16 +120,16 @@ class InputDevice final : public Device {
       source_->close();
       state = {};
       send(state);
-      look_again();
+      retry();
     }
     connected_ = false;
     source_->close();
   }
 
-  void look_again() {
+  void retry() {
     while (!stopping_ && !connected_) {
-      for (auto waited = kLookStep; waited < kLookAgain && !stopping_; waited += kLookStep)
-        std::this_thread::sleep_for(kLookStep);
+      for (auto waited = kRetryStep; waited < kRetry && !stopping_; waited += kRetryStep)
+        std::this_thread::sleep_for(kRetryStep);
       try {
         source_->open();
         connected_ = true;

@@ -4,7 +4,8 @@
 namespace tegotae {
 
 std::unique_ptr<Device> make_gamepad(const RateControlSettings&) {
-  throw Error("gamepad: this build has no support for it; install libsdl2-dev, configure and build again");
+  throw Error(ErrorKind::device,
+              "gamepad: this build has no support for it; install libsdl2-dev, configure and build again");
 }
 
 }  // namespace tegotae

@@ -4,7 +4,8 @@
 namespace tegotae {
 
 std::unique_ptr<Device> make_spacemouse(const RateControlSettings&) {
-  throw Error("SpaceMouse: this build has no support for it; install libspnav-dev, configure and build again");
+  throw Error(ErrorKind::device,
+              "SpaceMouse: this build has no support for it; install libspnav-dev, configure and build again");
 }
 
 }  // namespace tegotae

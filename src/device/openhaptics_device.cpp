@@ -123,7 +123,7 @@ struct OpenHapticsDevice::Impl {
       note(info_now.code, now);
       good = good && reason_of(info_now.code) != ForceOff::disconnected;
     }
-    if (good) publish(transform, buttons, now);  // what a lost device says of its pose is no sample
+    if (good) publish(transform, buttons, now);  // what a lost device says of its pose is not a sample
   }
 
   void render(std::int64_t now) noexcept {
@@ -161,8 +161,8 @@ struct OpenHapticsDevice::Impl {
     const HdApi::ErrorInfo found = hd->get_error();
     if (found.code == HdApi::kSuccess) return;
     const char* text = hd->error_string(found.code);
-    throw Error("OpenHaptics: " + what + ": " + (text != nullptr ? text : "error") + " (code " +
-                std::to_string(found.code) + ")");
+    throw Error(ErrorKind::device, "OpenHaptics: " + what + ": " + (text != nullptr ? text : "error") + " (code " +
+                                       std::to_string(found.code) + ")");
   }
 
   void ask_info() {
@@ -191,7 +191,7 @@ struct OpenHapticsDevice::Impl {
   void connect() {
     handle = hd->init_device(settings.device.empty() ? nullptr : settings.device.c_str());
     check("the device " + (settings.device.empty() ? "" : settings.device + " ") + "cannot be initialized");
-    if (handle == HdApi::kInvalidHandle) throw Error("OpenHaptics: no device");
+    if (handle == HdApi::kInvalidHandle) throw Error(ErrorKind::device, "OpenHaptics: no device");
     hd->make_current_device(handle);
     ask_info();
     hd->enable(HdApi::kForceOutput);

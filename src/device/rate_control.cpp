@@ -10,7 +10,8 @@ namespace tegotae {
 namespace {
 
 void require(bool good, const char* setting) {
-  if (!good) throw Error(std::string("rate control: ") + setting + " is out of range");
+  if (!good)
+    throw Error(ErrorKind::setting, std::string("rate control: ") + setting + " is out of range", {{}, 0, setting, {}});
 }
 
 bool positive(double x) {

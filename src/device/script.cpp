@@ -17,7 +17,7 @@ namespace tegotae {
 
 namespace {
 
-// Shorter quaternions are no rotation but a forgotten column; files round to a few digits at worst.
+// Shorter quaternions are not a rotation but a forgotten column; files round to a few digits at worst.
 constexpr double kMinQuaternionNorm = 1e-3;
 // The square of a longer one overflows.
 constexpr double kMaxQuaternionNorm = 1e100;
@@ -73,7 +73,7 @@ std::string refusal(const StylusScript::Key& key, const StylusScript::Key* previ
   if (previous == nullptr) return {};
   const double dt = key.t - previous->t;
   if (!(dt > 0)) return "the time does not increase";
-  // A half turn at most; velocities that are no numbers make poses that are none.
+  // A half turn at most; velocities that are not numbers make poses that are none.
   const double speed = ((key.pose.p - previous->pose.p).cwiseAbs().maxCoeff() + kHalfTurn) / dt;
   if (!(speed <= kFastest)) return "the way from the key before is too fast";
   return {};
@@ -118,13 +118,13 @@ StylusScript::Key read_row(const std::vector<std::string_view>& cells, const std
 
 std::string read_all(const std::string& path, const std::string& what) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path + ": cannot be opened as a " + what);
+  if (!file) throw Error(ErrorKind::file, path + ": cannot be opened as a " + what, {path, 0, {}, {}});
   std::ostringstream text;
   if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (file.bad() || text.bad()) throw Error(path + ": cannot be read as a " + what);
+  if (file.bad() || text.bad()) throw Error(ErrorKind::file, path + ": cannot be read as a " + what, {path, 0, {}, {}});
   std::string bytes = text.str();
   if (const char* encoding = wide_encoding(bytes))
-    throw Error(path + ": its text is in " + encoding + ": save it as UTF-8");
+    throw Error(ErrorKind::file, path + ": its text is in " + encoding + ": save it as UTF-8", {path, 0, {}, {}});
   return bytes;
 }
 
@@ -160,22 +160,24 @@ std::vector<StylusScript::Key> read_keys(const std::string& path, const KeyFile&
       const std::string reason = refusal(keys.back(), keys.size() > 1 ? &keys[keys.size() - 2] : nullptr);
       if (!reason.empty()) throw Error(reason);
     } catch (const Error& error) {
-      throw Error(path + ":" + std::to_string(number) + ": " + error.what());
+      throw Error(ErrorKind::file, path + ":" + std::to_string(number) + ": " + error.what(), {path, number, {}, {}});
     }
   }
   if (order.empty())
-    throw Error(path + ": empty; a " + kind.what + " begins with the header row t,px,py,pz,qw,qx,qy,qz");
-  if (keys.empty()) throw Error(path + ": no row after the header row");
+    throw Error(ErrorKind::file,
+                path + ": empty; a " + kind.what + " begins with the header row t,px,py,pz,qw,qx,qy,qz",
+                {path, 0, {}, {}});
+  if (keys.empty()) throw Error(ErrorKind::file, path + ": no row after the header row", {path, 0, {}, {}});
   return keys;
 }
 
 }  // namespace
 
 StylusScript::StylusScript(std::vector<Key> keys) : keys_(std::move(keys)) {
-  if (keys_.empty()) throw Error("stylus script: no key");
+  if (keys_.empty()) throw Error(ErrorKind::setting, "stylus script: no key");
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const std::string reason = refusal(keys_[i], i > 0 ? &keys_[i - 1] : nullptr);
-    if (!reason.empty()) throw Error("stylus script: key " + std::to_string(i + 1) + ": " + reason);
+    if (!reason.empty()) throw Error(ErrorKind::setting, "stylus script: key " + std::to_string(i + 1) + ": " + reason);
     keys_[i].pose.q.normalize();
   }
   for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
@@ -211,7 +213,8 @@ std::vector<Pose> read_path(const std::string& path) {
   // Run and page read a guide several times, and a pipe can be read once.
   std::error_code none;
   if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))
-    throw Error(path + ": is not a regular file, as a path has to be; save it to one");
+    throw Error(ErrorKind::file, path + ": is not a regular file, as a path has to be; save it to one",
+                {path, 0, {}, {}});
   std::vector<Pose> out;
   for (const StylusScript::Key& key : read_keys(path, {"path", true}))
     out.push_back({key.pose.q.normalized(), key.pose.p});

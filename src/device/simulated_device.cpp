@@ -118,7 +118,7 @@ struct SimulatedDevice::Impl {
 
   HandTarget intent(double t) { return hand.target(t, {body.rotation, body.center - body.rotation * center}); }
 
-  void look_at_guide() {
+  void poll_guide() {
     if (!guide || !guide->target(goal) || led) return;
     led = true;
     led_hand = intent(script_time(time_ns.load(std::memory_order_relaxed))).pose;
@@ -141,7 +141,7 @@ struct SimulatedDevice::Impl {
   void advance(std::int64_t dt_ns) {
     std::int64_t now = time_ns.load(std::memory_order_relaxed);
     const std::int64_t end = now + dt_ns;
-    look_at_guide();
+    poll_guide();
     while (now < end) {
       const std::int64_t step = std::min(kMaxStepNs, end - now);
       const double h = 1e-9 * static_cast<double>(step);

@@ -24,9 +24,9 @@ class SpaceMouse final : public InputDriver {
 
   void open() override {
     if (spnav_open() == -1)
-      throw Error(
-          "SpaceMouse: spacenavd does not answer; install and start it (package spacenavd), or say where its "
-          "socket is with SPNAV_SOCKET");
+      throw Error(ErrorKind::device,
+                  "SpaceMouse: spacenavd does not answer; install and start it (package spacenavd), or say where its "
+                  "socket is with SPNAV_SOCKET");
     open_ = true;
   }
 

@@ -7,7 +7,7 @@ namespace tegotae {
 
 namespace {
 constexpr double kTwoPi = 6.283185307179586;
-// Of a step: what is less is no step but, say, the share of a turn about another axis, and is taken as it is.
+// Of a step: what is less is not a step but, say, the share of a turn about another axis, and is taken as it is.
 constexpr double kStep = 0.5;
 // Steps that follow each other within this time (s) are taken as they come: they may be those of a swing, which what
 // spreads them over their time would feed by its delay.

@@ -51,7 +51,7 @@ class SurfaceDistance::Query : public LeafQuery {
   Query(SurfaceDistance& of, const Pose& X_BA, NearestPoints& out) : of_(of), X_(X_BA), out_(out) {}
 
   /// Looks at one pair of triangles; returns a lower bound of their distance.
-  double look(const Simplex& a, std::uint32_t face_a, std::uint32_t face_b, Vec3& normal, double& bound) {
+  double visit(const Simplex& a, std::uint32_t face_a, std::uint32_t face_b, Vec3& normal, double& bound) {
     const Simplex b = corners(of_.front_.b(), face_b);
     const double gap = gap_along(normal, a, b);
     if (gap >= bound - NearFront::kTolerance) return gap;
@@ -81,7 +81,7 @@ class SurfaceDistance::Query : public LeafQuery {
       const Simplex triangle = placed(of_a[a.first + i]);
       for (std::uint32_t k = 0; k < b.count; ++k) {
         Vec3 between = normal;
-        const double found = look(triangle, of_a[a.first + i], of_b[b.first + k], between, bound);
+        const double found = visit(triangle, of_a[a.first + i], of_b[b.first + k], between, bound);
         if (found >= least) continue;
         least = found;
         best = between;
@@ -101,7 +101,7 @@ bool SurfaceDistance::within(double limit, const Pose& X_BA, NearestPoints& out)
   Query query(*this, X_BA, out);
   double bound = std::nextafter(limit, std::numeric_limits<double>::infinity());
   Vec3 none = Vec3::Zero();
-  query.look(query.placed(face_a_), face_a_, face_b_, none, bound);
+  query.visit(query.placed(face_a_), face_a_, face_b_, none, bound);
   front_.query(X_BA, bound, query);
   return bound <= limit;
 }

@@ -15,7 +15,7 @@ struct FeaturePair {
 
 /// How far a neighboring feature may lean towards the other part (rad) before a walk follows it. Zero finds strict
 /// local minima only: of a box that hovers 0.001 rad tilted over a floor just the lowest corner, and the box then tips
-/// from corner to corner. Too large keeps features that are no minimum of distance.
+/// from corner to corner. Too large keeps features that are not a minimum of distance.
 struct WalkTolerance {
   double vertex = 0.03;  ///< from a vertex to one of its edges
   double edge = 0.01;    ///< from an edge to one of its faces

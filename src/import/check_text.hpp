@@ -78,8 +78,8 @@ inline double beyond_double(std::string_view text) {
   return negative ? -size : size;
 }
 
-/// Takes the next word of `text`'s first line from it; false when that is no T as a whole (a plus in front may be). A
-/// number too large for a double is infinite: coordinates are judged after loading.
+/// Takes the next word of `text`'s first line from it; false when that is not a T as a whole (a plus in front may be).
+/// A number too large for a double is infinite: coordinates are judged after loading.
 template <class T>
 bool take_number(std::string_view& text, T& value) {
   text.remove_prefix(first_not_of(text, " \t\r"));

@@ -27,7 +27,7 @@ void require_file(const std::string& path);
 
 /// The extension of `path` with its dot, in small letters.
 std::string lower_extension(const std::string& path);
-/// Whether a file holds parts and is no scene, by the end of its name.
+/// Whether a file holds parts and is not a scene, by the end of its name.
 bool is_file_of_parts(const std::string& path);
 /// The kinds of file that are read, for messages.
 inline constexpr const char* kKindsOfFile =

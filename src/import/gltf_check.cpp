@@ -87,7 +87,7 @@ class GltfCheck {
     static const json empty = json::array();
     const auto found = top_.find(key);
     if (found == top_.end()) return empty;
-    if (!found->is_array()) refuse(std::string("damaged: ") + key + " is no list");
+    if (!found->is_array()) refuse(std::string("damaged: ") + key + " is not a list");
     return *found;
   }
 
@@ -198,9 +198,10 @@ class GltfCheck {
   void check_elements(const json& of, std::uint64_t count, std::uint64_t size, const std::string& self) const {
     const json& view = list("bufferViews")[reference(of.at("bufferView"), "bufferViews", self)];
     const std::uint64_t whole = whole_number<std::uint64_t>(view.at("byteLength")), from = number(of, "byteOffset", 0);
-    const std::uint64_t told = number(view, "byteStride", 0);  // as if it were not there, where it is 0
-    if (told > 0 && told < size) refuse("damaged: the elements of " + self + " overlap: its byteStride is too small");
-    const std::uint64_t stride = std::max(size, told);
+    const std::uint64_t stated = number(view, "byteStride", 0);  // as if it were not there, where it is 0
+    if (stated > 0 && stated < size)
+      refuse("damaged: the elements of " + self + " overlap: its byteStride is too small");
+    const std::uint64_t stride = std::max(size, stated);
     if (count == 0) return;
     if (from > whole || size > whole - from || (count - 1) > (whole - from - size) / stride)
       refuse("damaged: " + self + " reaches past the end of its bufferView");
@@ -309,7 +310,7 @@ class GltfCheck {
   void check_matrix(const json& matrix, const std::string& self) const {
     for (const std::size_t k : {3, 7, 11, 15})
       if (!(std::abs(matrix.at(k).get<double>() - (k == 15 ? 1 : 0)) <= kRoundedRow))
-        refuse("damaged: the matrix of " + self + " is no place: its last row is not 0 0 0 1");
+        refuse("damaged: the matrix of " + self + " is not a pose: its last row is not 0 0 0 1");
   }
 
   const std::string& path_;

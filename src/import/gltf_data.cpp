@@ -107,7 +107,7 @@ void require_indices(const std::string& path, const cgltf_accessor& accessor) {
   require_data(path, accessor);
   if (accessor.component_type != cgltf_component_type_r_8u && accessor.component_type != cgltf_component_type_r_16u &&
       accessor.component_type != cgltf_component_type_r_32u)
-    throw Error(path + ": damaged: indices are no unsigned whole numbers");
+    throw Error(path + ": damaged: indices are not unsigned whole numbers");
 }
 
 void unpack(const std::string& path, const cgltf_accessor& accessor, std::vector<float>& numbers) {
@@ -189,7 +189,7 @@ std::vector<Vec3> points_of(const std::string& path, const cgltf_accessor& acces
 }
 
 std::vector<std::size_t> indices_of(const std::string& path, const cgltf_accessor& accessor) {
-  if (accessor.type != cgltf_type_scalar) throw Error(path + ": damaged: indices of a primitive are no scalars");
+  if (accessor.type != cgltf_type_scalar) throw Error(path + ": damaged: indices of a primitive are not scalars");
   require_indices(path, accessor);
   cgltf_accessor dense = accessor;
   dense.is_sparse = 0;

@@ -17,7 +17,7 @@ std::vector<Matrix34> joint_maps(const std::string& path, const cgltf_skin& skin
   for (std::size_t j = 0; j < maps.size(); ++j) {
     const Eigen::Map<const Eigen::Matrix4d> bind(&m[16 * j]);
     if (!((bind.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kRoundedRow))
-      throw Error(path + ": damaged: an inverse bind matrix is no place: its last row is not 0 0 0 1");
+      throw Error(path + ": damaged: an inverse bind matrix is not a pose: its last row is not 0 0 0 1");
     maps[j] = product(maps[j], bind.topRows<3>());
   }
   return maps;

@@ -65,7 +65,7 @@ class GltfReader {
       for (std::size_t i = 0; i < data_.nodes_count; ++i)
         if (data_.nodes[i].parent == nullptr) add(data_.nodes[i], Matrix34::Identity(), groups);
     }
-    tell_unread();
+    note_unread();
     return std::move(file_);
   }
 
@@ -79,7 +79,7 @@ class GltfReader {
     groups.pop_back();
   }
 
-  void tell_unread() {
+  void note_unread() {
     std::size_t other = 0;
     for (std::size_t i = 0; i < data_.nodes_count; ++i)
       other += data_.nodes[i].mesh != nullptr && shown_.count(&data_.nodes[i]) == 0;

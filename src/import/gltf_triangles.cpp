@@ -109,8 +109,8 @@ GltfTriangles draco_triangles_of(const std::string& path, const cgltf_data& data
   const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id);
   if (attribute == nullptr || attribute->num_components() != 3) throw fail("has no positions");
   // The stream has the bare integers; what they stand for the accessor says.
-  const cgltf_attribute* told = position_of(primitive.attributes, primitive.attributes_count);
-  const double divisor = told == nullptr || attribute->normalized() ? 1 : divisor_of(*told->data);
+  const cgltf_attribute* declared = position_of(primitive.attributes, primitive.attributes_count);
+  const double divisor = declared == nullptr || attribute->normalized() ? 1 : divisor_of(*declared->data);
   const bool share = divisor != 1 || (attribute->normalized() && draco::IsDataTypeIntegral(attribute->data_type()));
   GltfTriangles out;
   for (draco::PointIndex i(0); i < mesh->num_points(); ++i) {

@@ -34,7 +34,7 @@ void ImportNotes::add(const NoteText& text, const std::string& thing, double val
   if (said->first.size() < kNamed) said->first.push_back(thing);
 }
 
-void ImportNotes::tell(std::vector<std::string>& notes) const {
+void ImportNotes::write_to(std::vector<std::string>& notes) const {
   for (const Said& said : said_) {
     const NoteText& text = *said.text;
     std::string line = said.count == 1 ? text.one + said.first[0]

@@ -20,7 +20,7 @@ class ImportNotes {
   /// Says `text`, which outlives this, of `thing`: a name in quotes, or the number of an entity. `value`, m.
   void add(const NoteText& text, const std::string& thing, double value = 0);
   /// Adds a line for each text, in the order in which they were first said: `2 parts ("a", "b"): WHAT; ADVICE`.
-  void tell(std::vector<std::string>& notes) const;
+  void write_to(std::vector<std::string>& notes) const;
 
  private:
   struct Said {

@@ -18,6 +18,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/deadline.hpp"
 #include "import/load_cached.hpp"
 #include "import/mesh_pipe.hpp"
 #include "import/utf8.hpp"
@@ -29,7 +30,7 @@ extern char** environ;
 namespace tegotae {
 namespace {
 
-// Texts longer than this are no message of a helper.
+// Texts longer than this are not a message of a helper.
 constexpr std::uint64_t kLongestText = 100'000;
 constexpr int kPipeBytes = 1 << 20;
 
@@ -125,7 +126,7 @@ class Reader {
         helper_(helper),
         path_(path),
         seconds_(bounds.seconds),
-        deadline_ns_(monotonic_ns() + static_cast<std::int64_t>(1e9 * bounds.seconds)) {}
+        deadline_ns_(deadline_after(monotonic_ns(), bounds.seconds)) {}
 
   void read_all(void* data, std::size_t size) {
     char* at = static_cast<char*>(data);

@@ -87,7 +87,7 @@ class Mover {
       }
       if (done) break;
     }
-    return look(before);
+    return measure(before);
   }
 
  private:
@@ -168,7 +168,7 @@ class Mover {
     return solver.compute(A).solve(b);
   }
 
-  ClearanceReport look(const std::vector<Vec3>& before) const {
+  ClearanceReport measure(const std::vector<Vec3>& before) const {
     ClearanceReport report;
     for (const Cylinder& c : cylinders_) {
       const double in = c.cad.hole ? c.cad.radius - nearest(c) : farthest(c) - c.cad.radius;
@@ -193,7 +193,7 @@ class Mover {
   const std::vector<CadFace>& faces_;
   const double margin_;
   std::vector<Cylinder> cylinders_;
-  std::vector<std::size_t> cylinder_of_;  ///< of each face, kNo of what is no cylinder
+  std::vector<std::size_t> cylinder_of_;  ///< of each face, kNo of what is not a cylinder
   std::vector<std::vector<std::uint32_t>> triangles_of_;
   std::vector<std::vector<std::uint32_t>> faces_at_;  ///< of each vertex
 };

@@ -44,7 +44,7 @@ class TreeReader {
     assembly_.up = file_.up;
     assembly_.notes = std::move(file_.notes);
     for (const PartFile::Placed& part : file_.parts) add(part);
-    notes_.tell(assembly_.notes);
+    notes_.write_to(assembly_.notes);
     return std::move(assembly_);
   }
 

@@ -85,7 +85,7 @@ std::optional<TriangleMesh> of_ply(std::string_view bytes) {
 /// What assimp's number reader throws; the words were checked before.
 struct NoNumber : Error {
   template <class... Words>
-  explicit NoNumber(const Words&...) : Error("a coordinate is no number") {}
+  explicit NoNumber(const Words&...) : Error("a coordinate is not a number") {}
 };
 
 /// Lines of "v x y z" and "f a b c" as plain_obj writes them, with one space between words.

@@ -29,7 +29,7 @@ void MatingNotes::add(const AssemblyPart& a, const AssemblyPart& b, FaceKind kin
   pair.kinds.insert(kind);
 }
 
-void MatingNotes::tell(double chord, ImportNotes& notes) const {
+void MatingNotes::report(double chord, ImportNotes& notes) const {
   for (const auto& [shapes, pair] : pairs_) {
     std::string kinds;
     for (const FaceKind kind : pair.kinds) kinds += (kinds.empty() ? "" : " and ") + std::string(names_of(kind));

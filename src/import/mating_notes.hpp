@@ -17,7 +17,7 @@ class MatingNotes {
  public:
   void add(const AssemblyPart& a, const AssemblyPart& b, FaceKind kind);
   /// Says it of each pair of shapes (instances mate alike), whose facets keep within `chord` (m).
-  void tell(double chord, ImportNotes& notes) const;
+  void report(double chord, ImportNotes& notes) const;
 
  private:
   struct Pair {

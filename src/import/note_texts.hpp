@@ -49,7 +49,7 @@ inline constexpr NoteText kNoColors{"", "files", "colors are damaged and not rea
 
 // STEP: what is read otherwise than it may be meant.
 inline constexpr NoteText kHidden{"", "bodies", "hidden in the file, and read all the same",
-                                  "if one is no part, take it out of the file or of the scene"};
+                                  "if one is not a part, take it out of the file or of the scene"};
 inline constexpr NoteText kNoUnit{"", "shapes",
                                   "no unit of length, so taken for mm, or for the unit of the shape around it",
                                   "export the file with its unit"};

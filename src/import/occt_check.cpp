@@ -89,7 +89,7 @@ bool is_constructive(const Entity& entity) {
          entity->IsKind(STANDARD_TYPE(StepShape_RightAngularWedge));
 }
 
-/// A solid, or where `bare` a surface that is no part of one: something that can be touched should become of it.
+/// A solid, or where `bare` a surface that is not part of one: something that can be touched should become of it.
 bool is_touchable(const Entity& entity, bool bare) {
   return is_constructive(entity) || entity->IsKind(STANDARD_TYPE(StepShape_SolidModel)) ||
          (bare && (entity->IsKind(STANDARD_TYPE(StepShape_ConnectedFaceSet)) ||
@@ -103,7 +103,7 @@ std::string product_name(const StepBasic_ProductDefinition& definition) {
 }
 
 /// Faults of the file as a whole. A reference to nothing is also a fault of the entity that has it; that there is
-/// nothing to check is no fault.
+/// nothing to check is not a fault.
 void require_readable(const std::string& path, const Handle(Interface_Check) & whole) {
   for (int i = 1; i <= whole->NbFails(); ++i)
     if (!begins(whole->CFail(i), "Unresolved Reference") && !has(whole->CFail(i), "DATA NOT AVAILABLE"))
@@ -182,7 +182,7 @@ std::vector<std::string> named_files(const std::string& path, const Handle(XSCon
     if (!std::filesystem::exists(file, error))
       missing.emplace_back(name);
     else if (!MeshFolder(path).Exists(file.c_str()))
-      throw Error(path + ": the file \"" + name + "\" that it names is no regular file in its folder or below");
+      throw Error(path + ": the file \"" + name + "\" that it names is not a regular file in its folder or below");
   }
   return missing;
 }

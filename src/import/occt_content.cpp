@@ -17,10 +17,10 @@ std::string entry_of(const TDF_Label& label) {
 Content ProductContents::of(const TDF_Label& product) {
   const std::string entry = entry_of(product);
   const auto known = known_.find(entry);
-  return known != known_.end() ? known->second : known_[entry] = look(product);
+  return known != known_.end() ? known->second : known_[entry] = inspect(product);
 }
 
-Content ProductContents::look(const TDF_Label& product) {
+Content ProductContents::inspect(const TDF_Label& product) {
   if (!XCAFDoc_ShapeTool::IsAssembly(product)) {
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(product);
     if (shape.IsNull()) return {};

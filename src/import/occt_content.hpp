@@ -24,7 +24,7 @@ class ProductContents {
   Content of(const TDF_Label& product);
 
  private:
-  Content look(const TDF_Label& product);
+  Content inspect(const TDF_Label& product);
   bool has_lines(const TopoDS_Shape& shape) const;
 
   const TransferredTriangles& triangles_;

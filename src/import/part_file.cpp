@@ -25,7 +25,7 @@ bool is_part_file(const std::string& path) {
 namespace {
 
 /// Parts that their place leaves no volume are told; those without any extent, a way to hide a node, are left out.
-void tell_flat(PartFile& file) {
+void note_flat(PartFile& file) {
   constexpr double kFlat = 1e-9;  // of the cube of the largest entry; matrices are of floats
   ImportNotes notes;
   std::vector<PartFile::Placed> parts;
@@ -39,14 +39,14 @@ void tell_flat(PartFile& file) {
     if (largest != 0) parts.push_back(std::move(part));
   }
   file.parts = std::move(parts);
-  notes.tell(file.notes);
+  notes.write_to(file.notes);
 }
 
 }  // namespace
 
 PartFile read_part_file(const std::string& path) {
   PartFile file = lower_extension(path) == ".3mf" ? read_3mf(path) : read_gltf(path);
-  tell_flat(file);
+  note_flat(file);
   return file;
 }
 

@@ -62,7 +62,7 @@ class ObjReader {
 
  private:
   std::string unknown() const {
-    return "line " + std::to_string(unknown_line_) + " \"" + unknown_ + "\" is no statement that is known";
+    return "line " + std::to_string(unknown_line_) + " \"" + unknown_ + "\" is not a known statement";
   }
 
   [[noreturn]] void bad(const std::string& why) const {
@@ -111,7 +111,7 @@ class ObjReader {
     }
   }
 
-  /// What is no statement of the format. One that does not begin with a word may be any, damaged.
+  /// What is not a statement of the format. One that does not begin with a word may be any, damaged.
   void read_unknown(std::string_view word) {
     if (std::any_of(word.begin(), word.end(), [](char c) { return c < '!' || c > '~'; }))
       bad("does not begin with the word of a statement");
@@ -142,7 +142,7 @@ class ObjReader {
     for (std::string_view word = take_word(values); !word.empty(); word = take_word(values)) {
       std::string_view text = word.substr(0, word.find('/'));
       std::int64_t index = 0;
-      if (!take_number(text, index)) bad("has a corner that is no index of a vertex");
+      if (!take_number(text, index)) bad("has a corner that is not an index of a vertex");
       const auto known = static_cast<std::int64_t>(vertices_);
       if (index == 0 || index < -known) bad("has an index out of range");
       corners.push_back(static_cast<std::uint64_t>(index > 0 ? index : known + index + 1));

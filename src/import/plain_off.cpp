@@ -28,7 +28,7 @@ class OffReader {
       notes.push_back(
           "lines behind its last face are not read: its counts announce fewer vertices and faces; "
           "correct them if something is missing");
-    out.tell_short(notes);
+    out.note_short(notes);
     if (!out.has_faces()) refuse(path_, "no triangles");
     return out.file();
   }
@@ -59,7 +59,7 @@ class OffReader {
         refuse(path_, "it has " + std::to_string(dimensions) + " dimensions; OFF files of three are read");
     }
     if (!take_count(counts, vertices_) || !take_count(counts, faces_))
-      refuse(path_, "damaged: the counts of vertices and faces are no numbers (text OFF only)");
+      refuse(path_, "damaged: the counts of vertices and faces are not numbers (text OFF only)");
     take_word(counts);  // of edges, which nobody needs
     crowded_ = !take_word(counts).empty();
   }

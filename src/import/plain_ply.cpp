@@ -84,8 +84,8 @@ class Body {
   enum class Encoding { ascii, little, big };
   Body(std::string_view bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
 
-  /// The next value; false at the end of the bytes or of an ASCII file's line, and at a word that is no number of this
-  /// type.
+  /// The next value; false at the end of the bytes or of an ASCII file's line, and at a word that is not a number of
+  /// this type.
   bool next(Scalar type, double& value) {
     if (encoding_ != Encoding::ascii) return with_type(type, [&](auto zero) { return take(value, zero); });
     std::string_view rest = bytes_.substr(at_);
@@ -149,7 +149,7 @@ Words next_line(const std::string& path, std::string_view bytes, std::size_t& at
   const bool comment = !all.empty() && (all[0] == "comment" || all[0] == "obj_info");
   for (const char c : line) {
     const auto code = static_cast<unsigned char>(c);
-    if ((code < 32 && c != '\t') || (code > 126 && !comment)) refuse(path, "damaged: its header is no plain text");
+    if ((code < 32 && c != '\t') || (code > 126 && !comment)) refuse(path, "damaged: its header is not plain text");
   }
   if (comment) all.resize(1);
   return all;
@@ -172,7 +172,7 @@ Element read_element(const std::string& path, const Words& line) {
   element.name = line[1];
   std::string_view count = line[2];
   if (!take_number(count, element.count))
-    refuse(path, "damaged: the count of element " + element.name + " is no number");
+    refuse(path, "damaged: the count of element " + element.name + " is not a number");
   return element;
 }
 
@@ -269,7 +269,7 @@ class PlyReader {
       notes.push_back(
           "what stands behind its last element is not read: its header announces fewer elements; correct it "
           "if something is missing");
-    out_.tell_short(notes);
+    out_.note_short(notes);
     if (!out_.has_faces()) refuse(path_, "no triangles");
     return out_.file();
   }
@@ -306,7 +306,7 @@ class PlyReader {
 
   template <class Place>
   std::uint32_t vertex(double value, Place place) const {
-    if (value != std::floor(value)) refuse(path_, "damaged: " + place() + " has an index that is no whole number");
+    if (value != std::floor(value)) refuse(path_, "damaged: " + place() + " has an index that is not a whole number");
     if (!(value >= 0 && value < static_cast<double>(vertices_))) {
       refuse(path_, "index out of range: " + place() + " names vertex " + std::to_string(std::llround(value)) + " of " +
                         std::to_string(vertices_));

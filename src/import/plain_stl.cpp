@@ -149,7 +149,7 @@ class TextStl {
   bool open_ = false;
 };
 
-/// What might be a text STL file, from its first word that is no comment to the padding at its end.
+/// What might be a text STL file, from its first word that is not a comment to the padding at its end.
 std::string_view text_of(std::string_view bytes) {
   bytes = bytes.substr(0, bytes.find_last_not_of('\0') + 1);
   if (bytes.substr(0, 3) == "\xef\xbb\xbf") bytes.remove_prefix(3);

@@ -26,7 +26,7 @@ class PlyBytes {
     for (const std::uint32_t corner : corners) put(face_bytes_, corner);
     ++faces_;
   }
-  void tell_short(std::vector<std::string>& notes) const {
+  void note_short(std::vector<std::string>& notes) const {
     if (short_faces_ > 0)
       notes.push_back("faces of fewer than three corners are left out, " + std::to_string(short_faces_) +
                       " of them; export anew if there is a hole");

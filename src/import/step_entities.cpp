@@ -62,7 +62,7 @@ double StepCursor::number() {
   if (text_.size() > 1 && text_[0] == '+' && text_[1] != '-') text_.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-  if (error != std::errc() || !std::isfinite(value)) damaged("has a coordinate that is no number");
+  if (error != std::errc() || !std::isfinite(value)) damaged("has a coordinate that is not a number");
   text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
   return value;
 }
@@ -71,7 +71,7 @@ std::uint64_t StepCursor::index() {
   skip_blank();
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-  if (error != std::errc() || value == 0) damaged("has an index that is no whole number from 1 on");
+  if (error != std::errc() || value == 0) damaged("has an index that is not a whole number from 1 on");
   text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
   return value;
 }

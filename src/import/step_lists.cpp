@@ -70,7 +70,7 @@ bool is_in_name(char c) {
 
 /// Whether `text` has a list `()`. What follows a name, as in LENGTH_UNIT(), and what `text` begins with is none.
 bool has_empty_list(std::string_view text) {
-  char last = 'A';       // the last sign that is no blank
+  char last = 'A';       // the last sign that is not a blank
   bool of_name = false;  // whether the parenthesis that was opened last follows a name
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];

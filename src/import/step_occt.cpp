@@ -115,9 +115,9 @@ class StepReader {
       if (options_.progress) options_.progress(("tessellating " + described(leaves_[i])).c_str(), i, leaves_.size());
       make_shape(i);
     }
-    tell_unread();
+    note_unread();
     drop_empty();
-    notes_.tell(assembly_.notes);
+    notes_.write_to(assembly_.notes);
     return std::move(assembly_);
   }
 
@@ -164,7 +164,7 @@ class StepReader {
     if (!checked.has_colors) notes_.add(note_texts::kNoColors, "the file");
     for (const std::string& file : named_files(path_, session)) notes_.add(note_texts::kMissingFile, in_quotes(file));
     if (!reader.Transfer(document_)) throw Error(path_ + ": no shapes can be read from it");
-    tell_of(session, checked.of_shape, plain.shapes);
+    note_shapes(session, checked.of_shape, plain.shapes);
     triangles_ = TransferredTriangles(std::move(plain.shapes), session);
     for (const std::string& solid : unread_solids(session, checked.of_shape)) unread_.push_back(solid);
     unplaced_ = unplaced(session);
@@ -174,8 +174,8 @@ class StepReader {
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
   }
 
-  void tell_of(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& of_shape,
-               const std::vector<StepTriangles>& shapes) {
+  void note_shapes(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& of_shape,
+                   const std::vector<StepTriangles>& shapes) {
     std::set<std::uint64_t> tessellated;
     for (const StepTriangles& shape : shapes) tessellated.insert(shape.id);
     curves_ = bare_curves(session, of_shape);
@@ -338,7 +338,7 @@ class StepReader {
       leaves_[b.shape].fine[pair.face_b] = true;
       mating.add(a, b, leaves_[a.shape].cad[pair.face_a].kind);
     }
-    mating.tell(options_.chord, notes_);
+    mating.report(options_.chord, notes_);
   }
 
   /// Name and size: facets by the million come from a unit that is not the part's.
@@ -385,13 +385,13 @@ class StepReader {
 
   /// Of a few rounding steps of the file nothing is told: no chord helps against them.
   void note(const std::string& self, const ClearanceReport& kept, double margin) {
-    const double told = std::max(1e-8, 4 * margin);
-    if (kept.into_clearance > told) notes_.add(note_texts::kReachesIn, self, kept.into_clearance);
-    if (kept.bent > told) notes_.add(note_texts::kBent, self, kept.bent);
+    const double least_noted = std::max(1e-8, 4 * margin);
+    if (kept.into_clearance > least_noted) notes_.add(note_texts::kReachesIn, self, kept.into_clearance);
+    if (kept.bent > least_noted) notes_.add(note_texts::kBent, self, kept.bent);
     if (kept.turned > 0) notes_.add(note_texts::kTurned, self);
   }
 
-  void tell_unread() {
+  void note_unread() {
     for (const std::string& what : unplaced_) notes_.add(note_texts::kUnplaced, what);
     for (const std::string& what : unread_) notes_.add(note_texts::kUnread, what);
     for (const std::uint64_t id : triangles_.unused()) notes_.add(note_texts::kNoProduct, '#' + std::to_string(id));
@@ -409,7 +409,7 @@ class StepReader {
       throw Error(path_ + ": the triangles of #" + std::to_string(triangles_.unused().front()) +
                   " are of no product: nothing else can be read");
     if (parts.empty() && !curves_.empty())
-      throw Error(path_ + ": " + curves_.front() + ": curves without faces are no part");
+      throw Error(path_ + ": " + curves_.front() + ": curves without faces are not a part");
   }
 
   const std::string &path_, &bytes_;

@@ -57,7 +57,7 @@ class ThreeMfReader {
     std::vector<std::string> groups;
     for (const pugi::xml_node& item : build.children())
       if (is(item.name(), "item")) add(item, start, scaled(transform_of(item)), groups, 0);
-    notes_.tell(file_.notes);
+    notes_.write_to(file_.notes);
     return std::move(file_);
   }
 
@@ -68,7 +68,7 @@ class ThreeMfReader {
   std::string first_model() const {
     pugi::xml_document relations;
     const std::string text = archive_.read("_rels/.rels");
-    if (!relations.load_buffer(text.data(), text.size())) damaged("_rels/.rels is no XML");
+    if (!relations.load_buffer(text.data(), text.size())) damaged("_rels/.rels is not XML");
     for (const pugi::xml_node& r : relations.document_element().children()) {
       const std::string type = attribute(r, "Type");
       if (type.size() >= 8 && type.compare(type.size() - 8, 8, "/3dmodel") == 0) return inside(attribute(r, "Target"));
@@ -88,7 +88,7 @@ class ThreeMfReader {
     const std::string text = archive_.read(name);
     const pugi::xml_parse_result parsed = known->second->load_buffer(text.data(), text.size());
     const pugi::xml_node model = known->second->document_element();
-    if (!parsed || !is(model.name(), "model")) damaged(name + " in it is no 3MF model");
+    if (!parsed || !is(model.name(), "model")) damaged(name + " in it is not a 3MF model");
     check_extensions(model);
     index(name, model);
     return model;
@@ -222,7 +222,7 @@ class ThreeMfReader {
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t k = 0; k < 3; ++k) {
         const double index = number(t.attribute(k == 0 ? "v1" : k == 1 ? "v2" : "v3").value(), place);
-        if (index != std::floor(index)) damaged(place() + " has an index that is no whole number");
+        if (index != std::floor(index)) damaged(place() + " has an index that is not a whole number");
         if (!(index >= 0 && index < static_cast<double>(out.vertices.size())))
           throw Error(path_ + ": index out of range: " + printable(place()) + " names a vertex that it does not have");
         corners[k] = static_cast<std::uint32_t>(index);
@@ -276,7 +276,7 @@ class ThreeMfReader {
 }  // namespace
 
 PartFile read_3mf(const std::string& path) {
-  read_mesh_bytes(path);  // refuses what is no file
+  read_mesh_bytes(path);  // refuses what is not a file
   return ThreeMfReader(path).read();
 }
 

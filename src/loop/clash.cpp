@@ -50,18 +50,18 @@ struct Deepest {
 /// Crossing of an edge: its number and where on it (0 to 1).
 using Crossing = std::pair<std::uint32_t, double>;
 
-class PairLook {
+class PairQuery {
  public:
-  PairLook(FclPairs& fcl, const ClashOptions& options) : fcl_(fcl), options_(options) {}
+  PairQuery(FclPairs& fcl, const ClashOptions& options) : fcl_(fcl), options_(options) {}
 
   /// Fills kind, gap, depth and place; false when the two are too far apart to be listed.
-  bool look(const Side& a, const Side& b, Clash& clash) {
+  bool query(const Side& a, const Side& b, Clash& clash) {
     const Pose X_BA = b.part->pose.inverse() * a.part->pose;
     const bool apart = known_apart(a, b, X_BA);
     std::vector<FclPairs::Faces> pairs;
     if (!apart) pairs = fcl_.intersections(*a.part->mesh, *b.part->mesh, X_BA, kMaxPairs);
     const bool inside = pairs.empty() && (any_inside(a, b) || any_inside(b, a));
-    if (pairs.empty() && !inside) return !apart && look_apart(a, b, X_BA, clash);
+    if (pairs.empty() && !inside) return !apart && query_apart(a, b, X_BA, clash);
     clash.gap = 0;
     clash.depth = 0;
     clash.triangle_pairs = pairs.size();
@@ -142,7 +142,7 @@ class PairLook {
     });
   }
 
-  bool look_apart(const Side& a, const Side& b, const Pose& X_BA, Clash& clash) {
+  bool query_apart(const Side& a, const Side& b, const Pose& X_BA, Clash& clash) {
     FclPairs::Faces nearest;
     // The bound itself is not found: look a little farther.
     const double bound = reach() * (1 + 1e-9) + 1e-12;
@@ -186,12 +186,12 @@ class PairLook {
     Deepest best;
     if (!closed(outer)) return best;
     const Pose X = outer.part->pose.inverse() * inner.part->pose;
-    const auto look_at = [&](const Vec3& p) {
+    const auto visit = [&](const Vec3& p) {
       if (!outer.data->box.contains(p)) return;
       const double depth = -signed_distance(outer, p);
       if (depth > best.depth) best = {depth, p};
     };
-    for (const Vec3& v : inner.part->mesh->vertices) look_at(X * v);
+    for (const Vec3& v : inner.part->mesh->vertices) visit(X * v);
     std::sort(crossings.begin(), crossings.end());
     const auto& edges = prepared(inner).surface().topology.edges;
     for (std::size_t i = 0; i < crossings.size(); ++i) {
@@ -200,8 +200,8 @@ class PairLook {
       const bool last = i + 1 == crossings.size() || crossings[i + 1].first != e;
       const Vec3 from = X * inner.part->mesh->vertices[edges[e].v[0]];
       const Vec3 way = X * inner.part->mesh->vertices[edges[e].v[1]] - from;
-      if (first) look_at(from + 0.5 * s * way);
-      look_at(from + 0.5 * (s + (last ? 1.0 : crossings[i + 1].second)) * way);
+      if (first) visit(from + 0.5 * s * way);
+      visit(from + 0.5 * (s + (last ? 1.0 : crossings[i + 1].second)) * way);
     }
     return best;
   }
@@ -247,14 +247,14 @@ std::vector<Clash> find_clashes(const Scene& scene, const ClashOptions& options)
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), of_others), pairs.end());
   }
   FclPairs fcl;
-  PairLook pair_look(fcl, options);
+  PairQuery pair_query(fcl, options);
   std::vector<Clash> clashes;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (options.progress) options.progress(i, pairs.size());
     Clash clash;
     std::tie(clash.a, clash.b) = pairs[i];
     const Part &a = scene.parts[clash.a], &b = scene.parts[clash.b];
-    if (pair_look.look({&a, &data[a.mesh.get()]}, {&b, &data[b.mesh.get()]}, clash)) clashes.push_back(clash);
+    if (pair_query.query({&a, &data[a.mesh.get()]}, {&b, &data[b.mesh.get()]}, clash)) clashes.push_back(clash);
   }
   std::stable_sort(clashes.begin(), clashes.end(), [](const Clash& x, const Clash& y) {
     const double depth_x = x.depth.value_or(0), depth_y = y.depth.value_or(0);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/deadline.hpp"
 #include "loop/initial_separation.hpp"
 #include "loop/mesh_structures.hpp"
 #include "loop/scene_parts.hpp"
@@ -20,7 +21,7 @@ constexpr double kReachShare = 0.02;
 // The held part is moved at most so many touch tolerances, and gap floors, off what it touches at the start: a corner
 // with three faces takes 1.8.
 constexpr double kMaxShift = 3;
-// Of the tick's budget, what a look at a pair that was not free at the start may take.
+// Share of the tick's budget for the test whether a pair that touched at the start has separated.
 constexpr double kPollShare = 0.25;
 
 /// Meshes and poses of the fixed parts, and of what stands in for some of them.
@@ -109,8 +110,7 @@ bool CollisionWorld::is_path_free(const Pose& from, const Pose& to, const Vec3& 
 }
 
 bool CollisionWorld::poll_initial_contacts(const Pose& pose) noexcept {
-  const std::int64_t deadline =
-      std::isfinite(poll_time_) ? monotonic_ns() + static_cast<std::int64_t>(1e9 * poll_time_) : kNoDeadline;
+  const std::int64_t deadline = deadline_after(monotonic_ns(), poll_time_);
   const InitialContacts::Waiting* freed = start.poll(pose, *check, deadline);
   if (freed == nullptr) return false;
   if (freed->stand_in != InitialContacts::kNobody) contacts->transfer(freed->stand_in, freed->part);

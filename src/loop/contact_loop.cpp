@@ -17,7 +17,8 @@ namespace {
 std::unique_ptr<Resolver> resolver_of(const ContactSettings& settings) {
   if (!settings.custom_resolver) return make_resolver(settings.resolver, kMaxConstraints);
   auto own = settings.custom_resolver(kMaxConstraints);
-  if (!own) throw Error("contact.custom_resolver made no resolver");
+  if (!own)
+    throw Error(ErrorKind::setting, "contact.custom_resolver made no resolver", {{}, 0, "contact.custom_resolver", {}});
   return own;
 }
 
@@ -146,31 +147,10 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   known_.clear();
   allowed_ = wanted;
   made_ = gained_ = lost_ = 0;
-  if (near_.empty()) {
-    X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
-    if (wanted <= travel) X_ = Y;
-    report.substeps.push_back(X_);
-    at_.contacts->clear();
-    tracked_ = false;
-    owed_.reset();
-  } else {
-    at_.check->begin(near_, deadline_ns_, OtherParts::far);
-    if (track()) adapt_margin(Y);
-    trust_ = std::max(trust_, kMinTrust);
-    if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));
-    int shorter = 0;
-    for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
-      const double cap = std::min({trust_, substep_cap_, travel - made_});
-      const double length = move_substep(Y, cap, report);
-      if (length > 0) report.substeps.push_back(X_);
-      // A sub-step shorter than it could be is the resolver's own end, but where planes of a longer motion made it
-      // short.
-      if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
-      made_ += length;
-    }
-    if (report.substeps.empty()) report.substeps.push_back(X_);
-    if (!late()) track();
-  }
+  if (near_.empty())
+    move_in_air(Y, wanted, travel, report);
+  else
+    move_near_parts(Y, travel, pen, report);
   at_.fill_report(margin_ / kMarginShare, report);
   // Where the kept gap has shrunk, contacts may hold the part a little above it.
   if (report.contacts == 0 && wanted > margin_ && report.gap <= *settings_.l_min)
@@ -199,6 +179,34 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   }
 }
 
+void ContactLoop::move_in_air(const Pose& Y, double wanted, double travel, TickReport& report) {
+  X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
+  if (wanted <= travel) X_ = Y;
+  report.substeps.push_back(X_);
+  at_.contacts->clear();
+  tracked_ = false;
+  owed_.reset();
+}
+
+void ContactLoop::move_near_parts(const Pose& Y, double travel, double pen, TickReport& report) {
+  at_.check->begin(near_, deadline_ns_, OtherParts::far);
+  if (track()) adapt_margin(Y);
+  trust_ = std::max(trust_, kMinTrust);
+  if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));
+  int shorter = 0;
+  for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
+    const double cap = std::min({trust_, substep_cap_, travel - made_});
+    const double length = move_substep(Y, cap, report);
+    if (length > 0) report.substeps.push_back(X_);
+    // A sub-step shorter than it could be is the resolver's own end, but where planes of a longer motion made it
+    // short.
+    if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
+    made_ += length;
+  }
+  if (report.substeps.empty()) report.substeps.push_back(X_);
+  if (!late()) track();
+}
+
 void ContactLoop::report_forces(const Pose& Y, TickReport& report) {
   report.planes.count = 0;
   report.forces = {};
@@ -212,7 +220,7 @@ void ContactLoop::report_forces(const Pose& Y, TickReport& report) {
     // Out of time, the constraints may be those of an earlier pose.
     report.forces.lag = planes_.pull(displacement(X_, Y, center_));
   }
-  // What holds the part back is no contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
+  // What holds the part back is not a contact, and the hand is to feel it: the servo must not follow the pen meanwhile.
   const bool held_up = report.lag_reason == LagReason::time || report.lag_reason == LagReason::capacity;
   const Wrench whole = planes_.pull(displacement(X_, Y, center_));
   const Wrench& lag = report.forces.lag;
@@ -252,7 +260,7 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
       if (i + 1 < kMaxResolves && query_around()) continue;
       held_by_contacts_ = only_contacts();
       if (!resolver_->projects()) trust_ *= 0.5;
-      if (cutting()) shorter_than(cap);
+      if (has_cutting_planes()) shorter_than(cap);
       return 0;
     }
     free = is_free(trial, report);
@@ -279,7 +287,7 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
     if (!shorten(trial, report)) return 0;
   }
   const bool worth = worth_it(wanted, trial, goal);
-  if (cutting() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
+  if (has_cutting_planes() && (!worth || size(trial.d) < kWorthwhile * cap)) shorter_than(cap);
   if (!worth) {
     held_by_contacts_ = only_contacts();
     query_around();
@@ -293,13 +301,13 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
 
 bool ContactLoop::take_in(const Displacement& d) {
   return at_.contacts->seed(blocking_, at_.check->near_contact(X_, d, blocking_), deadline_ns_) > 0 ||
-         at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0;
+         at_.contacts->add_cutting_planes(blocking_, d, kGapFloor, deadline_ns_) > 0;
 }
 
 bool ContactLoop::query_around() {
   // Sub-steps need leave the certificate's clearance only, so that a part may have come to rest nearer to a surface
   // that was in no sub-step's way than to the contacts that hold it.
-  if (queried_ || moved_ > kStanding || cutting()) return false;
+  if (queried_ || moved_ > kStanding || has_cutting_planes()) return false;
   queried_ = true;
   blocking_.clear();
   at_.check->check(X_, {}, kRecoverBelow * margin_, blocking_);
@@ -312,7 +320,7 @@ void ContactLoop::shorter_than(double cap) {
   tracked_ = false;  // tracking forgets the planes
 }
 
-bool ContactLoop::cutting() const {
+bool ContactLoop::has_cutting_planes() const {
   const auto& constraints = at_.contacts->constraints();
   return std::any_of(constraints.begin(), constraints.end(), [](const Contact& c) { return c.age == kOneShotAge; });
 }
@@ -331,7 +339,7 @@ LagReason ContactLoop::reason_for(double lag, const TickReport& report) const {
   end.bound = lag_bound(at_.radius);
   end.contacts = report.contacts;
   end.held_by_contacts = held_by_contacts_;
-  // What the contacts allow and take back again is no way to the pen.
+  // What the contacts allow and take back again is not a way to the pen.
   end.allowed = lost_ > kTakenBack * gained_ ? 0 : allowed_;
   end.late = late();
   end.moved = moved_ > kRest;

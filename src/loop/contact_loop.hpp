@@ -54,11 +54,11 @@ class ContactLoop final : public ProxyLoop {
   bool resolve(const Vec6& wanted, double cap, TickReport& report, Trial& trial);
   /// One program over the constraints: an allowed `motion` for `wanted`.
   bool solve(const Vec6& wanted, TickReport& report, Vec6& motion);
-  /// Whether `motion` leads farther away from the pen, which is `wanted` away, than gaps are worth that recover.
+  /// Whether `motion` leads farther away from the pen, which is `wanted` away, than recovering gaps is worth.
   bool is_long_way_back(const Vec6& motion, const Vec6& wanted) const;
-  /// Of a shorter way a program that does not project may bring a part nearer to its pen than of the whole, of which it
-  /// makes `motion`: the best of some, whichever of them have an answer. False when none of them has one.
-  bool try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
+  /// A program that does not project may bring the part nearer to the pen when it is asked for a shorter motion than
+  /// the whole. Tries some, and leaves the best answer in `motion`. Returns false when none of them has an answer.
+  bool try_shorter_motions(const Vec6& wanted, double cap, TickReport& report, Vec6& motion);
   /// The last forces of a sub-step, as forces of the contacts that are tracked now.
   const std::vector<FrictionForce>& known_forces();
   /// The same with friction, without gaps that should open.
@@ -67,9 +67,9 @@ class ContactLoop final : public ProxyLoop {
   void recover_gaps(TickReport& report, Vec6& motion);
   /// Sets which of the contacts that carry have slid in the tick, in which X moved by `moved`.
   void report_slip(const Displacement& moved, ContactForces& forces) const;
-  /// Asks the narrow phase about the trial; blocking_ holds what is in its way.
+  /// Lets the narrow phase check the trial; blocking_ then holds what blocks it.
   bool is_free(const Trial& trial, TickReport& report);
-  /// Makes contacts, or planes for one motion, of what is in the way of `d`; whether there are fresh ones.
+  /// Makes contacts or cutting planes of what blocks `d`. Returns whether there are new ones.
   bool take_in(const Displacement& d);
   bool shorten(Trial& trial, TickReport& report);
   /// Shortens the trial to `share` of it.
@@ -77,28 +77,32 @@ class ContactLoop final : public ProxyLoop {
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
   bool late() const;
-  /// Sets what the report says of contact planes and forces.
+  /// The motion of a tick in which nothing is near: at most `travel` (m) of the `wanted` (m) to Y.
+  void move_in_air(const Pose& Y, double wanted, double travel, TickReport& report);
+  /// The sub-steps of a tick among near parts, at most `travel` (m), under a pen that moved by `pen` (m).
+  void move_near_parts(const Pose& Y, double travel, double pen, TickReport& report);
+  /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);
-  /// Fits the gap that contacts keep to the room that the part has.
+  /// Adapts the margin of contacts to the clearance of the fit.
   void adapt_margin(const Pose& Y);
   /// Whether contacts press from opposite sides.
   bool wedged() const;
-  /// Follows the contacts to X_; false when time ran out first (the next tick goes on with it).
+  /// Tracks the contacts to X_; false when time ran out first (the next tick continues).
   bool track();
-  /// Once for each pose at which X stands: contacts from all that is nearer than contacts keep it. Whether there are
-  /// fresh ones.
+  /// Once for each pose at which X rests: makes contacts of all that is nearer than the margin. Returns whether there
+  /// are new ones.
   bool query_around();
-  /// The next sub-step is to be shorter than this one, which planes for one motion hold; they are forgotten.
+  /// Makes the next sub-step shorter than this one, which cutting planes limit, and drops these planes.
   void shorter_than(double cap);
   /// Whether a cutting plane limits the motion.
-  bool cutting() const;
+  bool has_cutting_planes() const;
   /// Marks the constraints that `motion` uses up: they carry.
   void mark_carriers(const Vec6& motion);
   /// Constraint number `i` carries in the last program.
   void carries(std::size_t i);
   /// Whether no cutting plane carries in the last program but those between triangles that touch: they are contacts,
   /// whatever features they come from.
-  bool only_contacts() const { return !cutting() || !far_planes_; }
+  bool only_contacts() const { return !has_cutting_planes() || !far_planes_; }
   /// At the end of a tick, in which X moved by moved_.
   void count_swings(const Pose& Y);
   LagReason reason_for(double lag, const TickReport& report) const;

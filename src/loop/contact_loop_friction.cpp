@@ -25,7 +25,7 @@ bool ContactLoop::solve_with_friction(const Vec6& wanted, TickReport& report, Ve
         resolver_->resolve_with_friction(friction_.problem(rows_, bounds_.data(), wanted, deadline_ns));
     ++report.resolves;
     report.iterations += r.iterations;
-    // Out of time is no failure of the program; the tick says that it was cut.
+    // Out of time is not a failure of the program; the tick says that it was cut.
     if (r.status == ResolveStatus::stalled && past(deadline_ns)) return false;
     report.status = r.status;
     motion = r.motion;

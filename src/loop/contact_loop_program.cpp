@@ -23,7 +23,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
     // Cutting planes between triangles that do not touch explain no lag.
     if (solved && only_contacts()) allowed_ = size(metric_.unwhiten(motion));
     if (!solved) motion.setZero();
-    const bool shorter = !resolver_->projects() && try_shorter_ways(wanted, cap, report, motion);
+    const bool shorter = !resolver_->projects() && try_shorter_motions(wanted, cap, report, motion);
     if (!solved && !shorter) return false;
   }
   trial.d = metric_.unwhiten(motion);
@@ -44,7 +44,7 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
   return true;
 }
 
-bool ContactLoop::try_shorter_ways(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
+bool ContactLoop::try_shorter_motions(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
   const double far = size(metric_.unwhiten(wanted));
   Vec6 best = motion;
   bool any = false;

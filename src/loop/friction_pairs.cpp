@@ -11,7 +11,9 @@ namespace {
 
 double checked(double mu, const std::string& what) {
   if (mu >= 0 && mu <= kMaxMu) return mu;
-  throw Error(what + ": the coefficient of friction must be from 0 to 10, not " + std::to_string(mu));
+  throw Error(ErrorKind::setting,
+              what + ": the coefficient of friction must be from 0 to 10, not " + std::to_string(mu),
+              {{}, 0, "friction", {}});
 }
 
 }  // namespace
@@ -28,7 +30,9 @@ std::vector<double> friction_of_parts(const Scene& scene) {
   }
   const bool rubs = std::any_of(mu.begin(), mu.end(), [](double m) { return m > 0; });
   if (rubs && !scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
-    throw Error("friction: the resolver " + to_string(scene.contact.resolver) + " does not support friction; qp does");
+    throw Error(ErrorKind::setting,
+                "friction: the resolver " + to_string(scene.contact.resolver) + " does not support friction; qp does",
+                {{}, 0, "friction", {}});
   return mu;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/deadline.hpp"
 #include "core/latest_value.hpp"
 #include "core/valid_pose.hpp"
 #include "loop/contact_list.hpp"
@@ -15,17 +16,13 @@
 namespace tegotae {
 namespace {
 
-// Of the tick's budget, what asking whether the held part can go over to a changed scene may take.
+// Share of the tick's budget for the test whether the held part can continue in a changed scene.
 constexpr double kChangeShare = 0.25;
-// Ways divided by less time (s) are no velocities; no loop ticks so often.
+// Distances divided by less time (s) are not velocities; no loop ticks so often.
 constexpr double kMinTime = 1e-6;
 
-bool proper_time(double dt) {
+bool is_valid_time(double dt) {
   return dt == 0 || (dt >= kMinTime && std::isfinite(dt));
-}
-
-std::int64_t deadline(std::int64_t now_ns, double budget) {
-  return std::isfinite(budget) ? now_ns + static_cast<std::int64_t>(1e9 * budget) : kNoDeadline;
 }
 
 }  // namespace
@@ -33,7 +30,7 @@ std::int64_t deadline(std::int64_t now_ns, double budget) {
 struct HapticLoop::State {
   std::unique_ptr<RunningScene> now;
   std::shared_ptr<SceneChanges> changes;
-  Pose Y;              // of the pen; with the load that it carries, the part is drawn to target()
+  Pose Y;              // of the pen; the springs draw the part to target(), which also has the load
   double carried = 0;  // of the weight, 0 to 1
   Wrench pulled;       // see pull()
   TickReport report;
@@ -50,14 +47,14 @@ struct HapticLoop::State {
     begin();
   }
 
-  void tell() noexcept {
+  void publish() noexcept {
     const Pose& X = report.proxy.X;
     latest.write({X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()});
   }
 
   Wrench load() const noexcept { return {carried * now->weight.force + pulled.force, pulled.torque}; }
 
-  /// Where the pen's springs and the load have the part: as far off the pen as the load stretches them.
+  /// Where the springs and the load draw the part: off the pen by as much as the load stretches them.
   Pose target() const noexcept { return loaded(Y, now->mass.center, now->coupling, now->scale, load()); }
 
   /// Ends a tick that began at `now_ns`: how far X is behind the pen, and for how long it has been so without a
@@ -70,12 +67,12 @@ struct HapticLoop::State {
     report.lag = size(displacement(report.proxy.X, target(), now->mass.center));
     lag.add(report.lag, moved, tegotae::lag_bound(now->radius), report.lag_reason);
     report.unexplained_lag_ticks = lag.ticks();
-    // The last look at the clock: whatever a tick has done before, it hides no lateness.
-    report.flags.timed_out |= past(deadline(now_ns, now->settings.tick_budget));
+    // The clock is read last, so that nothing that the tick did hides its lateness.
+    report.flags.timed_out |= past(deadline_after(now_ns, now->settings.tick_budget));
     return report;
   }
 
-  /// The tick that goes over to another held part does not follow the pen, which is still where the old one was.
+  /// Ends the tick that switches to another held part. It does not follow the pen, which is still at the old part.
   const TickReport& suspend(std::int64_t now_ns) noexcept {
     report.flags.scene_changed = report.flags.part_changed = true;
     report.lag_reason = LagReason::suspended;
@@ -87,22 +84,22 @@ struct HapticLoop::State {
     reset(report);
     report.substeps.push_back(now->loop->pose());
     report.proxy.X = last_X = now->loop->pose();
-    tell();
+    publish();
     for (const InitialContact& pair : now->loop->start().pairs) {
       report.filtered += pair.state == InitialContactState::filtered ? 1 : 0;
       report.shrunk += pair.state == InitialContactState::shrunk ? 1 : 0;
     }
   }
 
-  /// Goes over to a changed scene if there is one and it can be; true when another part is held in it.
+  /// Switches to a changed scene if one is pending and the held part is free in it; true when it holds another part.
   bool adopt(std::int64_t now_ns) noexcept {
     RunningScene* changed = changes->take();
     if (changed == nullptr) return false;
     const bool same = changed->held == now->held;
-    // What was there before the held part is free of, where the old loop keeps it out and every pair is active.
+    // The held part is free of what was there before, where the old loop keeps it out and every pair is active.
     const bool known = changed->fresh_since == now->number && now->keeps_out && changed->held_mesh == now->held_mesh &&
                        report.filtered + report.shrunk == 0;
-    const std::int64_t until = deadline(now_ns, kChangeShare * now->settings.tick_budget);
+    const std::int64_t until = deadline_after(now_ns, kChangeShare * now->settings.tick_budget);
     if (same && !changed->loop->take_over(report, target(), known ? &changed->fresh : nullptr, until)) {
       changes->put_back(changed);
       return false;
@@ -110,7 +107,7 @@ struct HapticLoop::State {
     RunningScene* before = now.release();
     now.reset(changed);
     if (!same) {
-      Y = now->loop->pose();  // the old part's means nothing for the new one
+      Y = now->loop->pose();  // where the pen wanted the old part says nothing about the new one
       pulled = {};
       begin();
     }
@@ -130,13 +127,13 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   if (s.adopt(now_ns)) return s.suspend(now_ns);
   reset(s.report);
   s.report.flags.scene_changed = s.changes->in_force() != before;
-  const bool placed = is_valid(Y), timed = proper_time(dt);
+  const bool placed = is_valid(Y), timed = is_valid_time(dt);
   s.report.flags.input_ignored = !(placed && timed);
   if (placed) s.Y = {Y.q.normalized(), Y.p};
-  s.now->loop->step(s.target(), timed ? dt : 0, deadline(now_ns, s.now->settings.tick_budget), s.report);
+  s.now->loop->step(s.target(), timed ? dt : 0, deadline_after(now_ns, s.now->settings.tick_budget), s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
   s.contacts.update(s.now->loop->constraints(), s.report, s.report.proxy.X * s.now->mass.center);
-  s.tell();
+  s.publish();
   return s.finish(now_ns);
 }
 

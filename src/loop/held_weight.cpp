@@ -22,13 +22,19 @@ HeldWeight held_weight(const Scene& scene, const MassProperties& mass) {
   const WeightSettings& s = scene.weight;
   if (!s.on) return out;
   if (!scene.contact.custom_resolver && scene.contact.resolver != ResolverKind::qp)
-    throw Error("weight: the resolver " + to_string(scene.contact.resolver) + " does not support weight; qp does");
-  if (!(s.gravity.norm() <= kMaxGravity)) throw Error("weight: gravity must be three numbers of up to 1000 m/s²");
+    throw Error(ErrorKind::setting,
+                "weight: the resolver " + to_string(scene.contact.resolver) + " does not support weight; qp does",
+                {{}, 0, "weight", {}});
+  if (!(s.gravity.norm() <= kMaxGravity))
+    throw Error(ErrorKind::setting, "weight: gravity must be three numbers of up to 1000 m/s²",
+                {{}, 0, "weight.gravity", {}});
   const Part& held = held_part(scene);
   out.mass = held.mass.value_or(mass.mass);
   if (!(out.mass > 0 && out.mass <= kMaxMass))
-    throw Error("part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " +
-                std::to_string(out.mass));
+    throw Error(
+        ErrorKind::setting,
+        "part \"" + held.name + "\": the mass must be above 0 and at most 1e6 kg, not " + std::to_string(out.mass),
+        {{}, 0, "part.mass", held.name});
   const double newtons = out.mass * s.gravity.norm();
   if (s.max_force && newtons > *s.max_force) out.share = std::max(0.0, *s.max_force) / newtons;
   out.force = out.share * out.mass * s.gravity;

@@ -212,7 +212,7 @@ ImpulseLoop::Advance ImpulseLoop::advance(bool search, double& time, TickReport&
     report.flags.timed_out |= answer == MotionAnswer::unknown;
     if (search && i == 0 && answer == MotionAnswer::blocked &&
         (at_.contacts->seed(blocking_, at_.check->near_contact(X_, d, blocking_), deadline_ns_) > 0 ||
-         at_.contacts->cut(blocking_, d, kGapFloor, deadline_ns_) > 0))
+         at_.contacts->add_cutting_planes(blocking_, d, kGapFloor, deadline_ns_) > 0))
       return Advance::found;
   }
   return Advance::stuck;

@@ -74,7 +74,7 @@ class InitialSeparation {
       Displacement d;
       if (!solve(list, d) || d.dp.norm() + at_.radius * d.dr.norm() > most_) return false;
       int found = 0;
-      bool is_open = way_is_free(d, found);
+      bool is_open = is_path_free(d, found);
       for (Wanted& w : list) is_open &= stands_free(w, displaced(X_, center_, d), found);
       if (!is_open && found == 0) found = ask_for_more(list);
       if (is_open) {
@@ -113,7 +113,7 @@ class InitialSeparation {
     return answer;
   }
 
-  bool way_is_free(const Displacement& d, int& found) {
+  bool is_path_free(const Displacement& d, int& found) {
     if (check(near_, X_, d) == MotionAnswer::free) return true;
     found += at_.contacts->seed(blocking_, X_, kNoDeadline);
     return false;
@@ -164,9 +164,9 @@ class InitialSeparation {
 }  // namespace
 
 Pose initial_separation(CollisionWorld& at, const MassProperties& mass, const Pose& X, double most) {
-  const Pose eased = InitialSeparation(at, mass, X, most).run();
+  const Pose X_free = InitialSeparation(at, mass, X, most).run();
   at.contacts->clear();
-  return eased;
+  return X_free;
 }
 
 }  // namespace tegotae

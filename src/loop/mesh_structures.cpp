@@ -27,11 +27,11 @@ MeshStructures::MeshStructures(const std::vector<Part>& parts, NarrowPhase narro
     else
       surfaces.at(mesh.get()) = cached_surface(mesh);
   };
-  const auto tell = [&](int done) {
+  const auto report = [&](int done) {
     if (progress) progress(static_cast<std::size_t>(done), static_cast<std::size_t>(jobs));
   };
-  tell(0);
-  parallel_for(jobs, 0, make, tell);
+  report(0);
+  parallel_for(jobs, 0, make, report);
 }
 
 }  // namespace tegotae

@@ -40,17 +40,15 @@ Scene coupled_by(Scene scene, const CouplingSettings& coupling) {
 }  // namespace
 
 ContactSettings completed(ContactSettings s, double radius) {
-  const auto check = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value > 0))
-      throw Error(ErrorKind::setting,
-                  std::string("contact.") + name + " must be a positive number, not " + std::to_string(value),
-                  {{}, 0, std::string("contact.") + name, {}});
+  const auto require = [](bool good, const char* name, const char* what, double value) {
+    const std::string key = std::string("contact.") + name;
+    if (!good) throw Error(ErrorKind::setting, key + what + ", not " + std::to_string(value), {{}, 0, key, {}});
   };
-  const auto check_not_negative = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value >= 0))
-      throw Error(ErrorKind::setting,
-                  std::string("contact.") + name + " must not be negative, not " + std::to_string(value),
-                  {{}, 0, std::string("contact.") + name, {}});
+  const auto check = [&require](const char* name, double value) {
+    require(std::isfinite(value) && value > 0, name, " must be a positive number", value);
+  };
+  const auto check_not_negative = [&require](const char* name, double value) {
+    require(std::isfinite(value) && value >= 0, name, " must not be negative", value);
   };
   if (!s.l_min) s.l_min = std::clamp(kLMinShare * radius, kMinLMin, kMaxLMin);
   if (!s.l_0) s.l_0 = kDefaultL0 * *s.l_min;
@@ -59,11 +57,11 @@ ContactSettings completed(ContactSettings s, double radius) {
   check("density", s.density);
   check("impulse.substep", s.impulse.substep);
   check("penalty.stiffness", s.penalty.stiffness);
-  if (!(s.impulse.restitution >= 0 && s.impulse.restitution <= 1))
-    throw Error("contact.impulse.restitution must be from 0 to 1, not " + std::to_string(s.impulse.restitution));
+  require(s.impulse.restitution >= 0 && s.impulse.restitution <= 1, "impulse.restitution", " must be from 0 to 1",
+          s.impulse.restitution);
   check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
   check_not_negative("penalty.damping", s.penalty.damping);
-  if (!(s.tick_budget > 0)) throw Error("contact.tick_budget must be positive, not " + std::to_string(s.tick_budget));
+  require(s.tick_budget > 0, "tick_budget", " must be positive", s.tick_budget);
   check_not_negative("touch_tolerance", s.touch_tolerance);
   return s;
 }
@@ -71,9 +69,11 @@ ContactSettings completed(ContactSettings s, double radius) {
 const Scene& checked(const Scene& scene) {
   for (const Part& p : scene.parts) {
     if (!p.mesh || p.mesh->triangles.empty())
-      throw Error(ErrorKind::other, "part \"" + p.name + "\" has no triangles", {{}, 0, {}, p.name});
+      throw Error(ErrorKind::setting, "part \"" + p.name + "\" has no triangles", {{}, 0, {}, p.name});
     if (!is_valid(p.pose))
-      throw Error("part \"" + p.name + "\": its pose is not finite, not of unit length, or beyond 10 km");
+      throw Error(ErrorKind::setting,
+                  "part \"" + p.name + "\": its pose is not finite, not of unit length, or beyond 10 km",
+                  {{}, 0, {}, p.name});
   }
   return scene;
 }

@@ -47,20 +47,28 @@ SceneChange SceneChanges::offer(const Scene& next,
   auto changed = std::make_unique<RunningScene>(next);
   changed->warm_up();
   const std::uint64_t now = in_force();
-  known_.erase(known_.begin(), known_.find(now));
-  changed->compare(*known_.at(now).obstacles, now);
+  changed->compare(*obstacles_of(now), now);
   const std::uint64_t number = changed->number = last_ + 1;
   auto record = std::make_shared<SceneChange::Record>(number, changed->loop->start(), weak_from_this());
   if (ready) ready(number, record->start);
   last_ = number;
-  known_[number] = {changed->obstacles, changed->held};
+  {
+    const std::lock_guard<std::mutex> reading(reading_);
+    known_[number] = {changed->obstacles, changed->held};
+  }
   changed->change = record;
   next_.offer(std::move(changed));
   return SceneChange(std::move(record));
 }
 
+std::shared_ptr<const std::vector<RunningScene::Obstacle>> SceneChanges::obstacles_of(std::uint64_t number) {
+  const std::lock_guard<std::mutex> lock(reading_);
+  known_.erase(known_.begin(), known_.find(number));
+  return known_.at(number).obstacles;
+}
+
 std::string SceneChanges::held() const {
-  const std::lock_guard<std::mutex> lock(changing_);
+  const std::lock_guard<std::mutex> lock(reading_);
   return known_.at(in_force()).held;
 }
 
@@ -72,7 +80,9 @@ bool SceneChanges::cancel(SceneChange::Record& change) {
       last_ = in_force();
       return true;
     }
-    std::this_thread::yield();  // a tick looks at it: it comes into force, or back, within that tick
+    // A tick has taken it: it comes into force, or is put back, within that tick. A thread of a higher priority than
+    // the loop's must sleep for that.
+    std::this_thread::sleep_for(kPoll);
   }
   return false;
 }

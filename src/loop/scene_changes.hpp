@@ -29,10 +29,10 @@ class SceneChanges : public std::enable_shared_from_this<SceneChanges> {
   std::uint64_t in_force() const noexcept { return in_force_.load(std::memory_order_acquire); }
 
   // The loop's thread.
-  /// The newest change that is pending, null when there is none. To be given to come_into_force() or to put_back().
+  /// The newest pending change, null when there is none. Pass it to come_into_force() or put_back().
   RunningScene* take() noexcept { return next_.take(); }
   void put_back(RunningScene* changed) noexcept;
-  /// The loop is in `changed` from now on, and done with `before`.
+  /// The loop now runs in `changed`, and no longer uses `before`.
   void come_into_force(RunningScene& changed, RunningScene* before) noexcept;
 
  private:
@@ -42,8 +42,13 @@ class SceneChanges : public std::enable_shared_from_this<SceneChanges> {
     std::shared_ptr<const std::vector<RunningScene::Obstacle>> obstacles;
     std::string held;
   };
-  mutable std::mutex
-      changing_;  // of those who change; the loop's thread never waits for it, and does not touch the next two
+  /// Obstacles of change `number`, which is in force; forgets those before it.
+  std::shared_ptr<const std::vector<RunningScene::Obstacle>> obstacles_of(std::uint64_t number);
+
+  // The loop's thread locks neither. Who changes holds `changing_` while a scene is built, which takes seconds;
+  // `reading_` is held for `known_` alone, and after `changing_` where both are.
+  std::mutex changing_;
+  mutable std::mutex reading_;
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Known> known_;  // by change
 };

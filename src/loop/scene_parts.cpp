@@ -11,10 +11,13 @@ std::size_t held_number(const Scene& scene) {
   for (const Part& p : scene.parts) {
     if (!p.held) continue;
     if (held != nullptr)
-      throw Error("parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be");
+      throw Error(ErrorKind::setting,
+                  "parts \"" + held->name + "\" and \"" + p.name + "\" are both held; exactly one may be",
+                  {{}, 0, "part.held", p.name});
     held = &p;
   }
-  if (held == nullptr) throw Error("no part is held; exactly one must be");
+  if (held == nullptr)
+    throw Error(ErrorKind::setting, "no part is held; exactly one must be", {{}, 0, "part.held", {}});
   return static_cast<std::size_t>(held - scene.parts.data());
 }
 

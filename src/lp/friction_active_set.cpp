@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxRounds = 25;
 /// A contact that changed between sliding and sticking so often goes in a circle.
 constexpr int kMaxFlips = 4;
-/// Less than this part of the wanted motion is no motion, and no violation.
+/// Less than this part of the wanted motion is neither a motion nor a violation.
 constexpr double kSmall = 1e-8;
 /// Pulls and friction beyond a cone count from this part of the wanted motion on.
 constexpr double kForce = 1e-9;

@@ -74,12 +74,12 @@ class FrictionActiveSet {
   std::array<PaddedVec6, 3 * kMaxMembers> left_{}, right_{};  ///< of each product in the system of the round
   int products_ = 0;
   std::vector<LaneBlock> bounds_;   ///< of the rows
-  std::vector<LaneBlock> outside_;  ///< 1 for rows that are no member, or 0
+  std::vector<LaneBlock> outside_;  ///< 1 for rows that are not members, or 0
   std::vector<int> touching_;       ///< rows
   Vec6 z_ = Vec6::Zero();
   double scale_ = 0;  ///< |wanted|
   double give_ = 0;   ///< of a contact, m per m
-  double slip_ = 0;   ///< less than this (m) is no slip
+  double slip_ = 0;   ///< less than this (m) is not a slip
   double error_ = 0;  ///< of the rows that hold, m
   double turn_ = 0;   ///< of directions in the last round, rad
   int rounds_ = 0;

@@ -25,7 +25,7 @@ constexpr int kDegenerateRun = 12;
 constexpr double kDegenerateStep = 1e-12;
 /// Pivots before a solve is given up: at least so many, and so many for each row. Most solves take 10 to 40; a round
 /// peg that leans in its hole takes up to 1.3 for each row of its rims.
-constexpr int kLeastPivots = 400, kPivotsPerRow = 4;
+constexpr int kMinPivots = 400, kPivotsPerRow = 4;
 /// "Infeasible" is only said when a solution would have to move this many times the largest violation.
 constexpr double kHopeless = 1e8;
 /// Residuals above this part of the data's size are not called optimal.
@@ -48,7 +48,7 @@ const LpResult& LpSolver::solve(const LowRankMatrix& g, const double* d) noexcep
     result_.dual.add(rows_.zero_row(), 1);
     return result_;
   }
-  const int most = std::max(kLeastPivots, kPivotsPerRow * g.rows());
+  const int most = std::max(kMinPivots, kPivotsPerRow * g.rows());
   int degenerate = 0;
   for (;; ++result_.iterations) {
     if (!solve_basis()) {

@@ -65,7 +65,7 @@ class CacheReader {
   ContentSum sum_;
 };
 
-/// Writes an entry beside its place, and puts it there as a whole. What cannot be written is no error: there is no
+/// Writes an entry beside its place, and puts it there as a whole. What cannot be written is not an error: there is no
 /// entry then.
 class CacheWriter {
  public:

@@ -21,7 +21,7 @@ enum class EdgeKind : std::uint8_t {
 
 /// Half-edge adjacency of a welded mesh. Half-edge h = 3 f + k runs from triangles[f][k] to triangles[f][(k + 1) % 3].
 ///
-/// A *collapsed* face (two corners are one vertex) is no part of it: no walk reaches one, its neighbors are linked to
+/// A *collapsed* face (two corners are one vertex) is not part of it: no walk reaches one, its neighbors are linked to
 /// each other. A *sliver* (three corners on a line, see precision.hpp) is linked like any face and has the normal of
 /// the face across its longest edge, so that a sliver in a flat region makes no crease.
 struct Topology {

@@ -128,7 +128,7 @@ CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const Wor
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
   } else if (report_.exhausted) {
-    report_.status = CertifyStatus::cut;
+    report_.status = CertifyStatus::out_of_budget;
   }
   if (report_.status == CertifyStatus::certified) report_.share = 1;
   raise();
@@ -206,11 +206,11 @@ void CellFront::collect_due() {
 void CellFront::settle_due() {
   const auto begin = due_.begin(), end = due_.end();
   const auto first = begin + std::min<std::ptrdiff_t>(kFirst, end - begin);
-  int looked = 0;
+  int visited = 0;
   for (auto it = begin; it != end; ++it) {
     // What blocks is known: the others may wait.
     if (it == first && !blocking_.empty()) settled_ = false;
-    if (settled_ && ++looked % kClockStride == 0 && out_of_work(true)) {
+    if (settled_ && ++visited % kClockStride == 0 && out_of_work(true)) {
       settled_ = false;
       report_.exhausted = true;
     }
@@ -220,20 +220,20 @@ void CellFront::settle_due() {
       report_.share = std::min(report_.share, it->share);
       continue;
     }
-    const Look look = look_at(it->node);
-    if (look.free) continue;
-    const bool grows = look.far && looked % kGrowStride == 0 && grow(it->node, look.margin);
-    if (grows || (look.far && renew(it->node, look.margin))) continue;
+    const CellState state = state_of(it->node);
+    if (state.free) continue;
+    const bool grows = state.far && visited % kGrowStride == 0 && grow(it->node, state.margin);
+    if (grows || (state.far && renew(it->node, state.margin))) continue;
     const Outcome outcome = settle(it->node);
     if (outcome == Outcome::free) continue;
-    report_.share = std::min(report_.share, std::max(it->share, look.share));
+    report_.share = std::min(report_.share, std::max(it->share, state.share));
     if (outcome == Outcome::out_of_work) report_.exhausted = true;
     settled_ =
         outcome == Outcome::blocked && blocking_.size() < limit_.blocking && blocking_.size() < blocking_.capacity();
   }
 }
 
-CellFront::Look CellFront::look_at(std::uint32_t id) {
+CellFront::CellState CellFront::state_of(std::uint32_t id) {
   const Node& node = nodes_[id];
   const Slot& s = slots_[node.slot];
   if (!(s.cell.clear > -kInfinity)) return {false, false, 0, 0};
@@ -249,9 +249,9 @@ CellFront::Look CellFront::look_at(std::uint32_t id) {
   return {v.free && far == 1, v.free, std::min(v.share, far), v.margin};
 }
 
-bool CellFront::out_of_work(bool look_at_clock) {
+bool CellFront::out_of_work(bool read_clock) {
   if ((search_.visits() - visits_at_start_) / kVisitsPerSearch > limit_.searches) return true;
-  return look_at_clock && past(limit_.deadline_ns);
+  return read_clock && past(limit_.deadline_ns);
 }
 
 }  // namespace tegotae

@@ -91,7 +91,7 @@ class CellFront {
     std::uint32_t node;
     double share;  ///< of the motion that its cell allows without a look at it
   };
-  struct Look {
+  struct CellState {
     bool free;      ///< the cell holds for the whole motion
     bool far;       ///< its planes do
     double share;   ///< of the motion for which it holds
@@ -106,7 +106,7 @@ class CellFront {
   void collect_due();
   void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
-  Look look_at(std::uint32_t id);
+  CellState state_of(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id, bool cells_only);
   CellSearch::Outcome search(const Node& node, const Sweep& sweep, bool cells_only);
@@ -125,7 +125,7 @@ class CellFront {
   bool renew(std::uint32_t id, double margin);
   void needs_parts(std::uint32_t id, double margin);
   bool merge(std::uint32_t id, double lasts);
-  bool out_of_work(bool look_at_clock);
+  bool out_of_work(bool read_clock);
   MovingHull hull(const Node& node, const Sweep& sweep) const;
   double radius(const Node& node) const;
   double wanted(const MovingHull& a, const Sweep& sweep) const;

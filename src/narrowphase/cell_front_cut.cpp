@@ -11,7 +11,7 @@ namespace tegotae {
 namespace {
 
 /// One call tries to put together so many pairs of children, and one for so many searches, among so many it looks at.
-constexpr int kMinRaises = 4, kSearchesPerRaise = 3, kMaxLooks = 256;
+constexpr int kMinRaises = 4, kSearchesPerRaise = 3, kMaxVisits = 256;
 /// A cell for both children together must last for so many of the longest motions of late, or this share of what the
 /// children's cells last for.
 constexpr double kRaiseMotions = 8, kRaiseShare = 0.5;
@@ -114,7 +114,7 @@ bool CellFront::split(std::uint32_t id) {
 void CellFront::raise() {
   const int most = kMinRaises + report_.searches / kSearchesPerRaise;
   int tries = 0;
-  for (int looks = std::min<int>(kMaxLooks, cells()); looks > 0 && tries < most; --looks) {
+  for (int visits = std::min<int>(kMaxVisits, cells()); visits > 0 && tries < most; --visits) {
     if (++cursor_ >= count()) cursor_ = 0;
     const std::uint32_t id = slots_[cursor_].node, parent = nodes_[id].parent;
     if (parent == kNobody || nodes_[parent].child != id || !may_raise(parent)) continue;

@@ -143,7 +143,7 @@ bool CellSearch::keeps_off(const Hull& b, const Vec3& direction, double at_least
   return true;
 }
 
-void CellSearch::tell_items(bool found) {
+void CellSearch::report_items(bool found) {
   // What was found of the near ones, those that the search had not come to, and the nearest of the others.
   for (std::size_t i = 0; i < stacked_; ++i) near_.add(stack_[i].item, stack_[i].distance);
   for (std::size_t i = 0; i < waiting_.count; ++i) near_.add(waiting_.item[i], waiting_.distance[i]);
@@ -434,7 +434,7 @@ CellGaps CellSearch::gaps() const {
   return out;
 }
 
-void CellSearch::tell(FreeCell& cell) const {
+void CellSearch::write(FreeCell& cell) const {
   cell.drop_planes();
   for (std::size_t k = 0; k < static_cast<std::size_t>(planes_); ++k) {
     cell.nx[k] = static_cast<float>(known_.n[0][k]);
@@ -459,13 +459,13 @@ CellSearch::Outcome CellSearch::find(const MovingHull& a, const std::array<Vec3,
     if (outcome == Outcome::divide && !blocking_.empty()) return Outcome::blocked;
     if (outcome == Outcome::divide && (near_.count == 0 || near_.item[near_.count - 1] != e.item))
       near_.add(e.item, e.distance);
-    if (outcome == Outcome::divide) tell_items(false);
+    if (outcome == Outcome::divide) report_items(false);
     if (outcome != Outcome::found) return outcome;
   }
   if (!blocking_.empty()) return Outcome::blocked;
   if (passing_) return Outcome::passing;
-  tell_items(true);
-  tell(cell);
+  report_items(true);
+  write(cell);
   return Outcome::found;
 }
 

@@ -103,8 +103,8 @@ class CellSearch {
   bool passes(const Hull& b) const;
   bool best_of_all_axes(const Hull& b, Vec3& n) const;
   bool stays_above(const Vec3& n, double low_start, double low_end, double top) const;
-  void tell_items(bool found);
-  void tell(FreeCell& cell) const;
+  void report_items(bool found);
+  void write(FreeCell& cell) const;
 
   const MovingHull* a_ = nullptr;
   const std::array<Vec3, 3>* face_of_a_ = nullptr;

@@ -14,9 +14,9 @@ struct WorkLimit {
 };
 
 enum class CertifyStatus : std::uint8_t {
-  certified,  ///< the whole motion is free
-  blocked,    ///< some triangle pairs have no moving plane that separates them: they are listed
-  cut         ///< work, time or a capacity ran out before anything was found to block
+  certified,     ///< the whole motion is free
+  blocked,       ///< some triangle pairs have no moving plane that separates them: they are listed
+  out_of_budget  ///< work, time or a capacity ran out before anything was found to block
 };
 
 /// What one call of a path certificate did.

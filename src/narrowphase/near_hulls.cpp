@@ -125,8 +125,8 @@ TEGOTAE_INLINE void extent(const HullFrame& a, const Lanes3& n, Lane& low, Lane&
 }
 
 /// `size`: of the positions and extents of B's pieces.
-TEGOTAE_INLINE void tell(const HullFrame& a, const Best& best, const Best& upright, Lane distance2, Lane size,
-                         Nearness& out) {
+TEGOTAE_INLINE void store_result(const HullFrame& a, const Best& best, const Best& upright, Lane distance2, Lane size,
+                                 Nearness& out) {
   store(best.gap, out.any.gap);
   store(best.normal, out.any.normal);
   store(upright.gap, out.upright.gap);
@@ -205,7 +205,7 @@ TEGOTAE_WIDE void measure_boxes(const HullFrame& a, const NearHulls& b, Nearness
     best.offer(up, down, static_cast<float>(4 + j));
     if (j == 2) upright.offer(up, down, 6);
   }
-  tell(a, best, upright, distance2, sum(center) + sum(half), out);
+  store_result(a, best, upright, distance2, sum(center) + sum(half), out);
 }
 
 TEGOTAE_WIDE void measure_triangles(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept {
@@ -234,7 +234,7 @@ TEGOTAE_WIDE void measure_triangles(const HullFrame& a, const NearHulls& b, Near
   const Lane up = flat ? low - most(h0, h1, h2) : none, down = flat ? least(h0, h1, h2) - high : none;
   best.offer(up, down, 4);
   upright.offer(up, down, 4);
-  tell(a, best, upright, distance2, most(sum(corner[0]), sum(corner[1]), sum(corner[2])), out);
+  store_result(a, best, upright, distance2, most(sum(corner[0]), sum(corner[1]), sum(corner[2])), out);
 }
 
 void KnownPlanes::clear() {

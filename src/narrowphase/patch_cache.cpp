@@ -13,7 +13,7 @@
 namespace tegotae {
 namespace {
 
-/// What of a tree is no list. Fixed size, no padding.
+/// What of a tree is not a list. Fixed size, no padding.
 struct Head {
   std::uint64_t leaf = kPatchLeaf;
   std::array<double, 3> origin{};

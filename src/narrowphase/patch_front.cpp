@@ -29,7 +29,7 @@ constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8
 /// raised waits, so that tries go where something has changed. On parts that roll over each other it gains nothing.
 constexpr int kSlidingRaises = 24, kSlidingTries = 768;
 /// Pairs looked at in one call then, and this part of the front.
-constexpr int kMinLooks = 512, kLookShare = 16;
+constexpr int kMinVisits = 512, kVisitShare = 16;
 /// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
 constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks. And those
@@ -110,10 +110,10 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     report_.status = CertifyStatus::blocked;
     if (splits_.size() > kKeepSplits) roll_back();
   } else if (report_.exhausted) {
-    report_.status = CertifyStatus::cut;
+    report_.status = CertifyStatus::out_of_budget;
   }
   // Also after a motion that was not certified: its splits stay, and a front that is full of them certifies nothing.
-  if (report_.status == CertifyStatus::cut && report_.overflow) debt_ = std::max(debt_, pairs() / kFullShare);
+  if (report_.status == CertifyStatus::out_of_budget && report_.overflow) debt_ = std::max(debt_, pairs() / kFullShare);
   raise();
   report_.pairs = pairs();
   report_.share = report_.status == CertifyStatus::certified ? 1 : 0;
@@ -265,8 +265,8 @@ void PatchFront::raise() {
   int tries = 0;
   auto count = static_cast<std::uint32_t>(pairs());
   // Round robin over all groups, once around at most.
-  for (int looks = std::min(pairs(), std::max(kMinLooks, pairs() / kLookShare));
-       looks > 0 && report_.merges < wanted && tries < most; --looks) {
+  for (int visits = std::min(pairs(), std::max(kMinVisits, pairs() / kVisitShare));
+       visits > 0 && report_.merges < wanted && tries < most; --visits) {
     if (++cursor_ >= count) cursor_ = 0;
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;

@@ -32,7 +32,7 @@ constexpr int kMaxRounds = 64, kMaxIdleRounds = 8;
 // A front of so many pairs that runs out of time so often in a row has more of them than a tick can look at. Below,
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
-constexpr std::uint32_t kMaxCuts = 6;
+constexpr std::uint32_t kMaxExhausted = 6;
 // The other way round, so few cells that run out of time more often than that, with no more ticks than these between
 // two times, and do not double meanwhile, are those of a part that slides along walls: each is looked for again in
 // every tick. A front of some 20 pairs for each of them has room.
@@ -77,7 +77,7 @@ CertifyReport ask_through(std::int64_t deadline_ns, int idle_rounds, Ask ask) {
   if (deadline_ns != kNoDeadline) return report;
   int idle = 0;
   for (int i = 1; i < kMaxRounds && idle < idle_rounds; ++i) {
-    if (report.overflow || report.status != CertifyStatus::cut) break;
+    if (report.overflow || report.status != CertifyStatus::out_of_budget) break;
     report = ask();
     idle = report.splits > 0 ? 0 : idle + 1;
   }
@@ -130,7 +130,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   for (std::size_t i = 0; i < fronts; ++i) fronts_.emplace_back(capacity);
   part_of_.assign(fronts, kNobody);
   used_.assign(fronts, 0);
-  cuts_.assign(fronts, 0);
+  exhausted_.assign(fronts, 0);
   ahead_.resize(fronts);
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
@@ -175,7 +175,7 @@ void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   part_of_[front] = part;
   front_of_[part] = front;
   used_[front] = now_;
-  cuts_[front] = 0;
+  exhausted_[front] = 0;
   ahead_[front] = Ahead{};
   fronts_[front].attach(*held_, center_, *fixed_[part], axes_[part]);
 }
@@ -281,12 +281,12 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
     const auto ask = [&] { return ask_front(part, X, d, clearance, limit_); };
     const CertifyReport report =
         effort_ == ProofEffort::quick ? ask() : ask_through(limit_.deadline_ns, kMaxIdleRounds, ask);
-    std::uint32_t& cuts = cuts_[front_of_[part]];
-    cuts = report.status == CertifyStatus::cut ? cuts + 1 : 0;
+    std::uint32_t& exhausted = exhausted_[front_of_[part]];
+    exhausted = report.status == CertifyStatus::out_of_budget ? exhausted + 1 : 0;
     const bool slides = !axes_[part]->empty();
     const bool tried = choice_[part] == Certificate::front_for_good;
-    if ((cuts > kMaxCuts && report.pairs > kManyPairs && !slides && !tried) ||
-        (report.overflow && report.status == CertifyStatus::cut && (!timed || cuts > kMaxCuts))) {
+    if ((exhausted > kMaxExhausted && report.pairs > kManyPairs && !slides && !tried) ||
+        (report.overflow && report.status == CertifyStatus::out_of_budget && (!timed || exhausted > kMaxExhausted))) {
       move_to_cells(part);
       near_cells_.push_back(part);
       moved = true;
@@ -309,12 +309,12 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
 }
 
 void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {
-  if (report.status != CertifyStatus::cut || vain_.last == now_ || bundled_) return;
+  if (report.status != CertifyStatus::out_of_budget || vain_.last == now_ || bundled_) return;
   const bool begins = vain_.last + kTicksBetween < now_ || report.pairs > 2 * vain_.cells;
   if (begins) vain_ = {report.pairs, 0, 0};
   vain_.last = now_;
-  vain_.cuts = report.pairs <= kFewCells ? vain_.cuts + 1 : 0;
-  if (vain_.cuts <= kMaxCuts) return;
+  vain_.exhausted = report.pairs <= kFewCells ? vain_.exhausted + 1 : 0;
+  if (vain_.exhausted <= kMaxExhausted) return;
   for (const std::uint32_t part : near_cells_)
     if (choice_[part] == Certificate::cells) choice_[part] = Certificate::front_for_good;
 }
@@ -381,7 +381,7 @@ void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, A
     const double target = kAheadShare * ahead.ceiling;
     if (target < kMinAhead || ahead.proved >= kAheadEnough * ahead.ceiling || ahead.proved >= longest_motion()) return;
     const CertifyStatus status = ask(target);
-    if (status == CertifyStatus::cut) return;
+    if (status == CertifyStatus::out_of_budget) return;
     if (status == CertifyStatus::certified) ahead.proved = target;
     if (status == CertifyStatus::blocked) ahead.ceiling = target;
   }
@@ -402,7 +402,7 @@ void PatchMotionCheck::prepare_fronts(const Pose& X) noexcept {
     look_ahead(X, ahead_[front_of_[part]], least_gap_at_most(X, part), [&](double clearance) {
       const CertifyReport report = ask_front(part, X, {}, clearance, limit_);
       to_cells = lies_on(report, part);
-      return to_cells || report.pairs > kEnoughPairs ? CertifyStatus::cut : report.status;
+      return to_cells || report.pairs > kEnoughPairs ? CertifyStatus::out_of_budget : report.status;
     });
     if (!to_cells) continue;
     move_to_cells(part);
@@ -420,7 +420,7 @@ void PatchMotionCheck::prepare_cells(const Pose& X, const Displacement& next) no
     const Displacement d = headway_.motion();
     const CertifyReport report = cells_->prove_ahead(X, d, limit_);
     headway_.learn(report.share, cells_->met());
-    if (report.status == CertifyStatus::cut) return;
+    if (report.status == CertifyStatus::out_of_budget) return;
   }
 }
 
@@ -439,7 +439,7 @@ MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double 
     cells_->foresee({});
     report = cells_->certify(X, Displacement{}, limit);
   }
-  if (report.status == CertifyStatus::cut) return MotionAnswer::unknown;
+  if (report.status == CertifyStatus::out_of_budget) return MotionAnswer::unknown;
   return report.status == CertifyStatus::certified ? MotionAnswer::free : MotionAnswer::blocked;
 }
 

@@ -56,9 +56,9 @@ class PatchMotionCheck final : public MotionCheck {
 
   /// Cells that run out of time again and again.
   struct Vain {
-    int cells = 0;           ///< when it began
-    std::uint32_t cuts = 0;  ///< ticks in which they did since
-    std::uint64_t last = 0;  ///< the begin() of the last of them
+    int cells = 0;                ///< when it began
+    std::uint32_t exhausted = 0;  ///< ticks in which they did since
+    std::uint64_t last = 0;       ///< the begin() of the last of them
   };
 
   /// How far ahead a front has been asked at rest.
@@ -103,13 +103,13 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<Pose> poses_;
   std::vector<std::uint32_t> one_ = {0};  ///< the part of stands()
   std::vector<PatchFront> fronts_;
-  std::vector<std::uint32_t> part_of_;   ///< of each front, kNobody while unused
-  std::vector<std::uint32_t> front_of_;  ///< of each part, kNobody while it has none
-  std::vector<std::uint64_t> used_;      ///< of each front: the begin() that last named its part
-  std::vector<std::uint32_t> cuts_;      ///< of each front: calls in a row that ran out of time or work
-  std::vector<Ahead> ahead_;             ///< of each front
-  Headway headway_;                      ///< of the cells
-  std::vector<std::uint64_t> seen_;      ///< of each part: the begin() that last named it
+  std::vector<std::uint32_t> part_of_;    ///< of each front, kNobody while unused
+  std::vector<std::uint32_t> front_of_;   ///< of each part, kNobody while it has none
+  std::vector<std::uint64_t> used_;       ///< of each front: the begin() that last named its part
+  std::vector<std::uint32_t> exhausted_;  ///< of each front: calls in a row that ran out of time or work
+  std::vector<Ahead> ahead_;              ///< of each front
+  Headway headway_;                       ///< of the cells
+  std::vector<std::uint64_t> seen_;       ///< of each part: the begin() that last named it
   std::uint64_t now_ = 0;
   std::unique_ptr<CellFront> cells_;
   std::optional<PartBundle> bundle_;  ///< what the cells know as the part after the last

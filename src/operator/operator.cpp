@@ -60,7 +60,7 @@ Depth::Vector one(double x) {
 }
 
 void require(bool good, const char* what) {
-  if (!good) throw Error(std::string("operator: ") + what + " is out of range");
+  if (!good) throw Error(ErrorKind::setting, std::string("operator: ") + what + " is out of range", {{}, 0, what, {}});
 }
 
 void check(const OperatorProfile& p, const InsertionTask& task) {

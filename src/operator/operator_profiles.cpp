@@ -80,7 +80,7 @@ const std::vector<OperatorProfile>& operator_profiles() {
 const OperatorProfile& operator_profile(const std::string& name) {
   for (const OperatorProfile& p : operator_profiles())
     if (p.name == name) return p;
-  throw Error("unknown operator \"" + name + "\"; known are careful, average, hasty");
+  throw Error(ErrorKind::setting, "unknown operator \"" + name + "\"; known are careful, average, hasty");
 }
 
 }  // namespace tegotae

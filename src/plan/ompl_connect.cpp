@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "plan/common_axes.hpp"
-#include "plan/growing_ways.hpp"
+#include "plan/growing_paths.hpp"
 
 namespace tegotae {
 namespace {
@@ -60,7 +60,7 @@ struct Tree {
 
   std::deque<Node> nodes;
   std::unique_ptr<ompl::NearestNeighborsGNAT<Node*>> near;
-  GrowingWays ways;
+  GrowingPaths ways;
 };
 
 class CompliantConnect final : public ob::Planner {
@@ -95,10 +95,10 @@ class CompliantConnect final : public ob::Planner {
     const double goal_share = task_.exit != nullptr ? kExitShare : kGoalShare;
     while (!ended && result_.iterations < task_.iterations) {
       Tree& tree = rng_.uniform01() < goal_share ? from_goals_ : from_start_;
-      GrowingWay& way = tree.ways.choose(rng_.uniform01());
+      GrowingPath& way = tree.ways.choose(rng_.uniform01());
       const std::size_t before = tree.nodes.size();
       if (iterate(tree, aim(tree, way), ended)) return finish();
-      GrowingWays::tell(way, tree.nodes.size() > before);
+      GrowingPaths::report(way, tree.nodes.size() > before);
     }
     result_.path = path_to(farthest_);
     return ob::PlannerStatus::TIMEOUT;
@@ -134,7 +134,7 @@ class CompliantConnect final : public ob::Planner {
     return node;
   }
 
-  Aim aim(Tree& tree, const GrowingWay& way) {
+  Aim aim(Tree& tree, const GrowingPath& way) {
     if (way.motion == GrowingMotion::anywhere) {
       ob::State* state = si_->allocState();
       sampler_->sampleUniform(state);
@@ -161,7 +161,7 @@ class CompliantConnect final : public ob::Planner {
     return {node, displaced(node->X, world_.center(), motion), motion};
   }
 
-  Displacement own_motion(const Node& node, const GrowingWay& way) {
+  Displacement own_motion(const Node& node, const GrowingPath& way) {
     const double length = range_ * rng_.uniformReal(kShortestMotion, kLongestMotion);
     if (way.motion == GrowingMotion::repeat && node.parent != nullptr) {
       const Displacement d = displacement(node.parent->X, node.X, world_.center());

@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kTellEvery = std::chrono::milliseconds(100);
+constexpr auto kReportEvery = std::chrono::milliseconds(100);
 // Of the clearance that start and goal have: a path that was found is shortened with the first one asked for.
 constexpr double kShortenShare = 0.9;
 // A wider path is searched for: one with so much of it first, then between what is known to be found and what was not
@@ -98,19 +98,19 @@ class Planning {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool ended() const { return stopped() || (options_.search_ends && options_.search_ends()); }
 
-  void tell(const char* what) {
-    if (!options_.progress || (Clock::now() < next_tell_ && told_ == what)) return;
+  void report(const char* what) {
+    if (!options_.progress || (Clock::now() < next_report_ && reported_ == what)) return;
     progress_.what = what;
-    told_ = what;
+    reported_ = what;
     options_.progress(progress_);
-    next_tell_ = Clock::now() + kTellEvery;
+    next_report_ = Clock::now() + kReportEvery;
   }
 
   /// What a search tells of itself.
   std::function<void(std::int64_t, std::size_t, double)> teller(const char* what) {
     return [this, what](std::int64_t iterations, std::size_t poses, double way) {
       progress_ = {what, iterations, poses, way};
-      tell(what);
+      report(what);
     };
   }
 
@@ -153,10 +153,10 @@ class Planning {
     goal.q.normalize();
     Scene there = world_.scene();
     held_part(there).pose = goal;
-    ClashOptions look;
-    look.held_only = true;
-    look.tolerance = 0;
-    for (const Clash& c : find_clashes(there, look))
+    ClashOptions options;
+    options.held_only = true;
+    options.tolerance = 0;
+    for (const Clash& c : find_clashes(there, options))
       if (c.kind == ClashKind::overlap || c.gap <= 0)
         throw Error("at the goal the held part is in " + name(there.parts[c.a].held ? c.b : c.a));
     if (!stands(goal))
@@ -199,7 +199,7 @@ class Planning {
     double all = world_.radius();
     bool first = true;
     for (const std::size_t i : order) {
-      tell("certifying");
+      report("certifying");
       const Pose &from = path[i], &to = path[std::min(i + 1, path.size() - 1)];
       const auto leaves = [&](double clearance) { return world_.free_share(from, to, clearance, kProofs) == 1; };
       if (!std::exchange(first, false) && !stopped() && leaves(all)) continue;
@@ -236,7 +236,7 @@ class Planning {
     task.clearance = clearance;
     task.seed = options_.seed;
     task.ended = [this, &world, most] {
-      tell("shortening");
+      report("shortening");
       return stopped() || world.counts().checked > most;
     };
     task.stopped = [this] { return stopped(); };
@@ -324,10 +324,10 @@ class Planning {
 
   PlanOptions options_;
   double cpu_began_;  // s
-  Clock::time_point began_, next_tell_{};
+  Clock::time_point began_, next_report_{};
   PlanProgress progress_{"searching"};
-  std::string told_;   // what it was about last
-  double proved_ = 0;  ///< m, that the path as a whole is proved to leave; 0: not known yet
+  std::string reported_;  // what it was about last
+  double proved_ = 0;     ///< m, that the path as a whole is proved to leave; 0: not known yet
   MotionWorld world_;
   Exit exit_;
 };

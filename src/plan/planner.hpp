@@ -45,7 +45,7 @@ struct Plan {
   /// It begins where the held part starts in a contact loop. Without a solution: the way to the farthest pose reached.
   std::vector<Pose> path;
   /// m: the whole path is proved to leave this much to every other part. Pairs in `start` that have not come free: to
-  /// the copy of the part that is smaller by InitialContact::inward_offset. 0: not proved, which is no solution.
+  /// the copy of the part that is smaller by InitialContact::inward_offset. 0: not proved, which is not a solution.
   double clearance = 0;
   Vec3 center;                           ///< of mass of the held part, m, file frame
   InitialContactReport start;            ///< what the held part touches at the start

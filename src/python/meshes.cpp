@@ -182,6 +182,9 @@ Error
         return "Mesh(" + mesh.shared->name + ": " + std::to_string(mesh.shared->vertices.size()) + " vertices, " +
                std::to_string(mesh.shared->triangles.size()) + " triangles)";
       });
+}
+
+void bind_load_mesh(nb::module_& m) {
   m.def(
       "load_mesh",
       [](const std::filesystem::path& path, const std::string& unit, bool trusted) {
@@ -214,10 +217,7 @@ Error
     kind "file": the file cannot be used, with the reason.)");
 }
 
-}  // namespace
-
-void bind_meshes(nb::module_& m) {
-  bind_mesh(m);
+void bind_assembly(nb::module_& m) {
   nb::class_<PlacedPart>(m, "AssemblyPart", "A leaf of an assembly: one placed instance of a shape.")
       .def_prop_ro(
           "name", [](const PlacedPart& p) { return p.part.name; }, "Unique in the assembly.")
@@ -244,6 +244,9 @@ void bind_meshes(nb::module_& m) {
           "Of the file, or the one that its lengths were read in.")
       .def_prop_ro(
           "notes", [](const PlacedAssembly& a) { return a.notes; }, "What is not as the file says, a line each.");
+}
+
+void bind_read_assembly(nb::module_& m) {
   m.def(
       "read_assembly",
       [](const std::filesystem::path& path, const std::optional<std::string>& unit, bool split, double chord,
@@ -284,6 +287,15 @@ Raises
 ------
 Error
     kind "file": the file cannot be used, with the reason.)");
+}
+
+}  // namespace
+
+void bind_meshes(nb::module_& m) {
+  bind_mesh(m);
+  bind_load_mesh(m);
+  bind_assembly(m);
+  bind_read_assembly(m);
 }
 
 }  // namespace tegotae::python

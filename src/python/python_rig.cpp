@@ -92,10 +92,10 @@ void PythonRig::stop() {
     const nb::gil_scoped_release others_go_on;
     rig_->stop();
   }
-  tell_failure();
+  report_failure();
 }
 
-void PythonRig::tell_failure() {
+void PythonRig::report_failure() {
   if (pen_failed()) python_->rethrow();
 }
 
@@ -108,7 +108,7 @@ void PythonRig::step(int count) {
   } else {
     step_alone(count);
   }
-  tell_failure();
+  report_failure();
 }
 
 void PythonRig::run(double seconds, nb::object callback) {
@@ -119,7 +119,7 @@ void PythonRig::run(double seconds, nb::object callback) {
   } else {
     run_with(seconds, callback);
   }
-  tell_failure();
+  report_failure();
 }
 
 void PythonRig::step_alone(int count) {

@@ -55,7 +55,7 @@ class PythonRig {
   void run_alone(double seconds);
   void run_with(double seconds, const nanobind::object& callback);
   bool pen_failed() const { return python_ && python_->failed(); }
-  void tell_failure();
+  void report_failure();
 
   nanobind::object pen_;                     // keeps what a pen in Python calls
   std::shared_ptr<Device> device_;           // null: another process's

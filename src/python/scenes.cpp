@@ -64,7 +64,7 @@ void number(Class& c, const char* name, Get get, const char* doc) {
       name, [get](Scene& s) -> Value { return get(s); }, [get](Scene& s, Value value) { get(s) = value; }, doc);
 }
 
-void bind_parts(nb::class_<Scene>& c) {
+void bind_adding(nb::class_<Scene>& c) {
   c.def(nb::init<>())
       .def(
           "add_fixed",
@@ -86,15 +86,18 @@ void bind_parts(nb::class_<Scene>& c) {
                   "None = None) -> int"),
           "Adds the part that the pen holds, which starts at `pose`, (4, 4) X_WF in m. `mass` in kg, for `weight`; "
           "None:\n"
-          "by volume and `density`.")
-      .def_prop_ro(
-          "parts",
-          [](const Scene& s) {
-            std::vector<std::string> names;
-            for (const Part& part : s.parts) names.push_back(part.name);
-            return names;
-          },
-          "Names, in the order of their numbers.")
+          "by volume and `density`.");
+}
+
+void bind_parts(nb::class_<Scene>& c) {
+  c.def_prop_ro(
+       "parts",
+       [](const Scene& s) {
+         std::vector<std::string> names;
+         for (const Part& part : s.parts) names.push_back(part.name);
+         return names;
+       },
+       "Names, in the order of their numbers.")
       .def_prop_ro(
           "held",
           [](const Scene& s) -> std::optional<std::string> {
@@ -194,6 +197,7 @@ void bind_scenes(nb::module_& m) {
 One part is held by the pen, the others are fixed. Poses are (4, 4) arrays X_WF: from the part's own frame to the
 world, lengths in m. Rigs and runs copy what they are given, so a scene may be changed and used again. One thread at a
 time.)");
+  bind_adding(scene);
   bind_parts(scene);
   bind_contact_settings(scene);
   bind_feel(scene);

@@ -64,7 +64,9 @@ class CsvReader {
 
  private:
   [[noreturn]] void fail(const std::string& column, const std::string& reason) const {
-    throw Error(path_ + ":" + std::to_string(line_) + ": " + (column.empty() ? "" : column + ": ") + reason);
+    throw Error(ErrorKind::file,
+                path_ + ":" + std::to_string(line_) + ": " + (column.empty() ? "" : column + ": ") + reason,
+                {path_, static_cast<int>(line_), column, {}});
   }
 
   void take_header(std::string_view line) {

@@ -49,7 +49,7 @@ class McapReader {
 
  private:
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error(path_ + ": at byte " + std::to_string(at_) + ": " + reason);
+    throw Error(ErrorKind::file, path_ + ": at byte " + std::to_string(at_) + ": " + reason, {path_, 0, {}, {}});
   }
 
   /// False when the record is damaged and reading ends.

@@ -55,8 +55,10 @@ struct Recorder::Impl {
     try {
       file->close(continued_by);
     } catch (const Error& e) {
-      throw Error(e.what() + std::string("; it has the first ") + std::to_string(file->written()) + " of " +
-                  std::to_string(rows.load(std::memory_order_relaxed)) + " rows");
+      throw Error(e.kind(),
+                  e.what() + std::string("; it has the first ") + std::to_string(file->written()) + " of " +
+                      std::to_string(rows.load(std::memory_order_relaxed)) + " rows",
+                  e.place());
     }
   }
 };
@@ -64,7 +66,7 @@ struct Recorder::Impl {
 Recorder::Recorder(const std::string& path, RecordMode mode, const RecordingInfo& info, std::size_t capacity)
     : impl_(std::make_unique<Impl>(path, info)) {
   if (mode == RecordMode::synchronous) return;
-  if (capacity == 0) throw Error(path + ": a recorder needs a capacity of at least one frame");
+  if (capacity == 0) throw Error(ErrorKind::setting, path + ": a recorder needs a capacity of at least one frame");
   impl_->ring.emplace(capacity);
   impl_->writer = std::thread([impl = impl_.get()] { impl->write_until_stopped(); });
 }

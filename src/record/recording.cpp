@@ -26,7 +26,9 @@ std::string contents(const std::string& path) {
   const int error = file == nullptr || std::ferror(file) != 0 ? errno : 0;  // a folder opens, and fails when it is read
   if (file != nullptr) std::fclose(file);
   if (error != 0)
-    throw Error(path + ": cannot read the recording: " + (error == ENOENT ? "no such file" : std::strerror(error)));
+    throw Error(ErrorKind::file,
+                path + ": cannot read the recording: " + (error == ENOENT ? "no such file" : std::strerror(error)),
+                {path, 0, {}, {}});
   return text;
 }
 

@@ -65,7 +65,9 @@ RecordingInfo read_info(const std::string& path) {
   std::ifstream in(beside);
   if (!in) return {};
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
-  if (!json.is_object()) throw Error(beside + ": is not the info of a recording (a JSON object of texts); remove it");
+  if (!json.is_object())
+    throw Error(ErrorKind::file, beside + ": is not the info of a recording (a JSON object of texts); remove it",
+                {beside, 0, {}, {}});
   std::map<std::string, std::string> fields;
   for (const auto& [name, value] : json.items())
     if (value.is_string()) fields[name] = value.get<std::string>();

@@ -24,7 +24,7 @@ bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metr
   bool found = false;
   for (std::size_t i = 0; i < rows; ++i) {
     const Contact& c = contacts[i];
-    // A plane between two triangles is no surface that could rub.
+    // A plane between two triangles is not a surface that could rub.
     mu_[i] = c.age == kOneShotAge || c.part.index >= mu_of_part_.size() ? 0 : mu_of_part_[c.part.index];
     Place& at = places_[i];
     if (!(mu_[i] > 0)) {

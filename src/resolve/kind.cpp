@@ -18,7 +18,8 @@ const std::string& to_string(ResolverKind kind) {
 ResolverKind resolver_kind(const std::string& name) {
   const auto& names = resolver_names();
   const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw Error("unknown resolver \"" + name + "\"; known are qp, lp, impulse, penalty");
+  if (at == names.end())
+    throw Error(ErrorKind::setting, "unknown resolver \"" + name + "\"; known are qp, lp, impulse, penalty");
   return static_cast<ResolverKind>(at - names.begin());
 }
 

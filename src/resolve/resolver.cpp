@@ -83,7 +83,8 @@ class QpResolver final : public Resolver {
 std::unique_ptr<Resolver> make_resolver(ResolverKind kind, int capacity) {
   if (kind == ResolverKind::lp) return std::make_unique<LpResolver>(capacity);
   if (kind == ResolverKind::qp) return std::make_unique<QpResolver>(capacity);
-  throw Error("the resolver " + to_string(kind) + " is a loop of its own; set ContactSettings::resolver");
+  throw Error(ErrorKind::setting,
+              "the resolver " + to_string(kind) + " is a loop of its own; set ContactSettings::resolver");
 }
 
 }  // namespace tegotae

@@ -70,8 +70,10 @@ class Walk {
 
   void count(int levels, const char* what) const {
     if (levels <= kMaxLevels) return;
-    throw Error(path_ + ":" + std::to_string(line_) + ": more than " + std::to_string(kMaxLevels) + " " + what +
-                "; no scene has so many");
+    throw Error(ErrorKind::file,
+                path_ + ":" + std::to_string(line_) + ": more than " + std::to_string(kMaxLevels) + " " + what +
+                    "; no scene has so many",
+                {path_, static_cast<int>(line_), {}, {}});
   }
 
   const std::string& text_;
@@ -83,7 +85,8 @@ class Walk {
 }  // namespace
 
 void check_toml_levels(const std::string& text, const std::string& path) {
-  if (text.size() > kMaxBytes) throw Error(path + ": is longer than 64 MB, and no scene is");
+  if (text.size() > kMaxBytes)
+    throw Error(ErrorKind::file, path + ": is longer than 64 MB, and no scene is", {path, 0, {}, {}});
   Walk(text, path).all();
 }
 

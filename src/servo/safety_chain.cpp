@@ -89,7 +89,7 @@ ForceOff SafetyChain::off(const SafetyInput& in, double workspace) const noexcep
 SafetyOutput SafetyChain::apply(const SafetyInput& in) noexcept {
   const double dt = std::clamp(in.dt, 0.0, kLongestStep);
   if (const ForceOff now = emergency(in); now != ForceOff::none) {
-    gate_.cut(now);
+    gate_.shut_off(now);
     slew_.reset();
     shaped_ = {};
     thermal_.add(0, dt);

@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 // Two samples whose time stamps are nearer are taken to be this far apart (s): a driver's stamps jitter, and a way
-// divided by next to nothing is no velocity.
+// divided by next to nothing is not a velocity.
 constexpr double kMinInterval = 1e-4;
 
 }  // namespace
@@ -51,7 +51,7 @@ double ThermalBudget::load() const noexcept {
   return continuous2_ > 0 ? std::sqrt(mean2_ / continuous2_) : 0;
 }
 
-void ForceGate::cut(ForceOff off) noexcept {
+void ForceGate::shut_off(ForceOff off) noexcept {
   reason_ = off;
   gain_ = 0;
   small_for_ = 0;

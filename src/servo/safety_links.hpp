@@ -55,7 +55,7 @@ class ForceGate {
   /// The part of the wrench that may leave, in [0, 1]. `off`: why the force must be off now, or none.
   double update(ForceOff off, const Wrench& wanted, double dt) noexcept;
   /// Off at once.
-  void cut(ForceOff off) noexcept;
+  void shut_off(ForceOff off) noexcept;
   ForceOff reason() const noexcept { return reason_; }
   double gain() const noexcept { return gain_; }
 

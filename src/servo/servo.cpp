@@ -18,7 +18,7 @@ namespace tegotae {
 
 namespace {
 
-constexpr double kLowestRate = 10.0;      // Hz; slower is no servo
+constexpr double kLowestRate = 10.0;      // Hz; slower is not a servo
 constexpr double kHighestRate = 4000.0;   // Hz
 constexpr double kStatisticsRate = 10.0;  // Hz, how often they are published
 
@@ -124,7 +124,7 @@ struct Servo::Impl {
 Servo::Servo(Device& device, Channel& channel, const ServoSettings& settings)
     : impl_(std::make_unique<Impl>(device, channel, settings)) {
   if (!(settings.rate_hz >= kLowestRate && settings.rate_hz <= kHighestRate))
-    throw Error("servo: the rate must be from 10 to 4000 Hz");
+    throw Error(ErrorKind::setting, "servo: the rate must be from 10 to 4000 Hz", {{}, 0, "rate_hz", {}});
 }
 
 Servo::~Servo() {

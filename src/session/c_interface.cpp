@@ -37,10 +37,10 @@ std::string& last_error() noexcept {
   return text;
 }
 
-void tell(const char* why) noexcept {
+void set_last_error(const char* why) noexcept {
   try {
     last_error() = why;
-  } catch (const std::bad_alloc&) {  // too little memory to say that there is too little
+  } catch (const std::bad_alloc&) {  // not even enough memory for the text
     last_error().clear();
   }
 }
@@ -51,9 +51,9 @@ Result guarded(Result failed, const Body& body) noexcept {
   try {
     return body();
   } catch (const std::exception& e) {
-    tell(e.what());
+    set_last_error(e.what());
   } catch (...) {
-    tell("unknown error");
+    set_last_error("unknown error");
   }
   return failed;
 }
@@ -263,8 +263,10 @@ int tegotae_rig_change(tegotae_rig* rig, const tegotae_scene* scene, double seco
   return guarded(kFailed, [&] {
     SceneChange change = required(rig, "rig").rig->change(required(scene, "scene").scene);
     if (!(seconds > 0)) return 0;
-    if (change.wait(seconds) == ChangeState::in_force || !change.cancel()) return 0;
-    throw Error("the held part blocks the change, or no thread steps the rig");
+    change.wait(seconds);
+    if (change.cancel()) throw Error("the held part blocks the change, or no thread steps the rig");
+    if (change.state() == ChangeState::replaced) throw Error("a later change replaced this one before it was in force");
+    return 0;
   });
 }
 

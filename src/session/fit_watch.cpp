@@ -24,7 +24,7 @@ void FitWatch::begin(const Pose& X) noexcept {
   first_ = held_ = false;
 }
 
-void FitWatch::look(const HapticLoop& loop, const Pose& Y, double dt, HeldFast& found) noexcept {
+void FitWatch::update(const HapticLoop& loop, const Pose& Y, double dt, HeldFast& found) noexcept {
   held_ = false;
   if (!first_ || loop.change_in_force() != 0) return;
   const double moved = size(displacement(start_, loop.report().proxy.X, center_));

@@ -16,7 +16,7 @@ class FitWatch {
   void begin(const Pose& X) noexcept;
   /// After a tick of `dt` (s) in which a pair was relieved, the pen at `Y`. Never allocates
   /// where `found.parts` has room for all.
-  void look(const HapticLoop& loop, const Pose& Y, double dt, HeldFast& found) noexcept;
+  void update(const HapticLoop& loop, const Pose& Y, double dt, HeldFast& found) noexcept;
   bool held() const noexcept { return held_; }
 
  private:

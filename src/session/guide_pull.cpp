@@ -20,7 +20,7 @@ double strongest(const Scene& scene, const HapticLoop& loop) {
 PathGuide guide_along(const std::vector<Pose>& path, const Scene& scene, const HapticLoop& loop) {
   const ResolverKind resolver = scene.contact.resolver;
   if (!scene.contact.custom_resolver && resolver != ResolverKind::qp)
-    throw Error("guide: the resolver " + to_string(resolver) + " knows no load; qp does");
+    throw Error(ErrorKind::setting, "guide: the resolver " + to_string(resolver) + " does not support a load; qp does");
   PathGuideSettings guide;
   guide.coupling = loop.coupling();
   guide.scale = scene.scale;

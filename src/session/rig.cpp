@@ -26,7 +26,8 @@ std::int64_t nanoseconds(double seconds) {
 
 const RigSettings& checked(const RigSettings& settings) {
   if (!(settings.period >= kMinPeriod && settings.period <= kMaxPeriod))
-    throw Error("rig: the period must be from 1e-5 to 1 s, not " + std::to_string(settings.period));
+    throw Error(ErrorKind::setting, "rig: the period must be from 1e-5 to 1 s, not " + std::to_string(settings.period),
+                {{}, 0, "period", {}});
   return settings;
 }
 

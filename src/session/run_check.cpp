@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/deadline.hpp"
 #include "core/parallel_for.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -72,7 +73,7 @@ std::int64_t RunCheck::poses() const {
 
 void RunCheck::end(double seconds, const std::atomic<bool>* stop, std::atomic<double>* share) {
   const double time = std::max(kMinTime, kShare * seconds);
-  const std::int64_t deadline_ns = monotonic_ns() + static_cast<std::int64_t>(1e9 * time);
+  const std::int64_t deadline_ns = deadline_after(monotonic_ns(), time);
   ended_ = true;
   wake_.notify_one();
   const auto over = [&] {

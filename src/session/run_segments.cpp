@@ -109,7 +109,9 @@ void RunSegments::record(RunSegment& segment, const InitialContactReport& start)
   if (segment.number > 0) {
     const fs::path first = settings_.record;
     if (!fs::is_regular_file(first))
-      throw Error(settings_.record + ": is not a regular file; a changed scene needs a recording beside it");
+      throw Error(ErrorKind::file,
+                  settings_.record + ": is not a regular file; a changed scene needs a recording beside it",
+                  {settings_.record, 0, {}, {}});
     segment.recording = numbered(first, segment.number + 1, first.extension()).string();
     segment.scene_file = numbered(first, segment.number + 1, ".toml").string();
     info.scene = fs::path(segment.scene_file).filename().string();

@@ -60,7 +60,7 @@ std::unique_ptr<PenPort> make_pen(SimulatedDevice* device, const SceneFile& file
                                   const HapticLoop& loop) {
   if (device == nullptr) {
     if (!settings.real_time)
-      throw Error("a device in another process has its own clock; it cannot run in virtual time");
+      throw Error(ErrorKind::setting, "a device in another process has its own clock; it cannot run in virtual time");
     return make_remote_pen(settings.device, file.scene.scale, loop);
   }
   ServoSettings servo;
@@ -81,9 +81,10 @@ double duration(const SceneFile& file, const RunSettings& settings) {
   if (!settings.device.empty()) return std::numeric_limits<double>::infinity();
   const double length = script_length(file);
   if (length > kMaxRunSeconds) {
-    throw Error("the stylus script lasts " + number_text(length, 6) + " s, more than the " +
-                number_text(kMaxRunSeconds, 6) +
-                " s of the longest run: are its times in s? A run of so many seconds as are given ends before");
+    throw Error(ErrorKind::setting,
+                "the stylus script lasts " + number_text(length, 6) + " s, more than the " +
+                    number_text(kMaxRunSeconds, 6) +
+                    " s of the longest run: are its times in s? Give the seconds to run to end before");
   }
   return length + kSettleTime;
 }
@@ -195,7 +196,7 @@ class Session {
     const double tick_us = settings_.real_time ? 1e-3 * static_cast<double>(took) : 0.0;
     if (segment.recorder) record(number, t, pen, report, tick_us);
     if (settings_.observer) observe(number, t, pen, tick_us);
-    if (report.shrunk > 0) watch_.look(loop_, pen.state.pose, dt, summary_.held_fast);
+    if (report.shrunk > 0) watch_.update(loop_, pen.state.pose, dt, summary_.held_fast);
     if (settings_.progress) show(t, pen, report);
   }
 

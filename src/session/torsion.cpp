@@ -19,12 +19,13 @@ std::string stiffness_text(double stiffness) {
 
 Scene bounded_by(Scene scene, const std::string& device) {
   if (device.rfind(kDeviceScheme, 0) != 0) return scene;
-  tegotae_shm_device told{};
+  tegotae_shm_device device_info{};
   // A device that has written nothing yet is one of which nothing is known.
-  ChannelReader::open(device.substr(std::string(kDeviceScheme).size())).read(told);
+  ChannelReader::open(device.substr(std::string(kDeviceScheme).size())).read(device_info);
   if (scene.max_torsional_stiffness)
-    scene.max_torsional_stiffness = torsional_stiffness_bound(told.torsional_stiffness_limit, told.torque_limit);
-  scene.weight.max_force = weight_bound(told.continuous_force);
+    scene.max_torsional_stiffness =
+        torsional_stiffness_bound(device_info.torsional_stiffness_limit, device_info.torque_limit);
+  scene.weight.max_force = weight_bound(device_info.continuous_force);
   return scene;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // A device that has been silent for so long is taken for lost: with a contact loop of 1 kHz it is noticed within 25 ms.
 constexpr std::int64_t kSilenceNs = 20'000'000;
-constexpr std::int64_t kLookAgainNs = 100'000'000;
+constexpr std::int64_t kPollNs = 100'000'000;
 
 /// Name of the segment in "shm:NAME".
 std::string segment_of(const std::string& device) {
@@ -55,13 +55,13 @@ bool Attachment::read(PenSample& pen, std::int64_t now_ns) noexcept {
     connected_ = false;
     ++losses_;
   }
-  look_for_successor(now_ns);
+  poll_successor(now_ns);
   return false;
 }
 
-void Attachment::look_for_successor(std::int64_t now_ns) noexcept {
-  if (now_ns - looked_ns_ < kLookAgainNs) return;
-  looked_ns_ = now_ns;
+void Attachment::poll_successor(std::int64_t now_ns) noexcept {
+  if (now_ns - polled_ns_ < kPollNs) return;
+  polled_ns_ = now_ns;
   try {
     // While the old device lives, if silent, this application holds it and a second hold is refused.
     attach();

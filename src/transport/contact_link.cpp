@@ -51,7 +51,8 @@ bool ContactLink::read(PenSample& pen) const noexcept {
 }
 
 void ContactLink::set_scale(double scale) {
-  if (!(scale >= kMinScale && scale <= kMaxScale)) throw Error("pen: the scale must be from 0.01 to 100");
+  if (!(scale >= kMinScale && scale <= kMaxScale))
+    throw Error(ErrorKind::setting, "pen: the scale must be from 0.01 to 100", {{}, 0, "pen.scale", {}});
   scale_ = scale;
 }
 

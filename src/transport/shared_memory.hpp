@@ -14,7 +14,7 @@ enum class SegmentRole { device, application, observer };
 class Segment {
  public:
   /// Creates the segment `name` (0600, header filled in) as its device. What a dead process left under that name is
-  /// replaced. Throws Error when a living process has the name, or something that is no segment of this protocol.
+  /// replaced. Throws Error when a living process has the name, or something that is not a segment of this protocol.
   static std::unique_ptr<Segment> create(const std::string& name);
   /// Maps an existing segment after checking owner, permission, size, magic and version, and that its device lives.
   /// Throws Error, as an application also when another one is attached.

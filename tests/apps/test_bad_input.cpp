@@ -5,29 +5,14 @@
 
 #include <algorithm>
 
+#include "apps/refusal.hpp"
 #include "apps/run_program.hpp"
 #include "catch.hpp"
+#include "text.hpp"
 
 using namespace tegotae::test;
 
 namespace {
-
-void check_refused(const Output& o, const std::vector<std::string>& named) {
-  INFO("stdout: " << o.out);
-  INFO("stderr: " << o.err);
-  CHECK(o.code == 2);
-  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
-  for (const std::string& text : named) {
-    INFO("named: " << text);
-    CHECK(o.err.find(text) != std::string::npos);
-  }
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
 
 /// Stands in a folder as long as it lives.
 class InFolder {
@@ -55,7 +40,7 @@ TEST_CASE("meshes that cannot be used are refused", "[bad_input]") {
   folder.write("huge.obj", "v 0 0 1e30\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   folder.write("part.step",
                "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
-  folder.write("text.obj", "this is no mesh\n");
+  folder.write("text.obj", "this is not a mesh\n");
   folder.write("truncated.ply",
                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n");
@@ -256,7 +241,7 @@ TEST_CASE("an address that cannot be listened on says why", "[bad_input]") {
   check_refused(view("192.0.2.1:8080"), {"cannot listen on 192.0.2.1:8080", "this machine has no such address"});
 }
 
-TEST_CASE("help and version are no errors", "[bad_input]") {
+TEST_CASE("help and version are not errors", "[bad_input]") {
   for (const std::string program : {"demo", "tegotae", "tegotae-device", "peg_in_hole", "tegotae-models",
                                     "tegotae-load-mesh", "families", "stress", "tegotae bench", "tegotae experiment"}) {
     for (const std::string flag : {"--help", "--version"}) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "apps/refusal.hpp"
 #include "apps/run_program.hpp"
 #include "catch.hpp"
 #include "core/sanitizers.hpp"
@@ -20,17 +21,7 @@
 using namespace tegotae;
 using namespace tegotae::test;
 
-namespace {
-
-void check_refused(const Output& o, const std::vector<std::string>& named) {
-  INFO("stdout: " << o.out);
-  INFO("stderr: " << o.err);
-  CHECK(o.code == 2);
-  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
-  for (const std::string& text : named) CHECK(o.err.find(text) != std::string::npos);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("a mesh file becomes a scene that runs", "[import]") {
   const TempFolder folder;

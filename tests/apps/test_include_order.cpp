@@ -101,7 +101,7 @@ std::string violation(const std::string& file, const std::string& line) {
   for (const auto& [library, place] : kOnlyIn)
     if (!test && starts_with(inc, library) && !starts_with(file, place))
       return std::string(library) + " belongs to " + place + "*";
-  if (starts_with(file, "include/") && !inc.empty() && !may_be_public(inc)) return inc + " is no public include";
+  if (starts_with(file, "include/") && !inc.empty() && !may_be_public(inc)) return inc + " is not a public include";
   return "";
 }
 
@@ -136,8 +136,8 @@ TEST_CASE("the check sees an arrow through a wall", "[include]") {
   CHECK(violation("src/import/a.cpp", "#include <BRep_Tool.hxx>") == "OpenCASCADE belongs to src/import/*occt*");
   CHECK(violation("src/plan/a.cpp", "#include <ompl/base/State.h>") == "ompl/ belongs to src/plan/ompl_*");
   CHECK(violation("src/plan/a.cpp", "#include \"tegotae/device/device.hpp\"") == "plan may not include device");
-  CHECK(violation("include/tegotae/loop/a.hpp", "#include <toml++/toml.h>") == "toml++/toml.h is no public include");
-  CHECK(violation("include/tegotae/loop/a.hpp", "#include \"loop/a.hpp\"") == "loop/a.hpp is no public include");
+  CHECK(violation("include/tegotae/loop/a.hpp", "#include <toml++/toml.h>") == "toml++/toml.h is not a public include");
+  CHECK(violation("include/tegotae/loop/a.hpp", "#include \"loop/a.hpp\"") == "loop/a.hpp is not a public include");
   CHECK(violation("include/tegotae/loop/a.hpp", "#include <vector>").empty());
   CHECK(violation("src/view/a.cpp", "int a;") == "folder view has no place in the order");
   CHECK(violation("src/session/a.cpp", "#include \"tegotae/core/pose.hpp\"").empty());

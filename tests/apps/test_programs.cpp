@@ -307,7 +307,7 @@ TEST_CASE("every program that reads a scene has its meshes read by the helper, u
   CHECK_THAT(page.err, Catch::Contains("cannot be started"));
 }
 
-TEST_CASE("a bound on memory that was set before is no reason not to read a mesh", "[programs]") {
+TEST_CASE("a bound on memory that was set before does not stop a mesh from being read", "[programs]") {
 #if !defined(TEGOTAE_SANITIZED)
   const TempFolder folder;
   write_small_scene(folder);

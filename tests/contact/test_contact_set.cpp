@@ -198,7 +198,7 @@ TEST_CASE("a cutting plane knows how far apart its triangles are", "[contact]") 
     ContactSet set(triangle(Vec3(beside, 0, height)), {{B, Pose{}}}, Vec3::Zero(), 64);
     REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
     const Displacement d{Vec3(-0.02, 0, -2e-5), Vec3::Zero()};
-    REQUIRE(set.cut({{0, 0, 0}}, d, 1e-6, kNoDeadline) == 1);
+    REQUIRE(set.add_cutting_planes({{0, 0, 0}}, d, 1e-6, kNoDeadline) == 1);
     REQUIRE(set.constraints().size() == 1);
     CHECK(set.touches(0, 1.001 * apart));
     CHECK_FALSE(set.touches(0, 0.999 * apart));
@@ -216,7 +216,7 @@ TEST_CASE("a cutting plane's triangle may have collapsed in welding", "[contact]
   ContactSet set(surface(over), {{surface(flat), Pose{}}}, Vec3::Zero(), 64);
   REQUIRE(set.track(Pose{}, 0.03, kNoDeadline));
   const Displacement d{Vec3(0, 0, -2e-5), Vec3::Zero()};
-  REQUIRE(set.cut({{0, 1, 0}, {0, 0, 1}, {0, 1, 1}}, d, 1e-6, kNoDeadline) > 0);
+  REQUIRE(set.add_cutting_planes({{0, 1, 0}, {0, 0, 1}, {0, 1, 1}}, d, 1e-6, kNoDeadline) > 0);
   for (std::size_t i = 0; i < set.constraints().size(); ++i) {
     CHECK(set.touches(i, 1.001 * height));
     CHECK_FALSE(set.touches(i, 0.999 * height));

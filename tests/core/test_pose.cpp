@@ -1,17 +1,12 @@
 #include <cmath>
 #include <random>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/core/pose.hpp"
 
 using namespace tegotae;
-
-namespace {
-Vec3 random_vector(std::mt19937& rng, double size) {
-  std::uniform_real_distribution<double> u(-size, size);
-  return {u(rng), u(rng), u(rng)};
-}
-}  // namespace
+using namespace tegotae::test;
 
 TEST_CASE("rotation vectors and quaternions are inverse of each other", "[core]") {
   std::mt19937 rng(1);

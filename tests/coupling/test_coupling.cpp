@@ -1,16 +1,11 @@
 #include <random>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/coupling/coupling.hpp"
 
 using namespace tegotae;
-
-namespace {
-Vec3 random_vector(std::mt19937& rng, double size) {
-  std::uniform_real_distribution<double> u(-size, size);
-  return {u(rng), u(rng), u(rng)};
-}
-}  // namespace
+using namespace tegotae::test;
 
 TEST_CASE("a pen past a wall feels a force out of it", "[coupling]") {
   // The part's center is held at the wall's surface x = 0, the pen is 2 mm inside and moves deeper at 0.1 m/s.

@@ -14,12 +14,12 @@ using namespace tegotae::test;
 namespace {
 
 constexpr double kTick = 1e-3;
-constexpr double kRadius = 0.02;  // √(k_t / k)
+constexpr double kGuideRadius = 0.02;  // √(k_t / k)
 
 PathGuideSettings settings(double scale = 1) {
   PathGuideSettings s;
   s.coupling.stiffness = 1000;
-  s.coupling.torsional_stiffness = 1000 * kRadius * kRadius;
+  s.coupling.torsional_stiffness = 1000 * kGuideRadius * kGuideRadius;
   s.scale = scale;
   s.center = Vec3(0.001, -0.002, 0.003);
   s.force = 0.8;
@@ -63,9 +63,9 @@ TEST_CASE("along a straight path the pull is its force, along it and back to it"
   }
   // Turned by 0.3 rad: 6 mm of turn at the radius.
   const Wrench w = settled(guide, placed(scale * Vec3(0.03, 0, 0), Vec3(0, 0, 0.3)));
-  const double far = std::hypot(soft, 0.3 * kRadius);
+  const double far = std::hypot(soft, 0.3 * kGuideRadius);
   CHECK((w.force - 0.8 / far * Vec3(soft, 0, 0)).norm() < 1e-9);
-  CHECK((w.torque - 0.8 / far * kRadius * Vec3(0, 0, -0.3 * kRadius)).norm() < 1e-9);
+  CHECK((w.torque - 0.8 / far * kGuideRadius * Vec3(0, 0, -0.3 * kGuideRadius)).norm() < 1e-9);
 }
 
 TEST_CASE("before a corner the pull goes on to it, and from it on", "[guide]") {
@@ -94,11 +94,11 @@ TEST_CASE("a turn in place is pulled by torque alone", "[guide]") {
   std::vector<Pose> path;
   for (int i = 0; i <= 20; ++i) path.push_back(placed(Vec3(0.01, 0.02, 0.03), 0.1 * i * axis));
   PathGuide guide(path, settings());
-  CHECK(guide.length() == Approx(2 * kRadius));
+  CHECK(guide.length() == Approx(2 * kGuideRadius));
   const Wrench w = guide.pull(placed(Vec3(0.01, 0.02, 0.03), 0.73 * axis), kTick);
   CHECK(w.force.norm() < 1e-9);
-  CHECK((w.torque - 0.8 * kRadius * axis).norm() < 1e-9);
-  CHECK(guide.torque() == Approx(0.8 * kRadius));
+  CHECK((w.torque - 0.8 * kGuideRadius * axis).norm() < 1e-9);
+  CHECK(guide.torque() == Approx(0.8 * kGuideRadius));
 }
 
 TEST_CASE("a screw is followed through poses that come again", "[guide]") {
@@ -109,13 +109,13 @@ TEST_CASE("a screw is followed through poses that come again", "[guide]") {
   };
   for (int i = 0; i <= 400; ++i) path.push_back(at(0.01 * i));
   PathGuide guide(path, settings());
-  const double a_turn = std::hypot(5e-4, 2 * M_PI * kRadius);
+  const double a_turn = std::hypot(5e-4, 2 * M_PI * kGuideRadius);
   CHECK(guide.length() == Approx(4 * a_turn).epsilon(1e-6));
   for (int i = 0; i <= 1600; ++i) {
     const double turns = 3.8 * std::sin(M_PI / 2 * i / 800);  // there and back
     const Wrench w = guide.pull(at(turns), kTick);
     REQUIRE(guide.along() == Approx(turns * a_turn).margin(1e-6));
-    REQUIRE(w.torque.z() > 0.99 * 0.8 * kRadius);  // always on
+    REQUIRE(w.torque.z() > 0.99 * 0.8 * kGuideRadius);  // always on
   }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("the pull is never more than its force, and nothing beyond its reach",
     const AllocGuard guard;
     const Wrench w = guide.pull(Y, kTick);
     allocations += guard.count();
-    const double pull = std::hypot(w.force.norm(), w.torque.norm() / kRadius);
+    const double pull = std::hypot(w.force.norm(), w.torque.norm() / kGuideRadius);
     REQUIRE(pull <= 0.8 * (1 + 1e-12));
     if (guide.distance() >= PathGuide::kReach) REQUIRE(pull == 0);
     ++(guide.distance() < PathGuide::kReach ? near : far);

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "catch.hpp"
+#include "core/numbers.hpp"
 #include "curve/axis_search.hpp"
 #include "models/gear.hpp"
 #include "models/height_field.hpp"
@@ -13,11 +14,10 @@
 #include "thread_families.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 using namespace tegotae::shapes;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 TriangleMesh placed(TriangleMesh mesh, const Pose& X) {
   for (Vec3& v : mesh.vertices) v = X * v;

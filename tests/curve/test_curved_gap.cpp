@@ -1,5 +1,6 @@
 // The margin of the curved certificate against the profile coordinates of points along their paths.
 #include "catch.hpp"
+#include "core/numbers.hpp"
 #include "curve_oracle.hpp"
 #include "narrowphase/curved_lanes.hpp"
 
@@ -7,8 +8,6 @@ using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Axes close to each other and a motion of some size; sizes over many decades.
 Path random_path(std::mt19937& rng, double r) {

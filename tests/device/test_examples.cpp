@@ -98,7 +98,7 @@ TEST_CASE("a second driver leaves a living one alone and takes over from a dead 
   CHECK_NOTHROW(Channel::create(kName));  // the library takes over from it, too
 }
 
-TEST_CASE("a reader in Python refuses what is no segment", "[examples]") {
+TEST_CASE("a reader in Python refuses what is not a segment", "[examples]") {
   Program absent({"/usr/bin/env", "python3", TEGOTAE_EXAMPLES_DIR "/reader.py", kName + "-absent"});
   CHECK(absent.wait() != 0);
 }

@@ -97,7 +97,7 @@ TEST_CASE("a script may be as a spreadsheet writes it: any line ends, cells in q
   }
 }
 
-TEST_CASE("of a script that is no text of single bytes the reason is named, on one line", "[device]") {
+TEST_CASE("of a script that is not text of single bytes the reason is named, on one line", "[device]") {
   std::string wide;
   for (const char c : kHeader) (wide += c) += '\0';
   CHECK_THAT(error_of("\xff\xfe" + wide), Catch::Contains("is in UTF-16"));

@@ -4,11 +4,13 @@
 #include <random>
 #include <thread>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/device/simulated_device.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 
 namespace {
 
@@ -16,11 +18,6 @@ constexpr double kTick = 1e-3;
 
 StylusScript still(const Pose& pose = Pose()) {
   return StylusScript({{0, pose}});
-}
-
-Vec3 random_vector(std::mt19937& rng, double size) {
-  std::uniform_real_distribution<double> u(-size, size);
-  return {u(rng), u(rng), u(rng)};
 }
 
 void settle(SimulatedDevice& device, double seconds) {
@@ -137,7 +134,7 @@ TEST_CASE("poses are as coarse as the encoders and the velocity is still useful"
     const Vec3 steps = point / 3e-5;
     REQUIRE((steps.array() - steps.array().round()).abs().maxCoeff() < 1e-6);
     REQUIRE((point - device.true_pose() * center).cwiseAbs().maxCoeff() <= 1.5e-5 + 1e-12);
-    // Each component of the rotation vector by half a step, and the map to rotations is no expansion.
+    // Each component of the rotation vector by half a step, and the map to rotations is not an expansion.
     REQUIRE(rotation_vector(seen.pose.q * device.true_pose().q.conjugate()).norm() <= 0.5e-4 * std::sqrt(3.0) + 1e-12);
     if (i > 100) {
       square_v += (seen.velocity.v - device.true_velocity().v).squaredNorm();

@@ -10,9 +10,9 @@ using namespace tegotae;
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kTick = 1e-3, kCutoff = 50, kStep = 3e-5, kTurnStep = 1e-4;
+constexpr double kSample = 1e-3, kCutoff = 50, kStep = 3e-5, kTurnStep = 1e-4;
 // Of a sample's difference, what a first-order low-pass of 50 Hz lets through at once.
-const double kGain = 1 - std::exp(-2 * M_PI * kCutoff * kTick);
+const double kGain = 1 - std::exp(-2 * M_PI * kCutoff * kSample);
 
 double stepped(double x, double step) {
   return step * std::round(x / step);
@@ -32,12 +32,12 @@ void follow(VelocityFilter& filter, int ticks, Way way, Say say) {
 
 TEST_CASE("the velocity of a pen that goes slower than a step a sample is its own, not that of its steps", "[device]") {
   for (double share : {0.02, 0.07, 0.11, 0.3, 0.45, 0.75, 1.0, 1.6, 7.3}) {  // steps a sample
-    const double v = share * kStep / kTick;
+    const double v = share * kStep / kSample;
     VelocityFilter filter(kCutoff, kStep, kTurnStep);
     double sum = 0, worst = 0;
     int counted = 0;
     follow(
-        filter, 4000, [&](int i) { return v * i * kTick; },
+        filter, 4000, [&](int i) { return v * i * kSample; },
         [&](int i, double seen) {
           if (i < 1000) return;
           ++counted;
@@ -47,14 +47,14 @@ TEST_CASE("the velocity of a pen that goes slower than a step a sample is its ow
     CAPTURE(share, v, worst);
     CHECK(sum / counted == Approx(v).epsilon(0.02));
     // Waiting steps come every N or N + 1 samples; others are differences.
-    const double off = share < 0.1 ? v / std::floor(1 / share) : kStep / kTick;
+    const double off = share < 0.1 ? v / std::floor(1 / share) : kStep / kSample;
     CHECK(worst <= off * (1 + 1e-9));
     // Differences would give this much more than the pen's velocity after each step.
-    if (share < 0.1) CHECK(worst < 0.5 * (kGain * kStep / kTick - v));
+    if (share < 0.1) CHECK(worst < 0.5 * (kGain * kStep / kSample - v));
   }
 }
 
-TEST_CASE("a step after a rest, and steps to and fro, are no velocity", "[device]") {
+TEST_CASE("a step after a rest, and steps to and fro, are not a velocity", "[device]") {
   VelocityFilter filter(kCutoff, kStep, kTurnStep);
   double most = 0;
   const auto look = [&most](int, double seen) { most = std::max(most, std::abs(seen)); };
@@ -83,11 +83,11 @@ TEST_CASE("the velocity of a pen that stops falls with the time in which no step
   const double v = 0.05;
   const int stop = 200;
   follow(
-      filter, 400, [&](int i) { return v * kTick * std::min(i, stop); },
+      filter, 400, [&](int i) { return v * kSample * std::min(i, stop); },
       [&](int i, double seen) {
         // The low-pass of what is left of the full velocity, and of at most a step in the time since.
-        double bound = v + kStep / kTick;
-        for (int n = 1; n <= i - stop; ++n) bound += kGain * (kStep / (n * kTick) - bound);
+        double bound = v + kStep / kSample;
+        for (int n = 1; n <= i - stop; ++n) bound += kGain * (kStep / (n * kSample) - bound);
         if (i >= stop) CHECK(seen <= bound);
         if (i == 399) CHECK(seen < 1e-12);  // stands
       });
@@ -96,13 +96,13 @@ TEST_CASE("the velocity of a pen that stops falls with the time in which no step
 TEST_CASE("where no steps are known, and of swings over many steps, velocities are filtered differences", "[device]") {
   VelocityFilter plain(kCutoff, 0, 0);
   for (int i = 0; i < 200; ++i) {
-    plain.add({0, 0.2 * i * kTick, 0}, rotation({0, 0, 3.0 * i * kTick}), i * kMs);
+    plain.add({0, 0.2 * i * kSample, 0}, rotation({0, 0, 3.0 * i * kSample}), i * kMs);
     const double reached = 1 - std::pow(1 - kGain, i);
     CHECK(plain.velocity().v.y() == Approx(0.2 * reached));
     CHECK(plain.velocity().w.z() == Approx(3.0 * reached));
   }
   VelocityFilter known(kCutoff, kStep, kTurnStep), unknown(kCutoff, 0, 0);
-  const auto swing = [](int i) { return 2e-3 * std::sin(2 * M_PI * 20 * i * kTick); };
+  const auto swing = [](int i) { return 2e-3 * std::sin(2 * M_PI * 20 * i * kSample); };
   double apart = 0, most = 0;
   for (int i = 0; i < 500; ++i) {
     known.add({0, stepped(swing(i), kStep), 0}, Quat::Identity(), i * kMs);
@@ -110,7 +110,7 @@ TEST_CASE("where no steps are known, and of swings over many steps, velocities a
     apart = std::max(apart, (known.velocity().v - unknown.velocity().v).norm());
     most = std::max(most, unknown.velocity().v.norm());
   }
-  CHECK(apart < 2 * kGain * kStep / kTick);
+  CHECK(apart < 2 * kGain * kStep / kSample);
   CHECK(most > 5 * apart);
 }
 
@@ -118,10 +118,10 @@ TEST_CASE("turns are known by their steps about any axis", "[device]") {
   const Quat held = rotation({0.4, -0.3, 0.8});
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0)}) {
     VelocityFilter filter(kCutoff, kStep, kTurnStep);
-    const double w = 0.1 * kTurnStep / kTick;
+    const double w = 0.1 * kTurnStep / kSample;
     double worst = 0;
     for (int i = 0; i < 3000; ++i) {
-      filter.add(Vec3::Zero(), rotation(stepped(w * i * kTick, kTurnStep) * axis) * held, i * kMs);
+      filter.add(Vec3::Zero(), rotation(stepped(w * i * kSample, kTurnStep) * axis) * held, i * kMs);
       if (i > 500) worst = std::max(worst, (filter.velocity().w - w * axis).norm());
     }
     CHECK(worst < 0.11 * w);

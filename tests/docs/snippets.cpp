@@ -1,4 +1,4 @@
-// Pieces of code that the documents show and that are no whole program, as they compile; check_code.py compares.
+// Pieces of code that the documents show and that are not whole programs, as they compile; check_code.py compares.
 #include "tegotae/core/clock.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 #include "tegotae/transport/attachment.hpp"

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTriangles[] = {2000, 1000, 5000, 20000, 10000, 50000, 2000, 100000, 200000, 500000};
 constexpr double kClearances[] = {0, 0.1e-3, 0.02e-3, 0.5e-3};
-constexpr int kNear[] = {1, 9, 64, 4, 144, 400, 36, 2000, 100, 1024};
+constexpr int kFixedParts[] = {1, 9, 64, 4, 144, 400, 36, 2000, 100, 1024};
 constexpr double kSmallest = 2e-3, kLargest = 2;  // m
 
 /// Spread over the list in turn, another turn for each family.
@@ -20,7 +20,7 @@ FamilyParameters drawn(const std::string& family, std::size_t number, unsigned s
   const std::size_t i = seed - 1;
   p.triangles = kTriangles[i % std::size(kTriangles)];
   p.clearance = kClearances[(i + number) % std::size(kClearances)];
-  p.near = kNear[(i + number) % std::size(kNear)];
+  p.near = kFixedParts[(i + number) % std::size(kFixedParts)];
   p.size = kSmallest * std::pow(kLargest / kSmallest, draw(p, 100 + static_cast<unsigned>(number)));
   return p;
 }

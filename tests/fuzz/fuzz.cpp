@@ -15,6 +15,11 @@ void require(bool promise, const char* what) {
   std::abort();
 }
 
+void require_error_of(const std::string& beginning, const std::string& text) {
+  require(text.rfind(beginning, 0) == 0, "the error begins with the file");
+  require(text.find('\n') == std::string::npos, "the error is one line");
+}
+
 const fs::path& scratch_folder() {
   struct Folder {
     fs::path path;

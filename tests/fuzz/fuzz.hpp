@@ -26,6 +26,8 @@ std::vector<Seed> seeds();
 
 /// Ends the program, in a way that libFuzzer and the replay notice, when `promise` does not hold.
 void require(bool promise, const char* what);
+/// Requires that the text of an Error begins with `beginning`, which names its file, and is one line.
+void require_error_of(const std::string& beginning, const std::string& text);
 
 /// A folder of this process in memory (/dev/shm where there is one) that goes away with the process.
 const std::filesystem::path& scratch_folder();

@@ -26,7 +26,7 @@ class CountingSource final : public view::ViewSource {
   std::string status() const override { return "{}"; }
   void command(const nlohmann::json& command) override {
     ++asked;
-    if (!command.is_object()) throw Error("this is no object");
+    if (!command.is_object()) throw Error("this is not an object");
   }
   std::string review(const std::string&) override {
     ++asked;

@@ -65,7 +65,7 @@ void obey(view::LiveView& view, view::PageParts& parts, const std::string& line)
   } catch (const Error& e) {
     require(std::string(e.what()).find('\n') == std::string::npos, "the error is one line");
   } catch (const nlohmann::json::exception&) {
-    // The server answers that this is no command.
+    // The server answers that this is not a command.
   }
 }
 

@@ -92,9 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(again.rows().size() == results.size(), "no try is lost");
     for (const study::Result& r : results) require(same(again.rows().at(r.number), r), "a try is read as it was");
   } catch (const Error& e) {
-    const std::string what = e.what();
-    require(what.rfind(path + ":", 0) == 0, "the error begins with the file");
-    require(what.find('\n') == std::string::npos, "the error is one line");
+    require_error_of(path + ":", e.what());
   }
   return 0;
 }

@@ -9,16 +9,16 @@
 namespace tegotae {
 namespace {
 
-constexpr float kCorners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-constexpr unsigned kFaces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+constexpr float kDracoCorners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr unsigned kDracoFaces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
 
 std::string draco_stream() {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(4);
   const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
   for (std::uint32_t f = 0; f < 4; ++f)
-    builder.SetAttributeValuesForFace(id, draco::FaceIndex(f), kCorners[kFaces[3 * f]], kCorners[kFaces[3 * f + 1]],
-                                      kCorners[kFaces[3 * f + 2]]);
+    builder.SetAttributeValuesForFace(id, draco::FaceIndex(f), kDracoCorners[kDracoFaces[3 * f]],
+                                      kDracoCorners[kDracoFaces[3 * f + 1]], kDracoCorners[kDracoFaces[3 * f + 2]]);
   const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
   draco::Encoder encoder;
   draco::EncoderBuffer packed;
@@ -47,9 +47,10 @@ std::string draco_gltf() {
 
 std::string meshopt_gltf() {
   std::string corners(meshopt_encodeVertexBufferBound(4, 12), '\0'), faces(meshopt_encodeIndexBufferBound(12, 4), '\0');
-  corners.resize(
-      meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(corners.data()), corners.size(), kCorners, 4, 12));
-  faces.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(faces.data()), faces.size(), kFaces, 12));
+  corners.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(corners.data()), corners.size(),
+                                            kDracoCorners, 4, 12));
+  faces.resize(
+      meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(faces.data()), faces.size(), kDracoFaces, 12));
   const auto view = [](std::size_t at, std::size_t bytes, std::size_t from, std::size_t packed, const char* more) {
     return R"({"buffer":1,"byteOffset":)" + number(at) + R"(,"byteLength":)" + number(bytes) +
            R"(,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteOffset":)" + number(from) +

@@ -12,7 +12,7 @@
 namespace tegotae::test {
 
 /// What a scene file that leaves the torsional stiffness open has with the simulated pen, N·m/rad.
-inline constexpr double kTorsionalMost = 3.76;
+inline constexpr double kMaxTorsional = 3.76;
 
 class PenRun {
  public:

@@ -19,16 +19,16 @@ namespace {
 void print(const std::string& name, const StressResult& r, const LatencyHistogram& cpu) {
   const LatencySummary us = summary(cpu);
   std::printf(
-      "%-16s %5lld scripts %7lld ticks %7lld substeps %8lld poses, intersecting %lld | touching %4.1f%% cut %lld "
+      "%-16s %5lld scripts %7lld ticks %7lld substeps %8lld poses, intersecting %lld | touching %4.1f%% timed out %lld "
       "overflow %lld infeasible %lld stalled %lld lag time %lld capacity %lld unexplained %lld late unreported %lld | "
       "tick us p50 %.0f p99 %.0f "
       "p99.9 %.0f "
       "max %.0f | loop %.1f s check %.1f s\n",
       name.c_str(), (long long)r.scripts, (long long)r.ticks, (long long)r.substeps, (long long)r.poses,
       (long long)r.intersecting, 100.0 * (double)r.touching / (double)std::max<std::int64_t>(1, r.ticks),
-      (long long)r.cut, (long long)r.overflow, (long long)r.infeasible, (long long)r.stalled, (long long)r.out_of_time,
-      (long long)r.out_of_capacity, (long long)r.unexplained, (long long)r.late_unreported, us.p50, us.p99, us.p999,
-      us.max, r.seconds_loop, r.seconds_check);
+      (long long)r.timed_out, (long long)r.overflow, (long long)r.infeasible, (long long)r.stalled,
+      (long long)r.out_of_time, (long long)r.out_of_capacity, (long long)r.unexplained, (long long)r.late_unreported,
+      us.p50, us.p99, us.p999, us.max, r.seconds_loop, r.seconds_check);
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ double radius(const TriangleMesh& mesh, const Vec3& center) {
 
 void StressResult::add(const StressResult& o) {
   scripts += o.scripts, ticks += o.ticks, substeps += o.substeps, poses += o.poses, intersecting += o.intersecting;
-  touching += o.touching, cut += o.cut, overflow += o.overflow, infeasible += o.infeasible, stalled += o.stalled;
+  touching += o.touching, timed_out += o.timed_out, overflow += o.overflow, infeasible += o.infeasible,
+      stalled += o.stalled;
   out_of_time += o.out_of_time, out_of_capacity += o.out_of_capacity, unexplained += o.unexplained;
   late_unreported += o.late_unreported, seconds_loop += o.seconds_loop, seconds_check += o.seconds_check;
   if (first_intersecting.empty()) first_intersecting = o.first_intersecting;
@@ -89,7 +90,7 @@ StressResult run_stress_script(const StressScene& stress, unsigned seed, const S
     if (record) record->add(tick, Y, r);
     ++result.ticks;
     result.touching += r.proxy.touching;
-    result.cut += r.flags.timed_out;
+    result.timed_out += r.flags.timed_out;
     result.overflow += r.flags.overflow;
     result.infeasible += r.status == ResolveStatus::infeasible;
     result.stalled += r.status == ResolveStatus::stalled;

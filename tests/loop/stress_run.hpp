@@ -21,12 +21,12 @@ struct StressOptions {
 /// What happened; sums over scripts.
 struct StressResult {
   std::int64_t scripts = 0, ticks = 0, substeps = 0;
-  std::int64_t poses = 0;                                                         ///< asked of FCL
-  std::int64_t intersecting = 0;                                                  ///< of those
-  std::int64_t touching = 0, cut = 0, overflow = 0, infeasible = 0, stalled = 0;  ///< ticks
+  std::int64_t poses = 0;                                                               ///< asked of FCL
+  std::int64_t intersecting = 0;                                                        ///< of those
+  std::int64_t touching = 0, timed_out = 0, overflow = 0, infeasible = 0, stalled = 0;  ///< ticks
   std::int64_t out_of_time = 0, out_of_capacity = 0;  ///< ticks with a lag over the bound, by LagReason
   std::int64_t unexplained = 0;                       ///< TickReport::unexplained_lag_ticks
-  std::int64_t late_unreported = 0;  ///< ticks whose CPU time passed the budget but that are not reported as cut
+  std::int64_t late_unreported = 0;  ///< ticks whose CPU time passed the budget but that are not reported as timed out
   std::string first_intersecting, first_late;  ///< where
   double seconds_loop = 0, seconds_check = 0;
 

@@ -185,8 +185,8 @@ TEST_CASE("what holds a pressed part are contacts, on any kind of triangles", "[
         INFO(c.name << ", " << resolver << ", tick " << i);
         CHECK(tick.contacts >= 1);
         CHECK(tick.lag_reason == LagReason::contact);
-        // What `lp` makes of a wish is no projection, so that it need not have met what is in the way of one. After the
-        // slide the contacts that the part slid onto are known as far as the pen has pressed on them.
+        // What `lp` makes of a wish is not a projection, so that it need not have met what is in the way of one. After
+        // the slide the contacts that the part slid onto are known as far as the pen has pressed on them.
         const bool all_sides = c.flat && i == 140;
         if (all_sides || scene.contact.resolver == ResolverKind::qp)
           CHECK(entering(loop, scene, tick, Y, all_sides) == 0);

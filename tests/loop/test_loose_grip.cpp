@@ -32,7 +32,7 @@ Press press(double stiffness, double depth, bool control) {
   Scene scene;
   scene.contact.tick_budget = INFINITY;
   scene.coupling.stiffness = stiffness;
-  scene.max_torsional_stiffness = kTorsionalMost;
+  scene.max_torsional_stiffness = kMaxTorsional;
   const Vec3 above(0, 0, 0.022), below(0, 0, 0.02 - depth);
   scene.parts.push_back({"floor", shared(box({0.3, 0.3, 0.02})), {Quat::Identity(), {0, 0, -0.01}}, false});
   scene.parts.push_back({"cube", shared(box({0.04, 0.04, 0.04})), {Quat::Identity(), above}, true});

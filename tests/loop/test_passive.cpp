@@ -44,7 +44,7 @@ std::unique_ptr<Device> of_unknown_damping(SimulatedDevice& device) {
 
 Scene random_scene(unsigned seed) {
   Scene scene = pocket(seed, std::array{0.005, 0.02, 0.06}[seed % 3], 2 + static_cast<int>(seed % 4));
-  scene.max_torsional_stiffness = kTorsionalMost;
+  scene.max_torsional_stiffness = kMaxTorsional;
   return scene;
 }
 

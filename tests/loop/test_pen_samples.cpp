@@ -18,7 +18,7 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-struct Sample {
+struct PenInput {
   Pose Y;
   double dt = 1e-3;
 };
@@ -26,28 +26,28 @@ struct Sample {
 /// What becomes of a good sample, and whether the loop may take it.
 struct Kind {
   const char* name;
-  std::function<void(Sample&)> spoil;
+  std::function<void(PenInput&)> spoil;
   bool taken;
 };
 
 std::vector<Kind> kinds() {
   std::vector<Kind> all = {
-      {"far within range", [](Sample& s) { s.Y.p.x() = 9.9e3; }, true},
-      {"far down", [](Sample& s) { s.Y.p.z() = -9.9e3; }, true},
-      {"no time", [](Sample& s) { s.dt = 0; }, true},
-      {"a microsecond", [](Sample& s) { s.dt = 1e-6; }, true},
-      {"a day", [](Sample& s) { s.dt = 86400; }, true},
-      {"a rounding off unit length", [](Sample& s) { s.Y.q.coeffs() *= 1 + 1e-4; }, true},
-      {"no length", [](Sample& s) { s.Y.q.coeffs().setZero(); }, false},
-      {"twice the length", [](Sample& s) { s.Y.q.coeffs() *= 2; }, false},
+      {"far within range", [](PenInput& s) { s.Y.p.x() = 9.9e3; }, true},
+      {"far down", [](PenInput& s) { s.Y.p.z() = -9.9e3; }, true},
+      {"no time", [](PenInput& s) { s.dt = 0; }, true},
+      {"a microsecond", [](PenInput& s) { s.dt = 1e-6; }, true},
+      {"a day", [](PenInput& s) { s.dt = 86400; }, true},
+      {"a rounding off unit length", [](PenInput& s) { s.Y.q.coeffs() *= 1 + 1e-4; }, true},
+      {"no length", [](PenInput& s) { s.Y.q.coeffs().setZero(); }, false},
+      {"twice the length", [](PenInput& s) { s.Y.q.coeffs() *= 2; }, false},
   };
   for (const double p : {1.1e4, -1e9, 1e17, -1e200, 1.7e308, kInf, -kInf, kNaN})
     for (int axis = 0; axis < 3; ++axis)
-      all.push_back({"a position", [p, axis](Sample& s) { s.Y.p[axis] = p; }, false});
+      all.push_back({"a position", [p, axis](PenInput& s) { s.Y.p[axis] = p; }, false});
   for (const double q : {1e-300, 1e-150, 1e150, 1e200, 1.7e308, kInf, kNaN})
-    all.push_back({"a quaternion", [q](Sample& s) { s.Y.q.coeffs() *= q; }, false});
+    all.push_back({"a quaternion", [q](PenInput& s) { s.Y.q.coeffs() *= q; }, false});
   for (const double dt : {1e-308, 1e-300, 1e-12, 9e-7, -1e-3, -kInf, kInf, kNaN})
-    all.push_back({"a time", [dt](Sample& s) { s.dt = dt; }, false});
+    all.push_back({"a time", [dt](PenInput& s) { s.dt = dt; }, false});
   return all;
 }
 
@@ -81,13 +81,13 @@ TEST_CASE("a sample that no pen can have is flagged, and the part goes on as if 
   for (const bool air : {false, true})
     for (const Kind& kind : kinds()) {
       HapticLoop loop(scene);
-      Sample good{loop.latest()};
+      PenInput good{loop.latest()};
       for (int i = 0; i < 60; ++i) {
         good.Y.p.z() += (air ? 1 : -1) * 5e-4;
         loop.step(good.Y, good.dt);
       }
       REQUIRE(loop.report().proxy.touching != air);
-      Sample bad = good;
+      PenInput bad = good;
       kind.spoil(bad);
       CAPTURE(resolver, air, kind.name, bad.Y.p.transpose(), bad.Y.q.norm(), bad.dt);
       const Pose before = loop.latest();

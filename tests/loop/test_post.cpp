@@ -28,7 +28,7 @@ Post block_over_post(std::mt19937& rng) {
   // The block's bottom covers some of the top, and the top at most part of it.
   p.start = Vec3(5e-3 * unit(rng), 5e-3 * unit(rng), 0.5 * kBlock.z() + 4e-4);
   p.scene.contact.tick_budget = INFINITY;
-  p.scene.max_torsional_stiffness = kTorsionalMost;
+  p.scene.max_torsional_stiffness = kMaxTorsional;
   p.scene.parts = {{"post", shared(box(kPost)), {p.turn, {0, 0, -0.5 * kPost.z()}}},
                    {"block", shared(box(kBlock)), {heading, p.start}, true}};
   return p;

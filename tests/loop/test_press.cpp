@@ -80,7 +80,7 @@ void check_rest(const Rest& rest) {
 Scene corner(const Quat& q, bool boards, const Vec3& size) {
   Scene scene;
   scene.contact.tick_budget = INFINITY;
-  scene.max_torsional_stiffness = kTorsionalMost;
+  scene.max_torsional_stiffness = kMaxTorsional;
   const double w = 0.08, t = 0.01;
   if (boards) {
     for (int k = 0; k < 3; ++k) {
@@ -158,7 +158,7 @@ TEST_CASE("a round bar pressed into a groove rests in its middle", "[law][press]
       rim.push_back({r * std::cos(2 * M_PI * i / facets), y, r * std::sin(2 * M_PI * i / facets)});
   Scene scene;
   scene.contact.tick_budget = INFINITY;
-  scene.max_torsional_stiffness = kTorsionalMost;
+  scene.max_torsional_stiffness = kMaxTorsional;
   for (double side : {-1.0, 1.0}) {
     // A board whose face goes up from the origin at the angle `half` from the vertical.
     const Quat q = rotation(Vec3(0, side * (M_PI / 2 - half) * -1, 0));

@@ -17,7 +17,7 @@ namespace {
 constexpr double kRadius = 0.005, kSleeve = 0.02, kPin = 0.03;  // m
 constexpr double kStep = 3e-5;                                  // m, of the pen
 // What a part may come deeper than it starts, and what rounding adds, m.
-constexpr double kNoDeeper = 2.2e-7;
+constexpr double kNoDeeperInSleeve = 2.2e-7;
 
 /// The mesh turned by `R`, its coordinates rounded as in a file of floats.
 std::shared_ptr<const TriangleMesh> in_file(TriangleMesh mesh, const Mat3& R) {
@@ -59,7 +59,7 @@ TEST_CASE("a pin without room in its sleeve is drawn out of it", "[start]") {
     const Pose& X = loop.step({Quat::Identity(), from + kStep * std::round(way / kStep) * axis}, 1e-3).proxy.X;
     const Vec3 gone = X.p - from;
     const double along = gone.dot(axis);
-    if (0.005 + kSleeve > along + 1e-3) REQUIRE((gone - along * axis).norm() < kNoDeeper);
+    if (0.005 + kSleeve > along + 1e-3) REQUIRE((gone - along * axis).norm() < kNoDeeperInSleeve);
   }
   CHECK((loop.latest().p - from).dot(axis) > 0.04 - 2 * kStep);
   CHECK(loop.report().shrunk == 0);

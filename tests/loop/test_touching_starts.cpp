@@ -64,12 +64,6 @@ Start start(const std::string& kind) {
           half * (std::cos(tilt) + std::sin(tilt))};
 }
 
-double lowest(const TriangleMesh& mesh, const Pose& X) {
-  double z = INFINITY;
-  for (const Vec3& v : mesh.vertices) z = std::min(z, (X * v).z());
-  return z;
-}
-
 }  // namespace
 
 TEST_CASE("from nearly touching, exactly aligned starts the way out is open and the way in is shut", "[tunnelling]") {

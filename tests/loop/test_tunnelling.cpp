@@ -71,12 +71,6 @@ TriangleMesh body(const std::string& kind) {
   return shapes::peg(peg);
 }
 
-double lowest(const TriangleMesh& mesh, const Pose& X) {
-  double z = INFINITY;
-  for (const Vec3& v : mesh.vertices) z = std::min(z, (X * v).z());
-  return z;
-}
-
 Scene over_sheet(const std::string& sheet_kind, const TriangleMesh& held, const Pose& start,
                  const std::string& resolver) {
   Scene scene;
@@ -153,7 +147,7 @@ TEST_CASE("a 0.1 mm sheet stops a plate, a pin and a peg at 2 m/s and 20 rad/s",
            Y.p + kTick * Vec3(across.x(), across.y(), tick < 45 ? -2.0 : 0.0)};
       touching += watched.step(Y).proxy.touching;
     }
-    // Through from below is no way back: the pen turns to and fro under the sheet and comes up again.
+    // Through from below is not a way back: the pen turns to and fro under the sheet and comes up again.
     for (int tick = 0; tick < 45; ++tick) {
       Y.q = (rotation(kTick * -spin) * Y.q).normalized();
       Y.p.z() += 2.0 * kTick;

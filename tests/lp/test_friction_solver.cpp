@@ -404,7 +404,7 @@ TEST_CASE("a peg whose cones overlap is held neither where it can go on nor wher
   CHECK(!sticks(c, FrictionCase::load({0, 0, 2})));
 }
 
-TEST_CASE("input that is no number ends without a motion", "[friction]") {
+TEST_CASE("input that is not a number ends without a motion", "[friction]") {
   FrictionSolver solver(FrictionCase::kMax);
   FrictionCase c = block(0.02, 0.005, 0.3);
   Vec6 wanted = tilted_weight(3, 1);

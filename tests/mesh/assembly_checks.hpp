@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/import/assembly.hpp"
@@ -31,6 +33,14 @@ inline bool has_note(const Assembly& a, const std::string& text) {
   return false;
 }
 
+/// The part of that name, which must be there.
+inline const AssemblyPart& part(const Assembly& a, const std::string& name) {
+  const auto found = std::find_if(a.parts.begin(), a.parts.end(), [&](const auto& p) { return p.name == name; });
+  INFO(name);
+  REQUIRE(found != a.parts.end());
+  return *found;
+}
+
 /// Around a part where it stands, m.
 inline Eigen::AlignedBox3d box_of(const Assembly& a, std::size_t part) {
   Eigen::AlignedBox3d box;
@@ -42,13 +52,6 @@ inline void check_box(const Eigen::AlignedBox3d& box, const Vec3& lo, const Vec3
   INFO(box.min().transpose() << " to " << box.max().transpose());
   CHECK((box.min() - lo).norm() < within);
   CHECK((box.max() - hi).norm() < within);
-}
-
-/// Of a closed mesh, m^3; negative when it is inside out.
-inline double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return v;
 }
 
 }  // namespace tegotae::test

@@ -36,6 +36,8 @@
 #include <gp_Trsf.hxx>
 #include <stdexcept>
 
+#include "mesh/step_location.hpp"
+
 namespace tegotae::test {
 namespace {
 
@@ -87,12 +89,6 @@ double millimeters(const std::string& unit) {
   if (unit == "INCH") return 25.4;
   if (unit == "M") return 1000;
   throw std::runtime_error("unknown unit " + unit);
-}
-
-TopLoc_Location at(double x, double y, double z) {
-  gp_Trsf t;
-  t.SetTranslation(gp_Vec(x, y, z));
-  return t;
 }
 
 Handle(TDocStd_Document) new_document(const std::string& unit, const std::string& schema) {

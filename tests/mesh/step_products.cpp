@@ -28,14 +28,10 @@
 #include <gp_Trsf.hxx>
 #include <stdexcept>
 
+#include "mesh/step_location.hpp"
+
 namespace tegotae::test {
 namespace {
-
-TopLoc_Location at(double x, double y, double z) {
-  gp_Trsf t;
-  t.SetTranslation(gp_Vec(x, y, z));
-  return t;
-}
 
 TopoDS_Shape cylinder(const gp_Pnt& foot, double radius, double height) {
   return BRepPrimAPI_MakeCylinder(gp_Ax2(foot, gp_Dir(0, 0, 1)), radius, height).Shape();

@@ -8,6 +8,7 @@
 #include "models/shapes.hpp"
 #include "tegotae/import/load.hpp"
 #include "tegotae/import/write.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -75,12 +76,6 @@ std::string glb(const std::string& nodes) {
   out += "JSON" + json;
   put(out, static_cast<std::uint32_t>(data.size()));
   return out + std::string("BIN\0", 4) + data;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
 }
 
 }  // namespace

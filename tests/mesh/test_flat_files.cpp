@@ -4,6 +4,7 @@
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "tegotae/import/load.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -13,12 +14,6 @@ namespace {
 // Corners 0, x, y, z of a tetrahedron.
 const int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 const float kCorners[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-
-std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
 
 /// `sliver`: what stands for the normal of a facet without an area, among the others.
 std::string text_stl(const std::string& name = "t", const std::string& sliver = "") {
@@ -85,7 +80,7 @@ std::string ply(const std::string& head, const std::string& body) {
 
 }  // namespace
 
-TEST_CASE("STL: normals that are no numbers belong to slivers, and nobody needs them", "[flat]") {
+TEST_CASE("STL: normals that are not numbers belong to slivers, and nobody needs them", "[flat]") {
   const TempFolder folder;
   for (const char* normal : {"NaN NaN NaN", "-nan -nan -nan", "-nan(ind) -nan(ind) -nan(ind)",
                              "-1.#IND -1.#IND -1.#IND", "1.#QNAN 0 0", "0 0", "", "1e999 0 0"}) {
@@ -125,7 +120,7 @@ TEST_CASE("STL: binary files may say solid, have attributes, and be padded", "[f
       check_tetrahedron(folder, "block.stl", binary_stl("exporter") + std::string(pad, c));
       check_tetrahedron(folder, "solid_block.stl", binary_stl("solid part") + std::string(pad, c));
     }
-  // A facet, of which the count does not know, is no padding.
+  // A facet, of which the count does not know, is not padding.
   const std::string facet = binary_stl("x").substr(84, 50);
   CHECK_THAT(refusal(folder, "more.stl", binary_stl("x") + facet),
              Catch::Contains("damaged: its header states 4 triangles, the file has bytes for 5"));

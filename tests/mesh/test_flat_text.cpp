@@ -5,6 +5,7 @@
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
 #include "tegotae/import/load.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -12,16 +13,10 @@ using namespace tegotae::test;
 namespace {
 
 // A tetrahedron of the corners 0, 2x, y, z.
-const std::string kCorners = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\n";
-const std::string kFaces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const std::string kObjCorners = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string kObjFaces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 const std::string kOffCorners = "0 0 0\n2 0 0\n0 1 0\n0 0 1\n";
 const std::string kOffFaces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-
-std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
 
 TriangleMesh check_tetrahedron(const std::string& name, const std::string& bytes) {
   INFO(name);
@@ -46,7 +41,7 @@ std::string refused(const std::string& name, const std::string& bytes) {
 }
 
 /// The tetrahedron with `x` for its 2.
-std::string text_stl(const std::string& x) {
+std::string stl_of(const std::string& x) {
   const std::string corners[4] = {"0 0 0", x + " 0 0", "0 1 0", "0 0 1"};
   std::string s = "solid t\n";
   for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
@@ -77,7 +72,7 @@ std::string off_prism(int n) {
 }  // namespace
 
 TEST_CASE("OBJ: lines, blanks, marks and comments", "[flat]") {
-  const std::string all = kCorners + kFaces;
+  const std::string all = kObjCorners + kObjFaces;
   check_tetrahedron("mark.obj", "\xef\xbb\xbf" + all);
   check_tetrahedron("indent.obj", "  " + replaced_all(all, "\n", "\n \t "));
   check_tetrahedron("return.obj", replaced_all(all, "\n", "\r"));
@@ -93,23 +88,24 @@ TEST_CASE("OBJ: lines, blanks, marks and comments", "[flat]") {
 TEST_CASE("OBJ: what vertices and corners have besides", "[flat]") {
   for (const char* more : {" 2.0", " 0", " 0.1 0.2 0.3", " 0.1 0.2 0.3 1", " 255 0", " 1 255 0 0 255"}) {
     INFO(more);
-    check_tetrahedron("more.obj", replaced_all(kCorners, "\n", std::string(more) + "\n") + kFaces);
+    check_tetrahedron("more.obj", replaced_all(kObjCorners, "\n", std::string(more) + "\n") + kObjFaces);
   }
-  check_tetrahedron("texture.obj", kCorners + "vt 0\nvn nan nan nan\n" + replaced_all(kFaces, " 4", " 4/1/1"));
-  check_tetrahedron("missing.obj", kCorners + replaced_all(kFaces, " 4", " 4/7/9"));
-  check_tetrahedron("first.obj", kFaces + kCorners);
-  check_tetrahedron("comma.obj", replaced_all(kCorners, "2 ", "2,0 ") + kFaces);
-  check_tetrahedron("plus.obj", replaced_all(kCorners, "2 ", "+2.0E0 ") + kFaces);
-  check_tetrahedron("relative.obj", "v 9 9 9\n" + kCorners + "o a\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\nf -2 -4 -1\n");
+  check_tetrahedron("texture.obj", kObjCorners + "vt 0\nvn nan nan nan\n" + replaced_all(kObjFaces, " 4", " 4/1/1"));
+  check_tetrahedron("missing.obj", kObjCorners + replaced_all(kObjFaces, " 4", " 4/7/9"));
+  check_tetrahedron("first.obj", kObjFaces + kObjCorners);
+  check_tetrahedron("comma.obj", replaced_all(kObjCorners, "2 ", "2,0 ") + kObjFaces);
+  check_tetrahedron("plus.obj", replaced_all(kObjCorners, "2 ", "+2.0E0 ") + kObjFaces);
+  check_tetrahedron("relative.obj",
+                    "v 9 9 9\n" + kObjCorners + "o a\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\nf -2 -4 -1\n");
 }
 
 TEST_CASE("OBJ: free-form surfaces are told", "[flat]") {
   const TriangleMesh mesh =
-      check_tetrahedron("surface.obj", kCorners + "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n" + kFaces);
+      check_tetrahedron("surface.obj", kObjCorners + "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n" + kObjFaces);
   REQUIRE(mesh.notes.size() == 1);
   CHECK_THAT(mesh.notes[0], Catch::Contains("line 7") && Catch::Contains("not read"));
   const TempFolder folder;
-  folder.write("a.obj", kCorners + "surf 0 1 0 1 1 2 3 4\n" + kFaces);
+  folder.write("a.obj", kObjCorners + "surf 0 1 0 1 1 2 3 4\n" + kObjFaces);
   CHECK(has_note(read_assembly(folder / "a.obj"), "free-form"));
 }
 
@@ -137,49 +133,49 @@ TEST_CASE("numbers without a digit before the point are numbers; those of many d
   for (const char* two : {"2.", "+2.", "0002.", ".2e1", "+.02E+002", "0.00000000000000000000000000002e29", "20000e-4",
                           "200000000000000000000000000000e-29", "0000000000000000000000000000002"}) {
     INFO(two);
-    check_tetrahedron("number.obj", replaced_all(kCorners, "v 2", std::string("v ") + two) + kFaces);
+    check_tetrahedron("number.obj", replaced_all(kObjCorners, "v 2", std::string("v ") + two) + kObjFaces);
     check_tetrahedron("number.off",
                       "OFF\n4 4 6\n" + replaced_all(kOffCorners, "2 0 0", std::string(two) + " 0 0") + kOffFaces);
-    check_tetrahedron("number.stl", text_stl(two));
+    check_tetrahedron("number.stl", stl_of(two));
   }
   for (const char* half : {".5", "-.5", "+.5", "5.e-1", ".5E+0"}) {
     INFO(half);
     const TempFolder folder;
-    folder.write("a.obj", replaced_all(kCorners, "v 2", std::string("v ") + half) + kFaces);
+    folder.write("a.obj", replaced_all(kObjCorners, "v 2", std::string("v ") + half) + kObjFaces);
     const MeshReport r = report(load_mesh(folder / "a.obj"));
     CHECK(r.vertices == 4);
     CHECK(r.box_max.x() - r.box_min.x() == 0.5);
   }
   const std::string huge(30, '1');
-  CHECK_THAT(refused("huge.obj", replaced_all(kCorners, "v 2", "v " + huge) + kFaces),
+  CHECK_THAT(refused("huge.obj", replaced_all(kObjCorners, "v 2", "v " + huge) + kObjFaces),
              Catch::Contains("beyond 1000 km"));
-  CHECK_THAT(refused("huge.stl", text_stl(huge)), Catch::Contains("beyond 1000 km"));
+  CHECK_THAT(refused("huge.stl", stl_of(huge)), Catch::Contains("beyond 1000 km"));
 }
 
 TEST_CASE("OBJ: statements that the format has not are told, and damaged ones refused", "[flat]") {
-  const TriangleMesh mesh = check_tetrahedron("call.obj", kCorners + "vx 1\ncall other.obj\n" + kFaces);
+  const TriangleMesh mesh = check_tetrahedron("call.obj", kObjCorners + "vx 1\ncall other.obj\n" + kObjFaces);
   REQUIRE(mesh.notes.size() == 1);
-  CHECK_THAT(mesh.notes[0], Catch::Contains("line 5 \"vx 1\" is no statement"));
+  CHECK_THAT(mesh.notes[0], Catch::Contains("line 5 \"vx 1\" is not a known statement"));
   for (const char* beside : {"vp 1 2", "mg 1 0.1", "lod 3", "usemap off", "con 1 0 1 1 2 0 1 1", "shadow_obj s.obj"})
-    CHECK(check_tetrahedron("beside.obj", kCorners + beside + '\n' + kFaces).notes.empty());
+    CHECK(check_tetrahedron("beside.obj", kObjCorners + beside + '\n' + kObjFaces).notes.empty());
   // Were they left out, the corners of the faces would be others.
   for (const std::string& damage : {std::string("\xc2\xa0"), std::string("\xe2\x80\x8b"), std::string("\xef\xbb\xbf"),
                                     std::string(1, '\0'), std::string("\x01")}) {
-    const std::string more = "v 5 5 5\n" + replaced_all(kCorners, "v 2", "v" + damage + "2");
-    CHECK_THAT(refused("blank.obj", more + kFaces), Catch::Contains("line 3"));
-    CHECK_THAT(refused("front.obj", "#\n" + damage + more + kFaces), Catch::Contains("line 2"));
+    const std::string more = "v 5 5 5\n" + replaced_all(kObjCorners, "v 2", "v" + damage + "2");
+    CHECK_THAT(refused("blank.obj", more + kObjFaces), Catch::Contains("line 3"));
+    CHECK_THAT(refused("front.obj", "#\n" + damage + more + kObjFaces), Catch::Contains("line 2"));
   }
 }
 
 TEST_CASE("OBJ: faces of fewer than three corners are reported, and files without faces have no triangles", "[flat]") {
-  const TriangleMesh mesh = check_tetrahedron("edges.obj", kCorners + "f 1 2\n" + kFaces + "f 3\n");
+  const TriangleMesh mesh = check_tetrahedron("edges.obj", kObjCorners + "f 1 2\n" + kObjFaces + "f 3\n");
   REQUIRE(mesh.notes.size() == 1);
   CHECK_THAT(mesh.notes[0], Catch::Contains("fewer than three corners") && Catch::Contains("line 5"));
   CHECK_THAT(refused("none.obj", "v 0 0 0\n"), Catch::Contains("no triangles"));
-  CHECK_THAT(refused("case.obj", replaced_all(kCorners, "v", "V") + replaced_all(kFaces, "f", "F")),
-             Catch::Contains("no triangles; line 1 \"V 0 0 0\" is no statement"));
-  CHECK_THAT(refused("index.obj", replaced_all(kCorners, "v 2", "/v 2") + kFaces),
-             Catch::Contains("index out of range") && Catch::Contains("line 2 \"/v 2 0 0\" is no statement"));
+  CHECK_THAT(refused("case.obj", replaced_all(kObjCorners, "v", "V") + replaced_all(kObjFaces, "f", "F")),
+             Catch::Contains("no triangles; line 1 \"V 0 0 0\" is not a known statement"));
+  CHECK_THAT(refused("index.obj", replaced_all(kObjCorners, "v 2", "/v 2") + kObjFaces),
+             Catch::Contains("index out of range") && Catch::Contains("line 2 \"/v 2 0 0\" is not a known statement"));
 }
 
 TEST_CASE("OFF, PLY: what the counts do not announce is reported; files without faces have no triangles", "[flat]") {
@@ -205,7 +201,7 @@ TEST_CASE("OFF, PLY: what the counts do not announce is reported; files without 
 
 TEST_CASE("STL: a damaged facet swallows no other", "[flat]") {
   for (const char* lost : {"outer loop\n", "endloop\n", "endfacet\n", "vertex 0 0 0\n", "loop", "outer"}) {
-    std::string text = text_stl("2");
+    std::string text = stl_of("2");
     text.erase(text.find(lost), std::string(lost).size());
     INFO(lost);
     CHECK_THAT(refused("lost.stl", text), Catch::Contains("damaged"));
@@ -213,7 +209,7 @@ TEST_CASE("STL: a damaged facet swallows no other", "[flat]") {
 }
 
 TEST_CASE("STL: a facet begins where outer follows, whatever words a name has", "[flat]") {
-  const std::string all = text_stl("2");
+  const std::string all = stl_of("2");
   for (const char* name :
        {"facet normal", "my facet normal 0 0 1 part", "facet normal 0 0 1 facet normal", "a facet"}) {
     INFO(name);
@@ -226,13 +222,13 @@ TEST_CASE("STL: a facet begins where outer follows, whatever words a name has", 
 }
 
 TEST_CASE("text that only looks right is told by what is wrong with it", "[flat]") {
-  std::string zero = text_stl("2");
+  std::string zero = stl_of("2");
   zero[zero.find("endloop") - 1] = '\0';  // the end of line 6
   CHECK_THAT(refused("zero.stl", zero), Catch::Contains("zero bytes in the text, the first in line 6"));
   const std::string marks = "\xef\xbb\xbf\xef\xbb\xbf";
-  CHECK_THAT(refused("marks.stl", marks + text_stl("2")),
+  CHECK_THAT(refused("marks.stl", marks + stl_of("2")),
              Catch::Contains("begins with \"solid\", this one with the bytes EF BB BF"));
-  CHECK_THAT(refused("space.stl", "\xc2\xa0" + text_stl("2")), Catch::Contains("this one with the bytes C2 A0"));
+  CHECK_THAT(refused("space.stl", "\xc2\xa0" + stl_of("2")), Catch::Contains("this one with the bytes C2 A0"));
   for (const char* ends : {" ", "\t"})
     CHECK_THAT(refused("line.off", "OFF\n4 4 0 " + replaced_all(kOffCorners + kOffFaces, "\n", ends) + "\n"),
                Catch::Contains("more than counts on the line of its counts"));
@@ -334,17 +330,17 @@ TEST_CASE("PLY, OFF: faces of fewer than three corners are counted and left out"
   CHECK_THAT(refused("only.off", "OFF\n4 3 0\n" + kOffCorners + few), Catch::Contains("no triangles"));
 }
 
-TEST_CASE("OBJ: padding and marks at the end of a file are no statement", "[flat]") {
+TEST_CASE("OBJ: padding and marks at the end of a file are not statements", "[flat]") {
   for (const std::string& end : {std::string(40, '\0'), std::string("\x1a"), std::string("\n\x1a\0\0", 4)}) {
-    check_tetrahedron("end.obj", kCorners + kFaces + end);
-    check_tetrahedron("line.obj", kCorners + kFaces.substr(0, kFaces.size() - 1) + end);
+    check_tetrahedron("end.obj", kObjCorners + kObjFaces + end);
+    check_tetrahedron("line.obj", kObjCorners + kObjFaces.substr(0, kObjFaces.size() - 1) + end);
   }
 }
 
 TEST_CASE("text in UTF-16 and UTF-32 is refused as such, whatever the format", "[flat]") {
   const std::string gltf = R"({"asset":{"version":"2.0"}})";
-  const std::vector<std::pair<std::string, std::string>> files = {{"w.obj", kCorners + kFaces},
-                                                                  {"w.stl", text_stl("2")},
+  const std::vector<std::pair<std::string, std::string>> files = {{"w.obj", kObjCorners + kObjFaces},
+                                                                  {"w.stl", stl_of("2")},
                                                                   {"w.off", "OFF\n4 4 6\n" + kOffCorners + kOffFaces},
                                                                   {"w.ply", "ply\nformat ascii 1.0\n"},
                                                                   {"w.gltf", gltf}};
@@ -367,12 +363,13 @@ TEST_CASE("text in UTF-16 and UTF-32 is refused as such, whatever the format", "
 }
 
 TEST_CASE("OBJ: what cannot be is refused with its line", "[flat]") {
-  CHECK_THAT(refused("two.obj", "\n" + kCorners + "v 1 2\n" + kFaces), Catch::Contains("line 6 \"v 1 2\""));
-  CHECK_THAT(refused("word.obj", kCorners + "f 1 2 x\n" + kFaces), Catch::Contains("line 5 \"f 1 2 x\""));
-  CHECK_THAT(refused("zero.obj", kCorners + "f 1 2 0\n"), Catch::Contains("line 5") && Catch::Contains("range"));
-  CHECK_THAT(refused("back.obj", kCorners + "f 1 2 -5\n"), Catch::Contains("line 5") && Catch::Contains("range"));
-  CHECK_THAT(refused("range.obj", kCorners + kFaces + "f 1 2 5\n"), Catch::Contains("line 9 names vertex 5 of 4"));
-  CHECK_THAT(refused("huge.obj", replaced_all(kCorners, "v 2", "v 1e400") + kFaces), Catch::Contains("finite"));
+  CHECK_THAT(refused("two.obj", "\n" + kObjCorners + "v 1 2\n" + kObjFaces), Catch::Contains("line 6 \"v 1 2\""));
+  CHECK_THAT(refused("word.obj", kObjCorners + "f 1 2 x\n" + kObjFaces), Catch::Contains("line 5 \"f 1 2 x\""));
+  CHECK_THAT(refused("zero.obj", kObjCorners + "f 1 2 0\n"), Catch::Contains("line 5") && Catch::Contains("range"));
+  CHECK_THAT(refused("back.obj", kObjCorners + "f 1 2 -5\n"), Catch::Contains("line 5") && Catch::Contains("range"));
+  CHECK_THAT(refused("range.obj", kObjCorners + kObjFaces + "f 1 2 5\n"),
+             Catch::Contains("line 9 names vertex 5 of 4"));
+  CHECK_THAT(refused("huge.obj", replaced_all(kObjCorners, "v 2", "v 1e400") + kObjFaces), Catch::Contains("finite"));
 }
 
 TEST_CASE("OFF: headers, comments and blank lines", "[flat]") {
@@ -435,7 +432,7 @@ TEST_CASE("PLY: byte order marks and blank lines; indices and coordinates that c
   check_tetrahedron("mark.ply", "\xef\xbb\xbf" + head + kOffCorners + kOffFaces);
   check_tetrahedron("blank.ply", head + "\n" + kOffCorners + " \n\n" + kOffFaces + "\n\n");
   CHECK_THAT(refused("half.ply", head + kOffCorners + replaced_all(kOffFaces, "3 2 0 3", "3 2 0.5 3")),
-             Catch::Contains("face 3 has an index that is no whole number"));
+             Catch::Contains("face 3 has an index that is not a whole number"));
   CHECK_THAT(refused("huge.ply", head + replaced_all(kOffCorners, "2 0 0", "1e400 0 0") + kOffFaces),
              Catch::Contains("finite"));
   check_tetrahedron("tiny.ply", head + replaced_all(kOffCorners, "0 1 0", "1e-400 1 -0.0e-999") + kOffFaces);

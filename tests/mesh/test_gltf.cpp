@@ -5,7 +5,7 @@
 using namespace tegotae;
 using namespace tegotae::test;
 
-TEST_CASE("GLB: a chunk that is neither JSON nor binary is no buffer", "[gltf]") {
+TEST_CASE("GLB: a chunk that is neither JSON nor binary is not a buffer", "[gltf]") {
   const TempFolder folder;
   GltfDoc doc;
   doc.node({{"mesh", doc.mesh(doc.tetrahedron())}});
@@ -152,7 +152,7 @@ TEST_CASE("glTF: what asks for a newer reader, bends space or names a root twice
   for (const auto& [entry, value] : {std::pair(3, 0.5), {7, -0.1}, {11, 1}, {15, 2}, {15, 0}}) {
     GltfDoc bent = doc;
     bent.j["nodes"][0]["matrix"][static_cast<std::size_t>(entry)] = value;
-    CHECK_THAT(refused(bent.save(folder)), Catch::Contains("the matrix of node 0 is no place"));
+    CHECK_THAT(refused(bent.save(folder)), Catch::Contains("the matrix of node 0 is not a pose"));
   }
   doc.j["nodes"][0]["matrix"][15] = 0.99999994;  // as a float may be written
   check_near(box_of(read(doc.save(folder)), 0), {5, 0, 0}, {6, 1, 1});
@@ -230,7 +230,7 @@ TEST_CASE("glTF: a skin poses its mesh, whose node's own place does not count", 
                        {"inverseBindMatrices", doc.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  //
                                                            1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
                                                           "MAT4", 16)}};
-  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("an inverse bind matrix is no place"));
+  CHECK_THAT(refused(doc.save(folder)), Catch::Contains("an inverse bind matrix is not a pose"));
 }
 
 TEST_CASE("glTF: weights of a skin count as shares of their sum, and are told when that is not one", "[gltf]") {

@@ -76,7 +76,7 @@ TEST_CASE("glTF: indices are unsigned whole numbers, and lists of triangles have
     doc.j["meshes"][0]["primitives"].push_back(more);
     return doc.save(folder);
   };
-  const char* const why = "indices are no unsigned whole numbers";
+  const char* const why = "indices are not unsigned whole numbers";
   CHECK_THAT(refused(with(GltfDoc::bytes_of<float>({0, 2, 1}), 5126, 3)), Catch::Contains(why));
   CHECK_THAT(refused(with(std::string({0, 2, 1}), 5120, 3)), Catch::Contains(why));
   CHECK_THAT(refused(with(GltfDoc::bytes_of<std::int16_t>({0, 2, 1}), 5122, 3)), Catch::Contains(why));

@@ -11,12 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/import/load.hpp"
 #include "tegotae/mesh/report.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 namespace fs = std::filesystem;
 
 namespace {
@@ -79,12 +82,6 @@ void put(std::string& bytes, T value) {
   char raw[sizeof value];
   std::memcpy(raw, &value, sizeof value);
   bytes.append(raw, sizeof value);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
 }
 
 // The same tetrahedron (corners 0, x, y, z; edges 1) in every format.
@@ -179,14 +176,6 @@ std::string glb() {
   put(s, static_cast<std::uint32_t>(body.size()));
   s += std::string("BIN\0", 4) + body;
   return s;
-}
-
-double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) {
-    v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  }
-  return v;
 }
 
 }  // namespace

@@ -1,24 +1,18 @@
 #include <cmath>
 #include <functional>
 
+#include "bodies.hpp"
 #include "catch.hpp"
 #include "models/shapes.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/mesh/report.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 
 namespace {
 
 const double kPi = std::acos(-1.0);
-
-double volume(const TriangleMesh& mesh) {
-  double v = 0;
-  for (const auto& t : mesh.triangles) {
-    v += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  }
-  return v;
-}
 
 /// Area of a regular polygon of n corners at radius r.
 double polygon(int n, double r) {

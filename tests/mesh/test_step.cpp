@@ -19,13 +19,6 @@ using namespace tegotae::test;
 
 namespace {
 
-const AssemblyPart& part(const Assembly& assembly, const std::string& name) {
-  for (const AssemblyPart& p : assembly.parts)
-    if (p.name == name) return p;
-  FAIL("no part " << name);
-  throw;
-}
-
 const TriangleMesh& mesh_of(const Assembly& assembly, const std::string& name) {
   return *assembly.shapes[part(assembly, name).shape];
 }

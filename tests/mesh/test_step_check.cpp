@@ -98,7 +98,7 @@ void check_read(const StepText& s, std::size_t notes = 0) {
 
 }  // namespace
 
-TEST_CASE("STEP: what is no frame places no part", "[step]") {
+TEST_CASE("STEP: what is not a frame places no part", "[step]") {
   const Make at_5 = [](StepText& s) { return frame_at(s, 5); };
   const Make at_10 = [](StepText& s) { return frame_at(s, 10); };
   for (const auto& placed : {assembly, mapped}) {
@@ -287,7 +287,7 @@ TEST_CASE("STEP: bodies that the file hides are read and told, hidden curves not
   }
 }
 
-TEST_CASE("STEP: curves without faces are no part", "[step]") {
+TEST_CASE("STEP: curves without faces are not a part", "[step]") {
   const Make wire = [](StepText& s) {
     const int line = s.add("POLYLINE('',(" + r(s.point(0, 0, 0)) + "," + r(s.point(1, 1, 1)) + "))");
     return s.add("GEOMETRIC_CURVE_SET('',(" + r(line) + "))");

@@ -15,13 +15,6 @@ namespace {
 
 using Path = std::vector<std::string>;
 
-const AssemblyPart& part(const Assembly& a, const std::string& name) {
-  const auto found = std::find_if(a.parts.begin(), a.parts.end(), [&](const auto& p) { return p.name == name; });
-  INFO(name);
-  REQUIRE(found != a.parts.end());
-  return *found;
-}
-
 /// The only note with `what` in it.
 std::string note(const Assembly& a, const std::string& what) {
   std::vector<std::string> found;
@@ -39,7 +32,7 @@ double micrometers(const std::string& note) {
   return std::stod(match[1]);
 }
 
-Assembly read(const StepText& step) {
+Assembly read_products(const StepText& step) {
   const TempFolder folder;
   folder.write("of a file.step", step.text());
   return read_assembly(folder / "of a file.step");
@@ -49,7 +42,7 @@ Assembly read(const StepText& step) {
 std::string read_name(const std::string& in_file) {
   StepText s;
   s.shape(s.product(in_file), {s.origin(), s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
-  const Assembly a = read(s);
+  const Assembly a = read_products(s);
   REQUIRE(a.parts.size() == 1);
   return a.parts[0].name;
 }
@@ -111,7 +104,7 @@ TEST_CASE("STEP: names that OpenCASCADE made up give way to the product's, or to
   const int seal = s.product("seal");
   const int nothing = s.shape(seal, {frame});
   for (int i = 0; i < 3; ++i) s.instance(seal, nothing, frame, box, group, frame, "NAUO2");
-  const Assembly a = read(s);
+  const Assembly a = read_products(s);
   REQUIRE(a.parts.size() == 3);
   for (const char* name : {"BOX", "BOX_2", "lid"}) CHECK(part(a, name).path == Path{"top", "BOX"});
   REQUIRE(a.notes.size() == 1);
@@ -135,7 +128,7 @@ TEST_CASE("STEP: names in every writing of letters", "[step]") {
   const int shape = s.shape(s.product("left"), {s.origin(), s.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
   const int self = s.add("PRODUCT_DEFINITION_SHAPE('',''," + StepText::ref(s.product("\\X2\\00DC\\X0\\ber")) + ")");
   s.add("SHAPE_DEFINITION_REPRESENTATION(" + StepText::ref(self) + "," + StepText::ref(shape) + ")");
-  CHECK(has_note(read(s),
+  CHECK(has_note(read_products(s),
                  "\"left\", \"\xc3\x9c"
                  "ber\" of "));
 }
@@ -214,7 +207,7 @@ TEST_CASE("STEP: entities that are left out are told in one note of each kind", 
   s.instance(plate, one, frame, top, all, frame, "placed");
   for (int i = 0; i < 2; ++i)
     s.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','loose',''," + StepText::ref(top) + "," + StepText::ref(plate) + ",$)");
-  const Assembly a = read(s);
+  const Assembly a = read_products(s);
   for (const std::string& note : a.notes) UNSCOPED_INFO(note);
   REQUIRE(a.notes.size() == 2);
   CHECK_THAT(note(a, "not read"), Catch::StartsWith("5 shapes (" + StepText::ref(items[2]) + " is a BLOCK, ") &&

@@ -191,7 +191,7 @@ TEST_CASE("small motions in contact are free: pressed, slid, turned and lifted a
       X = displaced(X, scene.center, moved);
       if (look) REQUIRE(oracle.distance(X) >= kClearance * (1 - 1e-5));
       made += report.share > 0.5;
-      cut += report.status == CertifyStatus::cut;
+      cut += report.status == CertifyStatus::out_of_budget;
     }
     require_cover(front, a, b);
     INFO(made << " made, " << cut << " cut");

@@ -70,7 +70,7 @@ TEST_CASE("a kept hierarchy is the one that was built", "[patch_cache]") {
     CHECK(same(*cached_patch_tree(mesh), built));
     CHECK(read_text(file) == bytes);
   }
-  SECTION("a folder that cannot be written is no error") {
+  SECTION("a folder that cannot be written is not an error") {
     folder.write("plain", "");
     set_hierarchy_cache(folder / "plain/cache");
     CHECK(same(*cached_patch_tree(mesh), built));

@@ -119,7 +119,7 @@ TEST_CASE("a part that overlaps another one is named, and the others come apart"
   CHECK(told);
 }
 
-TEST_CASE("one part is no assembly") {
+TEST_CASE("one part is not an assembly") {
   Scene scene;
   scene.add_fixed("cube", shapes::solid_of("cube", {brick(0, 0, 0, 1, 1, 1)}));
   CHECK_THROWS_AS(take_apart(scene, {}), Error);

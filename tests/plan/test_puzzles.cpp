@@ -1,4 +1,5 @@
 // The puzzles are what they say: closed parts, and a way out by construction that FCL finds free.
+#include "bodies.hpp"
 #include "broadphase/bounding_spheres.hpp"
 #include "catch.hpp"
 #include "models/bricks.hpp"
@@ -14,13 +15,6 @@ using namespace tegotae;
 using namespace tegotae::test;
 
 namespace {
-
-double volume(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles)
-    sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6;
-  return sum;
-}
 
 constexpr double kPi = 3.14159265358979323846;
 

@@ -135,7 +135,7 @@ TEST_CASE("a recording that ends against a part tells who is in the way, and whe
   CHECK(v.headline.find("It does not go in: blocked by floor at (") == 0);
 }
 
-TEST_CASE("poses inside of a part are counted, and are no way") {
+TEST_CASE("poses inside of a part are counted, and are not a way") {
   const Scene scene = blocks();
   std::vector<RecordFrame> rows = down_and_up();
   for (int i = 0; i < 7; ++i) rows.push_back(row(2501 + i, 0.0149, 0.004 - 1e-5 * i, 0.004, 0));

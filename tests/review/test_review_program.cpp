@@ -272,7 +272,7 @@ TEST_CASE("the review of a run says what the run said, also of another script") 
   agree(script("0.4,0,0,0.02,1,0,0,0\n") + " --seconds 0.2", "open");
 }
 
-TEST_CASE("what is no recording, or not of this scene, is one line") {
+TEST_CASE("what is not a recording, or not of this scene, is one line") {
   const TempFolder folder;
   write_cubes(folder, 4, 16);
   const auto refused = [&](const std::string& arguments, const std::string& why) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kFiles = 12, kParts = 60;
+constexpr int kFiles = 12, kCopies = 60;
 
 // Part i has file i mod kFiles. Its mesh is never read: the loader makes one up that tells the file's number.
 class ManyFiles {
@@ -28,7 +28,7 @@ class ManyFiles {
     fs::create_directories(folder_);
     std::ofstream scene(path());
     for (int i = 0; i < kFiles; ++i) std::ofstream(folder_ / name(i));
-    for (int i = 0; i < kParts; ++i)
+    for (int i = 0; i < kCopies; ++i)
       scene << "[[part]]\nname = \"p" << i << "\"\nmesh = \"" << name(i % kFiles) << "\"\n"
             << (i == 0 ? "held = true\n" : "");
   }
@@ -69,8 +69,8 @@ TEST_CASE("every mesh file of a scene is read once and shared by its parts", "[s
     totals.push_back(total);
   };
   const SceneFile file = load_scene(files.path(), options);
-  REQUIRE(file.scene.parts.size() == kParts);
-  for (int i = 0; i < kParts; ++i) {
+  REQUIRE(file.scene.parts.size() == kCopies);
+  for (int i = 0; i < kCopies; ++i) {
     const Part& part = file.scene.parts[static_cast<std::size_t>(i)];
     CHECK(part.mesh == file.scene.parts[static_cast<std::size_t>(i % kFiles)].mesh);
     CHECK(part.mesh->vertices[1].x() == 1 + i % kFiles);

@@ -9,8 +9,10 @@
 #include "scene_file/scene_text.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 namespace fs = std::filesystem;
 
 namespace {
@@ -65,12 +67,6 @@ const std::string kDevice = "[device]\nscript = \"insert.csv\"\n";
 
 bool starts_with(const std::string& text, const std::string& prefix) {
   return text.rfind(prefix, 0) == 0;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 namespace tegotae::test {
 
 inline constexpr std::int64_t kMs = 1'000'000;
+inline constexpr double kTick = 1e-3;  // s
 
 /// A pen that says what the test tells it to, and remembers what it was asked to render. Its body is the held part.
 class PuppetDevice : public Device {

@@ -1,3 +1,4 @@
+#include "servo/puppet_device.hpp"
 #include "servo/safety_chain.hpp"
 
 #include <limits>
@@ -7,12 +8,11 @@
 #include "tegotae/core/error.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kNow = 1'000'000'000'000;
-constexpr double kTick = 1e-3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

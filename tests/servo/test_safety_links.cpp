@@ -4,14 +4,14 @@
 
 #include "catch.hpp"
 #include "core/valid_pose.hpp"
+#include "servo/puppet_device.hpp"
 #include "servo/safety_links.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 
 namespace {
 
-constexpr double kTick = 1e-3;
-constexpr std::int64_t kMs = 1'000'000;
 using Limits = std::numeric_limits<std::int64_t>;
 
 Wrench force(double x) {
@@ -151,7 +151,7 @@ TEST_CASE("a cut is at once, and small torques are asked for too", "[servo]") {
   ForceGate gate({});
   for (int i = 0; i < 300; ++i) gate.update(ForceOff::none, force(0), kTick);
   CHECK(gate.gain() == 1);
-  gate.cut(ForceOff::not_finite);
+  gate.shut_off(ForceOff::not_finite);
   CHECK(gate.gain() == 0);
   CHECK(gate.reason() == ForceOff::not_finite);
   for (int i = 0; i < 300; ++i) gate.update(ForceOff::none, {Vec3::Zero(), Vec3(0, 0.1, 0)}, kTick);

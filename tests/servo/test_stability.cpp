@@ -4,15 +4,16 @@
 
 #include "catch.hpp"
 #include "puppet_device.hpp"
+#include "servo/puppet_device.hpp"
 #include "tegotae/coupling/stability.hpp"
 #include "tegotae/device/simulated_device.hpp"
 
 using namespace tegotae;
+using namespace tegotae::test;
 using test::kMs;
 
 namespace {
 
-constexpr double kTick = 1e-3;
 // A hand with little damping: 2 b / T = 2000 N/m.
 constexpr double kDamping = 1.0;
 constexpr double kBound = 2 * kDamping / kTick;

@@ -148,5 +148,5 @@ TEST_CASE("a guide that cannot be is refused before the run", "[guide]") {
   CHECK_THROWS_WITH(run_session(file, settings), Contains("none.csv:1: column pz is missing"));
   settings.guide_path = path_file(folder, puzzle.known);
   file.scene.contact.resolver = ResolverKind::lp;
-  CHECK_THROWS_WITH(run_session(file, settings), Contains("the resolver lp knows no load; qp does"));
+  CHECK_THROWS_WITH(run_session(file, settings), Contains("the resolver lp does not support a load; qp does"));
 }

@@ -9,6 +9,7 @@
 #include "recording.hpp"
 #include "study_scene.hpp"
 #include "tegotae/scene_file/scene_file.hpp"
+#include "text.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -19,11 +20,6 @@ namespace {
 
 json summary_in(const std::string& folder) {
   return json::parse(read_text(folder + "/summary.json"));
-}
-
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  REQUIRE(text.find(old) != std::string::npos);
-  return text.replace(text.find(old), old.size(), by);
 }
 
 }  // namespace
@@ -173,7 +169,7 @@ TEST_CASE("parts of a study that do not belong together are refused, with file a
   folder.write("study.toml", text);
   const std::string shard = out + "/shards/1-of-4.csv", rows = read_text(shard);
   folder.write("study/shards/1-of-4.csv", rows.substr(0, rows.size() - 3));
-  refused("1-of-4.csv:4: is no case; delete the line");
+  refused("1-of-4.csv:4: is not a case; delete the line");
   folder.write("study/shards/1-of-4.csv", rows);
   folder.write("study/shards/1-of-9.csv", replaced(rows, "careful", "Careful"));
   refused("has another result in ");

@@ -6,7 +6,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Contact::age of a one-shot constraint. It is no contact but a plane between two triangles, useful for one motion
+/// Contact::age of a one-shot constraint. It is not a contact but a plane between two triangles, useful for one motion
 /// only. Its gap is not the distance of anything.
 inline constexpr int kOneShotAge = -1;
 

@@ -26,7 +26,7 @@ class SceneChange {
   /// Waits for at most `seconds` until the change is no longer pending, and returns its state. Another thread must step
   /// the loop meanwhile.
   ChangeState wait(double seconds) const;
-  /// Cancels the change, so that the scene stays. Returns false when the change is no longer pending.
+  /// Cancels the change. Returns false when it is no longer pending. Waits while another change is being built.
   bool cancel();
   const InitialContactReport& start() const noexcept;  ///< how the held part starts in the changed scene
 

@@ -10,7 +10,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// start need not read and build them. An empty name (the default) disables the cache. Call it before starting threads
 /// that load meshes or build loops. The library uses a file of the cache only when it is whole and was made from the
 /// same content, bit for bit, by the same method; otherwise it reads the mesh file, or builds the hierarchy, again. The
-/// cache takes 4 GB at most. A folder that cannot be written is no error.
+/// cache takes 4 GB at most. A folder that cannot be written is not an error.
 void set_hierarchy_cache(const std::string& folder);
 
 /// Returns $XDG_CACHE_HOME/tegotae, else ~/.cache/tegotae; empty when neither is known.

@@ -20,7 +20,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Progress of a run, for another thread to read. Each value is the newest one; together they are no snapshot.
+/// Progress of a run, for another thread to read. Each value is the newest one; together they are not a snapshot.
 struct RunProgress {
   std::atomic<double> t{0};                            ///< s since the start
   std::atomic<double> duration{0};                     ///< s that the run will take; infinite: until it is stopped
@@ -115,8 +115,8 @@ struct RunSettings {
   RunEdits* edits = nullptr;          ///< changes the scene during the run; null: the scene stays
   InputSource* hand = nullptr;        ///< moves the simulated pen instead of the script; null: the script does
   const InputGuide* guide = nullptr;  ///< leads the simulated hand away from the script
-  /// Called while the contact loop is built, which takes seconds for large meshes: with what is under way, and how many
-  /// of how many are done (0 of 0: not known). One call at a time, from several threads; empty: nobody is told.
+  /// Called while the contact loop is built, which takes seconds for large meshes: with the present task, and how many
+  /// of its parts are done, of how many (0 of 0: not known). One call at a time, from several threads; empty: no calls.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> on_build;
   std::function<void(const RunStart&)> on_start;  ///< called before the first tick
   const std::atomic<bool>* stop = nullptr;        ///< set it to end the run early; the recording stays

@@ -44,7 +44,7 @@ class Attachment {
 
  private:
   void attach();
-  void look_for_successor(std::int64_t now_ns) noexcept;
+  void poll_successor(std::int64_t now_ns) noexcept;
 
   std::string name_;
   CouplingSettings coupling_;
@@ -55,7 +55,7 @@ class Attachment {
   bool homed_ = false;               // the home command has been given to this device
   bool connected_ = true;
   std::uint64_t losses_ = 0;
-  std::int64_t looked_ns_ = 0;
+  std::int64_t polled_ns_ = 0;
 };
 
 }  // namespace tegotae

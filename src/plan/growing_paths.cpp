@@ -1,4 +1,4 @@
-#include "plan/growing_ways.hpp"
+#include "plan/growing_paths.hpp"
 
 #include <algorithm>
 
@@ -15,31 +15,31 @@ constexpr double kPast = 0.9, kMinHope = 0.05, kFirstHope = 0.5;
 
 }  // namespace
 
-GrowingWays::GrowingWays(bool known)
+GrowingPaths::GrowingPaths(bool known)
     : ways_{{GrowingMotion::anywhere, 0, 1, kAnywhere, kFirstHope},
             {GrowingMotion::other_tree, 0, 1, kOtherTree, kFirstHope},
             {GrowingMotion::repeat, 0, 1, kRepeat, kFirstHope}} {
-  std::vector<GrowingWay> own;
+  std::vector<GrowingPath> own;
   for (const GrowingMotion motion : {GrowingMotion::shift, GrowingMotion::turn, GrowingMotion::screw})
     for (int axis = 0; axis <= 6; ++axis)
       for (const double sign : {1.0, -1.0}) own.push_back({motion, axis, sign, 0, kFirstHope});
-  for (GrowingWay& way : own) way.share = (1 - kAnywhere - kOtherTree - kRepeat) / static_cast<double>(own.size());
+  for (GrowingPath& way : own) way.share = (1 - kAnywhere - kOtherTree - kRepeat) / static_cast<double>(own.size());
   ways_.insert(ways_.end(), own.begin(), own.end());
   if (known) ways_.push_back({GrowingMotion::known_path, 0, 1, kKnownPath, kFirstHope});
 }
 
-GrowingWay& GrowingWays::choose(double at) {
+GrowingPath& GrowingPaths::choose(double at) {
   double all = 0;
-  for (const GrowingWay& way : ways_) all += way.share * way.hope;
+  for (const GrowingPath& way : ways_) all += way.share * way.hope;
   at *= all;
-  for (GrowingWay& way : ways_) {
+  for (GrowingPath& way : ways_) {
     at -= way.share * way.hope;
     if (at < 0) return way;
   }
   return ways_.back();
 }
 
-void GrowingWays::tell(GrowingWay& way, bool led_on) {
+void GrowingPaths::report(GrowingPath& way, bool led_on) {
   way.hope = std::max(kMinHope, kPast * way.hope + (1 - kPast) * (led_on ? 1 : 0));
 }
 

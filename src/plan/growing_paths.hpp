@@ -9,7 +9,7 @@ namespace tegotae {
 /// a pose, or by a motion about or along an axis: any, or one of the world or of the part.
 enum class GrowingMotion : std::uint8_t { anywhere, other_tree, known_path, repeat, shift, turn, screw };
 
-struct GrowingWay {
+struct GrowingPath {
   GrowingMotion motion;
   int axis = 0;     ///< 0: any; 1 to 3: of the world; 4 to 6: of the part
   double sign = 1;  ///< of a turn, and of a shift along an axis that is not any
@@ -18,17 +18,17 @@ struct GrowingWay {
 };
 
 /// All of them. Ways that led on lately are chosen more often.
-class GrowingWays {
+class GrowingPaths {
  public:
   /// `known`: whether there is a path that is known.
-  explicit GrowingWays(bool known);
+  explicit GrowingPaths(bool known);
   /// The one at `at`, from 0 to 1, of all shares.
-  GrowingWay& choose(double at);
+  GrowingPath& choose(double at);
   /// What came of an iteration that went a way.
-  static void tell(GrowingWay& way, bool led_on);
+  static void report(GrowingPath& way, bool led_on);
 
  private:
-  std::vector<GrowingWay> ways_;
+  std::vector<GrowingPath> ways_;
 };
 
 }  // namespace tegotae
