@@ -7,8 +7,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# pkg-config, dpkg-dev, file: the tests of the package. parallel: a test of studies.
-packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-dev libassimp-dev libdraco-dev
+# ccache: the tests of the package and of the Python wheel compile the library again. pkg-config, dpkg-dev, file: the tests
+# of the package. parallel: a test of studies.
+packages=(g++ ccache cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-dev libassimp-dev libdraco-dev
           libmeshoptimizer-dev libpugixml-dev libminizip-dev zlib1g-dev libzstd-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
           libcivetweb-dev catch2 python3-venv python3-dev libspnav-dev libsdl2-dev libocct-data-exchange-dev libompl-dev
           pkg-config dpkg-dev file parallel)
@@ -21,7 +22,7 @@ options=(-DTEGOTAE_BUILD_APPS=ON -DTEGOTAE_BUILD_TESTS=ON)
 for _ in 1 2; do
   case ${1:-} in
     --demo)
-      packages=(g++ cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-dev)
+      packages=(g++ ccache cmake ninja-build libeigen3-dev libfcl-dev libccd-dev libxxhash-dev)
       preset=demo
       options=(-DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_BUILD_DEMO=ON -DTEGOTAE_INSTALL=OFF)
       set -- demo

@@ -17,7 +17,7 @@ for package in assimp draco meshoptimizer pugixml tomlplusplus ZLIB zstd nlohman
 done
 # Warnings as errors: the same command lines as in the main build, so that ccache has the objects.
 quietly cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DTEGOTAE_IO=OFF -DTEGOTAE_BUILD_APPS=OFF \
-  -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=ON "${absent[@]}" "${launcher[@]}"
+  -DTEGOTAE_BUILD_TESTS=OFF -DTEGOTAE_WARNINGS_AS_ERRORS=ON "${absent[@]}"
 quietly cmake --build "$build" --parallel 2
 quietly cmake --install "$build" --prefix "$build/stage"
 cp -r "$root/apps/examples" "$build/examples"

@@ -20,8 +20,9 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1
 pip install -q scikit-build-core nanobind numpy pytest mypy matplotlib >"$work/log" 2>&1 ||
   skip "PyPI cannot be reached: $(tail -n 1 "$work/log")"
 
-# The same command lines as in the main build, so that ccache has the objects. A tree that is kept builds what changed.
-if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache CC=${CC:-cc} CXX=${CXX:-c++}; fi
+# The compiler and the command lines of the main build, so that ccache has the objects. A tree that is kept builds what
+# changed.
+export CC=${CC:-cc} CXX=${CXX:-c++}
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2}
 pip wheel -q --no-deps --no-build-isolation -w "$work/wheels" -C build-dir="$build" \
   -C cmake.define.TEGOTAE_WARNINGS_AS_ERRORS=ON "$root" >"$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
