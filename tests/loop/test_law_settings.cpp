@@ -16,7 +16,7 @@ using namespace tegotae::test;
 
 namespace {
 
-constexpr int kScenes = 24, kWays = 4, kRest = 300;
+constexpr int kPockets = 24, kWays = 4, kStill = 300;
 
 double uniform(std::mt19937& rng, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(rng);
@@ -110,17 +110,17 @@ void run(unsigned seed, Worst& worst) {
     const Displacement d = displacement(from, to, Vec3::Zero());
     const int ticks = 100 + static_cast<int>(rng() % 100);
     Pose last;
-    for (int i = 1; i <= ticks + kRest; ++i) {
+    for (int i = 1; i <= ticks + kStill; ++i) {
       const Pose Y = displaced(from, Vec3::Zero(), std::min(1.0, 1.0 * i / ticks) * d);
       const TickReport& r = loop.step(Y, 1e-3);
       look(scene, loop, Y, size, worst);
       for (const Pose& X : r.substeps) worst.intersecting += oracle.intersecting(X).empty() ? 0 : 1;
-      if (i > ticks + kRest - 50) {
+      if (i > ticks + kStill - 50) {
         const Displacement moved = displacement(last, r.proxy.X, loop.center());
         worst.moved = std::max(worst.moved, moved.dp.norm() / size + moved.dr.norm());
       }
       last = r.proxy.X;
-      if (i == ticks + kRest) compare_servo(scene, loop, Y, size, worst);
+      if (i == ticks + kStill) compare_servo(scene, loop, Y, size, worst);
     }
     from = to;
   }
@@ -131,12 +131,12 @@ void run(unsigned seed, Worst& worst) {
 TEST_CASE("friction, weight, scale and springs of any kind at once: the contacts' sum, in their cones, and rest",
           "[sim][law]") {
   Worst worst;
-  for (unsigned seed = 1; seed <= kScenes; ++seed) run(seed, worst);
+  for (unsigned seed = 1; seed <= kPockets; ++seed) run(seed, worst);
   std::cout << worst.touching << " of " << worst.ticks << " ticks touch: sum off by " << worst.sum << ", cones by "
             << worst.cone << ", servo at rest by " << worst.servo << " (" << worst.held << " times); at rest moves by "
             << worst.moved << "; " << worst.intersecting << " intersect\n";
   CHECK(worst.touching > worst.ticks / 3);
-  CHECK(worst.held > kScenes);
+  CHECK(worst.held > kPockets);
   CHECK(worst.sum < 1e-6);
   CHECK(worst.cone < 1e-7);
   CHECK(worst.servo < 0.01);

@@ -1,6 +1,7 @@
 // Tessellated shapes in STEP (AP242): a test for each row of docs/formats.md.
 #include "apps/run_program.hpp"
 #include "mesh/assembly_checks.hpp"
+#include "mesh/step_blocks.hpp"
 #include "mesh/step_text.hpp"
 
 using namespace tegotae;
@@ -11,18 +12,8 @@ namespace {
 const char* const kSchema = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }";
 const char* const kShown = "TESSELLATED_SHAPE_REPRESENTATION";
 
-std::string r(int id) {
-  return StepText::ref(id);
-}
-
-Assembly read_text_of(const std::string& text) {
-  const TempFolder folder;
-  folder.write("a.step", text);
-  return read_assembly(folder / "a.step");
-}
-
 std::string refusal_of(const std::string& text) {
-  return test::refusal([&] { read_text_of(text); });
+  return test::refusal([&] { read_step_text(text); });
 }
 
 /// The points 0, x, y, z, scaled, of a tetrahedron.
@@ -76,7 +67,7 @@ TEST_CASE("STEP: tessellated solids, shells and sets, as triangles, strips and f
       face.replace(face.find("POINTS"), 6, r(corners(s, "10.", "(99.,99.,99.),")));
       all.replace(all.find("FACE"), 4, r(s.add(face)));
       const int item = s.add(all);
-      const Assembly a = read_text_of(with(s, item).text());
+      const Assembly a = read_step_text(with(s, item).text());
       REQUIRE(a.parts.size() == 1);
       CHECK(a.parts[0].name == "tip");
       CHECK(a.notes.empty());
@@ -93,7 +84,7 @@ TEST_CASE("STEP: a tessellated solid of several faces is one closed surface", "[
     faces += (faces.empty() ? "" : ",") +
              r(s.add("TRIANGULATED_FACE(''," + r(corners(s)) + ",4,(),$,(),((" + triangle + ")))"));
   const int item = s.add("TESSELLATED_SOLID('',(" + faces + "),$)");
-  check_tip(read_text_of(with(s, item).text()));
+  check_tip(read_step_text(with(s, item).text()));
 }
 
 TEST_CASE("STEP: tessellated parts have the unit and the places of their products", "[step]") {
@@ -112,7 +103,7 @@ TEST_CASE("STEP: tessellated parts have the unit and the places of their product
   const int shown = s.shape(tip, {here, solid(s, "0.01")}, kShown);
   s.instance(tip, shown, here, top, all, turned, "left");
   s.instance(tip, shown, here, top, all, other, "right");
-  const Assembly a = read_text_of(s.text());
+  const Assembly a = read_step_text(s.text());
   CHECK(a.notes.empty());
   REQUIRE(a.parts.size() == 3);
   check_box(box_of(a, 0), Vec3::Zero(), {0.04, 0.03, 0.01});
@@ -131,7 +122,7 @@ TEST_CASE("STEP: a mapped item and a second representation may hold the triangle
   const int map = mapped.add("REPRESENTATION_MAP(" + r(frame) + "," + r(source) + ")");
   const int at = mapped.frame(mapped.point(0, 7, 0), mapped.direction(0, 0, 1), mapped.direction(1, 0, 0));
   mapped.shape(mapped.product("tip"), {mapped.origin(), mapped.add("MAPPED_ITEM(''," + r(map) + "," + r(at) + ")")});
-  const Assembly a = read_text_of(mapped.text());
+  const Assembly a = read_step_text(mapped.text());
   REQUIRE(a.parts.size() == 1);
   check_box(box_of(a, 0), {0, 0.007, 0}, {0.01, 0.017, 0.01});
 
@@ -143,7 +134,7 @@ TEST_CASE("STEP: a mapped item and a second representation may hold the triangle
   std::string text = second.text();
   const auto end = text.find(");", text.find("ACCURACY_PARAMETERS("));
   text.insert(end, ",(TESSELLATION_ACCURACY_PARAMETER_ITEM(0.1))");
-  const Assembly b = read_text_of(text);
+  const Assembly b = read_step_text(text);
   REQUIRE(b.parts.size() == 1);
   check_tip(b);
 
@@ -159,7 +150,7 @@ TEST_CASE("STEP: a mapped item and a second representation may hold the triangle
   text.replace(begin, close + 2 - begin,
                r(shown) + "=(REPRESENTATION('',(" + r(item) + ")," + context +
                    ")SHAPE_REPRESENTATION()TESSELLATED_SHAPE_REPRESENTATION());");
-  const Assembly c = read_text_of(text);
+  const Assembly c = read_step_text(text);
   REQUIRE(c.parts.size() == 1);
   check_tip(c);
 }
@@ -173,7 +164,7 @@ TEST_CASE("STEP: a shape that is shown exactly and by triangles is read once, ex
       const int plate = s.product("plate"), block = s.block(), tip = solid(s, "5.", linked ? r(block) : "$");
       s.shape(plate, one ? std::vector{s.origin(), block, tip} : std::vector{s.origin(), block});
       if (!one) s.shape(plate, {tip}, kShown);
-      const Assembly a = read_text_of(s.text());
+      const Assembly a = read_step_text(s.text());
       CHECK(a.notes.empty());
       REQUIRE(a.parts.size() == (one || linked ? 1u : 2u));
       check_box(box_of(a, 0), Vec3::Zero(), {0.04, 0.03, 0.01});
@@ -186,7 +177,7 @@ TEST_CASE("STEP: a shape that is shown exactly and by triangles is read once, ex
   StepText s(kSchema);
   const int block = s.block();
   const int item = solid(s, "10.", r(block));
-  check_tip(read_text_of(with(s, item).text()));
+  check_tip(read_step_text(with(s, item).text()));
 }
 
 TEST_CASE("STEP: a tessellated part has its color", "[step]") {
@@ -199,7 +190,7 @@ TEST_CASE("STEP: a tessellated part has its color", "[step]") {
       s.add("PRESENTATION_STYLE_ASSIGNMENT((" + r(s.add("SURFACE_STYLE_USAGE(.BOTH.," + r(side) + ")")) + "))");
   s.representation({s.add("STYLED_ITEM('',(" + r(style) + ")," + r(item) + ")")},
                    "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION");
-  const Assembly a = read_text_of(with(s, item).text());
+  const Assembly a = read_step_text(with(s, item).text());
   REQUIRE(a.parts.size() == 1);
   check_tip(a);
   REQUIRE(a.parts[0].color);
@@ -225,7 +216,7 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
     const int item = one.add(text);
     CHECK_THAT(refusal_of(with(one, item).text()), Catch::Contains(r(item) + " is a " + kind + ", which is not read"));
     one.shape(one.product("plate"), {one.origin(), one.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
-    const Assembly a = read_text_of(with(one, item).text());
+    const Assembly a = read_step_text(with(one, item).text());
     REQUIRE(a.parts.size() == 1);
     CHECK(has_note(a, r(item) + " is a " + kind + ": not read, so left out"));
   }
@@ -239,7 +230,7 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
     std::string text = line;
     if (const auto at = text.find("POINTS"); at != std::string::npos) text.replace(at, 6, r(points));
     lines.shape(lines.product("tip"), {lines.add(text), tip}, kShown);
-    const Assembly a = read_text_of(lines.text());
+    const Assembly a = read_step_text(lines.text());
     REQUIRE(a.parts.size() == 1);
     CHECK(a.notes.empty());
     check_tip(a);
@@ -249,7 +240,7 @@ TEST_CASE("STEP: tessellated shapes of other kinds are told or refused by name; 
   lost.shape(lost.product("plate"), {lost.origin(), lost.block()}, "FACETED_BREP_SHAPE_REPRESENTATION");
   const int item = solid(lost);
   lost.representation({item}, kShown);
-  CHECK(has_note(read_text_of(lost.text()), "the triangles of " + r(item) + ": of no product"));
+  CHECK(has_note(read_step_text(lost.text()), "the triangles of " + r(item) + ": of no product"));
   // Alone, and named by a property, which is not the shape.
   StepText alone = s;
   const int product = alone.product("plate"), bare = solid(alone);
@@ -269,7 +260,7 @@ TEST_CASE("STEP: texts and comments with signs of the language in them change no
   REQUIRE(at != std::string::npos);
   text.insert(at + 18, "/* ;'( */");
   text.insert(text.find(r(item) + "=T") + r(item).size(), " /* = */ ");
-  const Assembly a = read_text_of(text);
+  const Assembly a = read_step_text(text);
   REQUIRE(a.parts.size() == 1);
   check_tip(a);
 }
