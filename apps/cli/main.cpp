@@ -65,9 +65,7 @@ CLI::App* add_bench(CLI::App& app, bench::BenchOptions& options) {
 CLI::App* add_experiment(CLI::App& app, experiments::Options& options) {
   CLI::App* experiment =
       app.add_subcommand("experiment", "Run an experiment of the paper; writes CSV files, summary.json and a report");
-  experiment->add_option("NAME", options.name, "Which one, or all")
-      ->required()
-      ->check(one_of(experiments::names()));
+  experiment->add_option("NAME", options.name, "Which one, or all")->required()->check(one_of(experiments::names()));
   experiment->add_option("--out", options.out, "Folder for the results")->capture_default_str()->type_name("DIR");
   experiment->add_option("--seeds", options.seeds, "Runs of each kind (each experiment has its own number)")
       ->check(between(1, 10000))
