@@ -35,8 +35,8 @@ constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks. And those
 /// of a call that is a long one anyway, because it took so many pairs apart: the next ones make up for them.
 constexpr int kLateTries = 32, kManySplits = 1000, kBusyTries = 128;
-/// See curves_pay(); what comes of the last so many tries counts.
-constexpr int kRarelyCurved = 8, kBendsCounted = 256;
+/// See curves_pay(): hardly any is less than one in so many of the last ones.
+constexpr int kHardlyAny = 32, kBendsCounted = 256, kAskedSeldom = 8;
 /// Where planes may go on with A: of two that are about as good the one that rests is as good later, and cheaper.
 constexpr double kWorthOfA = 0.5;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
@@ -81,8 +81,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   slides_ = axes != nullptr && !axes->empty() && capacity_.curved > 0;
   effort_ = slides_ ? kSlidingTries : kMaxTries;
   motion_ = travel_ = 0;
-  waiting_ = 0;
-  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, false, {0, 0, 0}, 0, 0};
+  pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, false, false, {0, 0, 0}, 0, 0};
   enter(0);
 }
 
@@ -218,9 +217,10 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
   return blocking_.size() > before ? Outcome::blocked : Outcome::free;
 }
 
-/// Where hardly any pair that no plane keeps apart is apart about an axis, only one in so many is asked.
+/// Where hardly any pair that no plane keeps apart is apart about an axis, few are asked.
 bool PatchFront::curves_pay() {
-  return kRarelyCurved * bent_ >= asked_to_bend_ || ++passed_over_ % kRarelyCurved == 0;
+  return asked_to_bend_ < kBendsCounted / 2 || kHardlyAny * bent_ >= asked_to_bend_ ||
+         ++passed_over_ % kAskedSeldom == 0;
 }
 
 bool PatchFront::try_to_bend(std::uint32_t id) {
@@ -233,11 +233,13 @@ bool PatchFront::try_to_bend(std::uint32_t id) {
   return true;
 }
 
-/// Takes a pair that waits for a plane into the front with the one of the pair that it comes of.
+/// Gives a pair that waits for a plane the one of the pair that it comes of.
 void PatchFront::admit(std::uint32_t id) {
-  if (pool_[id].slot != kNoPair) return;
-  --waiting_;
-  enter(id);
+  PairNode& p = pool_[id];
+  if (!p.waits) return;
+  p.waits = false;
+  write_piece(p);
+  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
 }
 
 void PatchFront::admit_rest() {

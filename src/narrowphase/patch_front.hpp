@@ -79,14 +79,15 @@ class PatchFront {
  private:
   /// A pair of the tree of splits; those without children are the front.
   struct PairNode {
-    std::uint32_t a, b;           ///< nodes, or faces
-    std::uint32_t parent;         ///< kNoPair for the root
-    std::uint32_t child;          ///< first of `children` in a row
-    std::uint32_t slot;           ///< in its group, while in the front; kNoPair: it waits for its plane
-    std::uint8_t children : 4;    ///< 0: in the front
-    std::uint8_t curved : 4;      ///< kept apart about the axis pair of this number less one; 0: by a plane
-    bool face_a, face_b;          ///< which of a and b are faces
-    bool with_a;                  ///< its plane is fixed to A, and not to B
+    std::uint32_t a, b;         ///< nodes, or faces
+    std::uint32_t parent;       ///< kNoPair for the root
+    std::uint32_t child;        ///< first of `children` in a row
+    std::uint32_t slot;         ///< in its group, while in the front
+    std::uint8_t children : 4;  ///< 0: in the front
+    std::uint8_t curved : 4;    ///< kept apart about the axis pair of this number less one; 0: by a plane
+    bool face_a, face_b;        ///< which of a and b are faces
+    bool with_a;                ///< its plane is fixed to A, and not to B
+    bool waits;                 ///< in the front without lanes: most pairs of a split are split on or get another plane
     std::array<float, 3> normal;  ///< last plane (see Plane), kept here while split, curved or waiting
     float wait;                   ///< travel between two tries to raise it, m
     double retry;                 ///< travel_ from which on it may be raised
@@ -137,6 +138,8 @@ class PatchFront {
   void admit(std::uint32_t id);
   void admit_rest();
   void enter(std::uint32_t id);
+  void take_place(std::uint32_t id);
+  void write_piece(const PairNode& p);
   void leave(std::uint32_t id);
   void set_plane(std::uint32_t id, const Plane& plane);
   void write_plane(std::uint32_t id, const Vec3& n);
@@ -183,7 +186,6 @@ class PatchFront {
       failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check
   std::size_t failure_count_ = 0;
   std::vector<std::uint32_t> stack_, splits_;
-  std::uint32_t waiting_ = 0;  ///< pairs on the stack that are not in the lanes: most of them are split or get a plane
   std::vector<BlockingPair> blocking_;
   std::uint32_t cursor_ = 0;                            ///< where raising goes on
   double motion_ = 0;                                   ///< longest motion of late, m

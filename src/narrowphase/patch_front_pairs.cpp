@@ -40,8 +40,8 @@ bool PatchFront::split(std::uint32_t id) {
     if (const auto thicker = curved_.thicker(p.a, p.b)) split_a = *thicker;
   const std::uint32_t of_a = p.face_a ? 1 : a.leaf() ? a.count : 2, of_b = p.face_b ? 1 : b.leaf() ? b.count : 2;
   const std::uint32_t children = ends ? of_a * of_b : split_a ? of_a : of_b;
-  if (static_cast<std::uint32_t>(pairs()) + waiting_ + children > capacity_.pairs ||
-      splits_.size() == splits_.capacity() || stack_.size() + children > stack_.capacity()) {
+  if (static_cast<std::uint32_t>(pairs()) + children > capacity_.pairs || splits_.size() == splits_.capacity() ||
+      stack_.size() + children > stack_.capacity()) {
     return false;
   }
   const std::uint32_t child = allocate(children);
@@ -52,11 +52,12 @@ bool PatchFront::split(std::uint32_t id) {
   parent.child = child;
   parent.children = children & 0xf;
   parent.curved = 0;
+  parent.waits = false;
   parent.wait = 0;
   put_off(id);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(known.n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, kNoPair, 0, 0, p.face_a, p.face_b, p.with_a, parent.normal, 0, 0};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, true, parent.normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -68,8 +69,8 @@ bool PatchFront::split(std::uint32_t id) {
       c.b = b.leaf() ? b_->order()[place] : place;
     }
     pool_[child + k] = c;
+    take_place(child + k);
   }
-  waiting_ += children;
   splits_.push_back(id);
   return true;
 }
@@ -104,6 +105,7 @@ bool PatchFront::bend(std::uint32_t id, double spare) {
   PairNode& bent = pool_[id];
   for (int k = 0; k < 3; ++k) bent.normal[k] = static_cast<float>(known.n[k]);
   bent.curved = (found->axis + 1) & 0xf;
+  bent.waits = false;
   bent.slot = curved_.enter(*found, bent.a, bent.b, id);
   return true;
 }
@@ -133,15 +135,25 @@ bool PatchFront::all_in_front(std::uint32_t id) const {
 }
 
 void PatchFront::enter(std::uint32_t id) {
+  take_place(id);
+  PairNode& p = pool_[id];
+  p.waits = false;
+  write_piece(p);
+  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+}
+
+void PatchFront::take_place(std::uint32_t id) {
   PairNode& p = pool_[id];
   Group& g = group(p);
   p.slot = g.count++;
   g.owner[p.slot] = id;
+}
+
+void PatchFront::write_piece(const PairNode& p) {
   if (faces(p))
     write_triangle(p);
   else
     write_box(p);
-  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
 }
 
 /// The triangle that moves past the plane.
@@ -175,10 +187,6 @@ void PatchFront::leave(std::uint32_t id) {
     if (moved != CurvedPairs::kNobody) pool_[moved].slot = pool_[id].slot;
     return;
   }
-  if (pool_[id].slot == kNoPair) {
-    --waiting_;
-    return;
-  }
   Group& g = group(pool_[id]);
   const std::uint32_t slot = pool_[id].slot, last = --g.count;
   if (slot == last) return;
@@ -190,7 +198,11 @@ void PatchFront::leave(std::uint32_t id) {
 /// Gives a pair of the front, not a curved one, its plane.
 void PatchFront::set_plane(std::uint32_t id, const Plane& plane) {
   PairNode& p = pool_[id];
-  if (p.slot != kNoPair && p.with_a == plane.with_a) return write_plane(id, plane.n);
+  if (p.with_a == plane.with_a) {
+    if (p.waits) write_piece(p);
+    p.waits = false;
+    return write_plane(id, plane.n);
+  }
   leave(id);
   p.with_a = plane.with_a;
   for (int k = 0; k < 3; ++k) p.normal[k] = static_cast<float>(plane.n[k]);
@@ -221,7 +233,7 @@ void PatchFront::write_plane(std::uint32_t id, const Vec3& n) {
 
 PatchFront::Plane PatchFront::plane(std::uint32_t id) const {
   const PairNode& p = pool_[id];
-  if (p.curved > 0 || p.slot == kNoPair) return {{p.normal[0], p.normal[1], p.normal[2]}, p.with_a};
+  if (p.curved > 0 || p.waits) return {{p.normal[0], p.normal[1], p.normal[2]}, p.with_a};
   const LaneBlocks& lanes = groups_[kind(p)].lanes;
   const Vec3 n(lanes.at(p.slot, kBoxNormal), lanes.at(p.slot, kBoxNormal + 1), lanes.at(p.slot, kBoxNormal + 2));
   return {p.with_a ? Vec3(-n) : n, p.with_a};

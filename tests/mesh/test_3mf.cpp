@@ -193,7 +193,7 @@ TEST_CASE("3MF: elements of extensions in a mesh are skipped, triangle sets may 
   check_part(a, 0, Vec3::Zero(), Vec3::Constant(0.01));
   mesh.replace(mesh.find("v1=\"0\""), 6, "v1=\".5\"");
   CHECK_THAT(refusal(write(folder, model(object("1", "", mesh), R"(<item objectid="1"/>)"))),
-             Catch::Contains("no whole number"));
+             Catch::Contains("not a whole number"));
 }
 
 TEST_CASE("3MF: a required extension that is not read refuses the file", "[3mf]") {

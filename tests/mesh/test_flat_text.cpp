@@ -113,7 +113,7 @@ TEST_CASE("coordinates may have the decimal comma of a country", "[flat]") {
   for (const char* two : {"2,0", "2,", "+2,0E0", "20,0e-1"}) {
     INFO(two);
     const std::string corners = replaced_all(kOffCorners, "2 0 0", std::string(two) + " 0,0 0");
-    check_tetrahedron("comma.stl", text_stl(two));
+    check_tetrahedron("comma.stl", stl_of(two));
     check_tetrahedron("comma.off", "OFF\n4 4 6\n" + corners + kOffFaces);
     check_tetrahedron("comma.ply",
                       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -122,7 +122,7 @@ TEST_CASE("coordinates may have the decimal comma of a country", "[flat]") {
   }
   for (const char* none : {"2,0,0", "2.0,0", ",", "2,x"}) {
     INFO(none);
-    CHECK_THAT(refused("comma.stl", text_stl(none)), Catch::Contains("without three numbers"));
+    CHECK_THAT(refused("comma.stl", stl_of(none)), Catch::Contains("without three numbers"));
     CHECK_THAT(refused("comma.off",
                        "OFF\n4 4 6\n" + replaced_all(kOffCorners, "2 0 0", std::string(none) + " 0 0") + kOffFaces),
                Catch::Contains("damaged at vertex 1"));

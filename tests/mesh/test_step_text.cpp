@@ -275,10 +275,10 @@ TEST_CASE("STEP: parts in other files are read from the folder, told when missin
   CHECK(one.parts.size() == 1);
   CHECK(has_note(one, "the file \"other.stp\": named in this one and missing"));
   folder.write("a.step", naming(elsewhere / "child.stp"));
-  CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("no regular file in its folder or below"));
+  CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("not a regular file in its folder or below"));
   const std::string up = "../" + std::filesystem::path(elsewhere / "child.stp").parent_path().filename().string();
   folder.write("a.step", naming(up + "/child.stp"));
-  CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("no regular file in its folder or below"));
+  CHECK_THAT(test::refusal(folder / "a.step"), Catch::Contains("not a regular file in its folder or below"));
 }
 
 TEST_CASE("STEP: construction lines beside a shape refuse no file, whole or damaged", "[step]") {

@@ -175,6 +175,13 @@ bool patches_meet(const Fit& f, const Faces& fa, const Faces& fb, const Trial& t
 
 struct Count {
   long asked = 0, separate = 0, met = 0, wrong = 0;
+
+  void operator+=(const Count& more) {
+    asked += more.asked;
+    separate += more.separate;
+    met += more.met;
+    wrong += more.wrong;
+  }
 };
 
 /// Pairs of patches that a front by planes has near each other, asked by the curved certificate alone.
@@ -251,7 +258,9 @@ void check_pairs(long each) {
   std::mt19937 rng(101);
   long separate = 0, met = 0;
   for (const Fit& fit : fits()) {
-    const Count count = ask_pairs(fit, rng, each);
+    Count count = ask_pairs(fit, rng, each);
+    // Of a cone in a cone one pair in two thousand is apart about its axis.
+    for (int more = 0; fit.mates && count.separate == 0 && more < 9; ++more) count += ask_pairs(fit, rng, each);
     CAPTURE(fit.name, count.asked, count.separate, count.met);
     CHECK(count.wrong == 0);
     if (fit.mates) CHECK(count.separate > 0);

@@ -276,7 +276,7 @@ TEST_CASE("what cannot be planned is an error of one line") {
   };
   refused(scene("straight") + " --goal 0.003,0,0", "at the goal the held part is in \"block\"");
   refused(scene("straight") + " --clearance 1mm", "starts nearer to \"block\"");
-  refused(scene("straight") + " --clearance 5", "no length with a unit");
+  refused(scene("straight") + " --clearance 5", "not a length with a unit");
   refused(scene("straight") + " --goal 0,0,0 --out", "--out");
   refused(scene("straight") + " --hold nobody", "nobody");
   refused("nothing.toml", "nothing.toml");
