@@ -62,6 +62,10 @@ void keep_rights(const struct stat& there, const std::string& partial) {
   if (::chmod(partial.c_str(), there.st_mode & 0777) != 0) errno = 0;
 }
 
+[[noreturn]] void fail(const std::string& path, const char* what, const std::string& why) {
+  throw Error(ErrorKind::file, path + ": cannot be " + what + ": " + why, {path, 0, {}, {}});
+}
+
 void write_into(const std::string& path, std::string_view bytes) {
   OutputFile file(path);
   file.hurry();
@@ -76,7 +80,7 @@ void write_file(const std::string& path, std::string_view bytes) {
   if (target.empty()) return write_into(path, bytes);
   // A file that is not to be written into is not to be replaced either.
   if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0 && errno != ENOENT)
-    throw Error(path + ": cannot be written: " + std::strerror(errno));
+    fail(path, "written", std::strerror(errno));
   write_file_by(partial_of(target), target.string(), bytes);
 }
 
@@ -87,8 +91,7 @@ void write_file_by(const std::string& partial, const std::string& path, std::str
     file.close();
     struct stat there {};
     if (::stat(path.c_str(), &there) == 0) keep_rights(there, partial);
-    if (::rename(partial.c_str(), path.c_str()) != 0)
-      throw Error(path + ": cannot be written: " + std::strerror(errno));
+    if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, "written", std::strerror(errno));
   } catch (const Error&) {
     ::unlink(partial.c_str());
     throw;
@@ -98,7 +101,7 @@ void write_file_by(const std::string& partial, const std::string& path, std::str
 void make_folder(const std::string& path) {
   std::error_code failed;
   fs::create_directories(path, failed);
-  if (failed) throw Error(path + ": cannot be made: " + failed.message());
+  if (failed) fail(path, "made", failed.message());
 }
 
 }  // namespace tegotae

@@ -151,7 +151,7 @@ double CellFront::free_until(std::uint32_t part, std::uint32_t face_a, std::uint
   for (int i = 0; i < kHalvings; ++i) {
     const double s = 0.5 * (free + met);
     MovingPlane plane{Vec3::UnitX(), Vec3::UnitX()};
-    if (separate_triangles(a, b, sweep_by(part, s * d), reach, plane, plane)) {
+    if (separate_triangles(a, b, sweep_by(part, s * d), reach, nullptr, plane)) {
       free = s;
     } else {
       met = s;

@@ -341,7 +341,7 @@ CellSearch::Outcome CellSearch::settle_face(const Entry& e, const Hull& b) {
   const std::array<Vec3, 3> corners{query_.tree->corner(face, 0) - o, query_.tree->corner(face, 1) - o,
                                     query_.tree->corner(face, 2) - o};
   MovingPlane plane{n, n};
-  if (separate_triangles(*face_of_a_, corners, *sweep_, a_->reach, plane, plane)) {
+  if (separate_triangles(*face_of_a_, corners, *sweep_, a_->reach, nullptr, plane)) {
     if (query_.cells_only) return Outcome::passing;
     passing_ = true;
     passed_ = plane;

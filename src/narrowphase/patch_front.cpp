@@ -172,27 +172,21 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     const std::uint32_t id = stack_.back();
     stack_.pop_back();
     const PairNode& p = pool_[id];
-    if (!spend(faces(p))) {
-      admit(id);
-      admit_rest();
-      return Outcome::out_of_work;
-    }
+    if (!spend(faces(p))) return leave_off(id, Outcome::out_of_work);
     MovingPlane known = moving(plane(id));
     if (faces(p)) {
       const auto a = face_a(p.a), b = face_b(p.b);
       const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
-      if (separate_triangles(a, b, sweep_, reach, beside_, known)) {
+      if (separate_triangles(a, b, sweep_, reach, &beside_, known)) {
         beside_ = known;
         set_plane(id, last(known));
         continue;
       }
-      admit(id);
       blocking_.push_back({p.a, p.b});
       if (blocking_.size() >= std::min(capacity_.blocking, limit_.blocking) ||
-          blocking_.size() - before == kBlocksPerPair) {
-        admit_rest();
-        return Outcome::blocked;
-      }
+          blocking_.size() - before == kBlocksPerPair)
+        return leave_off(id, Outcome::blocked);
+      admit(id);
       continue;
     }
     // What was curved is asked so first, what was flat last.
@@ -207,10 +201,8 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     }
     if (p.curved == 0 && curves_pay() && try_to_bend(id)) continue;
     if (!split(id)) {
-      admit(id);
-      admit_rest();
       report_.overflow = true;
-      return Outcome::out_of_work;
+      return leave_off(id, Outcome::out_of_work);
     }
     for (std::uint32_t k = 0; k < pool_[id].children; ++k) stack_.push_back(pool_[id].child + k);
   }
@@ -242,8 +234,12 @@ void PatchFront::admit(std::uint32_t id) {
   write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
 }
 
-void PatchFront::admit_rest() {
-  for (const std::uint32_t id : stack_) admit(id);
+/// Ends with `outcome` before all is settled: what waits, `id` and what is on the stack, stays with planes that may
+/// fail.
+PatchFront::Outcome PatchFront::leave_off(std::uint32_t id, Outcome outcome) {
+  admit(id);
+  for (const std::uint32_t other : stack_) admit(other);
+  return outcome;
 }
 
 void PatchFront::roll_back() {

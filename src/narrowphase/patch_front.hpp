@@ -136,7 +136,7 @@ class PatchFront {
 
   std::uint32_t allocate(std::uint32_t children);
   void admit(std::uint32_t id);
-  void admit_rest();
+  Outcome leave_off(std::uint32_t id, Outcome outcome);
   void enter(std::uint32_t id);
   void take_place(std::uint32_t id);
   void write_piece(const PairNode& p);

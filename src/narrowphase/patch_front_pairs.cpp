@@ -57,7 +57,7 @@ bool PatchFront::split(std::uint32_t id) {
   put_off(id);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(known.n[k]);
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, true, parent.normal, 0, 0};
+    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, false, parent.normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -136,16 +136,14 @@ bool PatchFront::all_in_front(std::uint32_t id) const {
 
 void PatchFront::enter(std::uint32_t id) {
   take_place(id);
-  PairNode& p = pool_[id];
-  p.waits = false;
-  write_piece(p);
-  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
+  admit(id);
 }
 
 void PatchFront::take_place(std::uint32_t id) {
   PairNode& p = pool_[id];
   Group& g = group(p);
   p.slot = g.count++;
+  p.waits = true;
   g.owner[p.slot] = id;
 }
 

@@ -79,8 +79,8 @@ bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, doubl
 
 /// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
 /// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between. `beside`
-/// is tried after `plane`: one that keeps triangles near these apart, or nothing.
+/// (null: none) is tried after `plane`: one that keeps triangles near these apart.
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        const MovingPlane& beside, MovingPlane& plane);
+                        const MovingPlane* beside, MovingPlane& plane);
 
 }  // namespace tegotae

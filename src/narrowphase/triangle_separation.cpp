@@ -245,12 +245,12 @@ void offer_closest(const TrianglePair& t, Search& search) {
 
 bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
                    double s0, const Placement& from, double s1, const Placement& to, int halvings,
-                   const MovingPlane& beside, MovingPlane& plane) {
+                   const MovingPlane* beside, MovingPlane& plane) {
   const TrianglePair pair(a, b, from, to);
   const Bulge bulge(sweep, reach, s0, s1);
   if (stays_apart(pair, plane.n0, plane.n1, bulge, sweep, 0)) return true;
-  if (stays_apart(pair, beside.n0, beside.n1, bulge, sweep, 0)) {
-    plane = beside;
+  if (beside != nullptr && stays_apart(pair, beside->n0, beside->n1, bulge, sweep, 0)) {
+    plane = *beside;
     return true;
   }
   Search search(pair);
@@ -270,9 +270,9 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   const double s = 0.5 * (s0 + s1);
   const Placement middle = sweep.at(s);
   MovingPlane first{search.best().n0, search.best().n0};
-  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, first, first)) return false;
+  if (!separate_part(a, b, sweep, reach, s0, from, s, middle, halvings - 1, nullptr, first)) return false;
   MovingPlane second{first.n1, first.n1};
-  if (!separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, second, second)) return false;
+  if (!separate_part(a, b, sweep, reach, s, middle, s1, to, halvings - 1, nullptr, second)) return false;
   plane = second;
   return true;
 }
@@ -301,7 +301,7 @@ double TrianglePair::mixed(const Vec3& n0, const Vec3& n1) const {
 }
 
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
-                        const MovingPlane& beside, MovingPlane& plane) {
+                        const MovingPlane* beside, MovingPlane& plane) {
   return separate_part(a, b, sweep, reach, 0, sweep.start, 1, sweep.end, kTimeHalvings, beside, plane);
 }
 
