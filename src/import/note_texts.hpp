@@ -53,6 +53,8 @@ inline constexpr NoteText kHidden{"", "bodies", "hidden in the file, and read al
 inline constexpr NoteText kNoUnit{"", "shapes",
                                   "no unit of length, so taken for mm, or for the unit of the shape around it",
                                   "export the file with its unit"};
+inline constexpr NoteText kNoAngle{"", "shapes", "no unit of angle, so the angles of cones are taken for degrees",
+                                   "export the file with its units"};
 
 // glTF and 3MF.
 inline constexpr NoteText kEmptyMesh{"", "parts", "no triangles, so left out",

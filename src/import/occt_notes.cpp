@@ -1,6 +1,9 @@
 #include "import/occt_notes.hpp"
 
+#include <Interface_EntityIterator.hxx>
+#include <Interface_Graph.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepGeom_ConicalSurface.hxx>
 #include <StepGeom_Curve.hxx>
 #include <StepShape_EdgeBasedWireframeModel.hxx>
 #include <StepShape_GeometricSet.hxx>
@@ -62,6 +65,22 @@ std::vector<Handle(StepShape_ShapeRepresentation)> shapes_of(const Handle(XSCont
   return shapes;
 }
 
+/// Whether an item of the representation is made of a conical surface.
+bool has_cone(const Interface_Graph& graph, const StepShape_ShapeRepresentation& shape) {
+  std::set<Entity> seen;
+  std::vector<Entity> open;
+  for (int i = 1; i <= shape.NbItems(); ++i) open.push_back(shape.ItemsValue(i));
+  while (!open.empty()) {
+    const Entity at = open.back();
+    open.pop_back();
+    // A representation that an item shows has its own units.
+    if (at.IsNull() || at->IsKind(STANDARD_TYPE(StepRepr_Representation)) || !seen.insert(at).second) continue;
+    if (at->IsKind(STANDARD_TYPE(StepGeom_ConicalSurface))) return true;
+    for (Interface_EntityIterator used = graph.Shareds(at); used.More(); used.Next()) open.push_back(used.Value());
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::string> hidden_bodies(const Handle(XSControl_WorkSession) & session,
@@ -102,6 +121,16 @@ std::vector<std::string> without_unit(const Handle(XSControl_WorkSession) & sess
   std::vector<std::string> out;
   for (const Handle(StepShape_ShapeRepresentation) & shape : shapes_of(session, reached))
     if (!unit_of_length(*shape)) out.push_back("#" + std::to_string(model->IdentLabel(shape)));
+  return out;
+}
+
+std::vector<std::string> without_angle(const Handle(XSControl_WorkSession) & session,
+                                       const std::vector<bool>& reached) {
+  const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
+  std::vector<std::string> out;
+  for (const Handle(StepShape_ShapeRepresentation) & shape : shapes_of(session, reached))
+    if (!has_unit_of_angle(*shape) && has_cone(session->Graph(), *shape))
+      out.push_back("#" + std::to_string(model->IdentLabel(shape)));
   return out;
 }
 

@@ -19,4 +19,7 @@ std::vector<std::string> bare_curves(const Handle(XSControl_WorkSession) & sessi
 /// Shapes of products, and representations that place them, that state no unit of length, each "#17".
 std::vector<std::string> without_unit(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& reached);
 
+/// Those of them that state no unit of angle and have a conical face, each "#17".
+std::vector<std::string> without_angle(const Handle(XSControl_WorkSession) & session, const std::vector<bool>& reached);
+
 }  // namespace tegotae

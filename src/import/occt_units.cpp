@@ -7,6 +7,7 @@
 #include <StepBasic_MeasureWithUnit.hxx>
 #include <StepBasic_SiUnit.hxx>
 #include <StepBasic_SiUnitAndLengthUnit.hxx>
+#include <StepBasic_SiUnitAndPlaneAngleUnit.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
@@ -86,6 +87,18 @@ std::optional<double> unit_of_length(const StepRepr_Representation& shape) {
   for (int i = 1; i <= units->NbUnits(); ++i)
     if (const auto length = length_of(units->UnitsValue(i))) last = length;
   return last;
+}
+
+bool has_unit_of_angle(const StepRepr_Representation& shape) {
+  const Handle(StepRepr_GlobalUnitAssignedContext) units = units_of(shape);
+  if (units.IsNull() || units->Units().IsNull()) return false;
+  for (int i = 1; i <= units->NbUnits(); ++i) {
+    const Handle(StepBasic_NamedUnit) unit = units->UnitsValue(i);
+    if (!unit.IsNull() && (unit->IsKind(STANDARD_TYPE(StepBasic_SiUnitAndPlaneAngleUnit)) ||
+                           unit->IsKind(STANDARD_TYPE(StepBasic_ConversionBasedUnitAndPlaneAngleUnit))))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace tegotae

@@ -16,4 +16,7 @@ std::vector<Handle(Standard_Transient)> flatten_units(const Handle(StepData_Step
 /// have to be flat.
 std::optional<double> unit_of_length(const StepRepr_Representation& shape);
 
+/// Whether a representation states a unit of plane angle that OpenCASCADE reads.
+bool has_unit_of_angle(const StepRepr_Representation& shape);
+
 }  // namespace tegotae

@@ -181,6 +181,7 @@ class StepReader {
     curves_ = bare_curves(session, of_shape);
     for (const std::string& body : hidden_bodies(session, tessellated)) notes_.add(note_texts::kHidden, body);
     for (const std::string& shape : without_unit(session, of_shape)) notes_.add(note_texts::kNoUnit, shape);
+    for (const std::string& shape : without_angle(session, of_shape)) notes_.add(note_texts::kNoAngle, shape);
   }
 
   /// Other files are read with this one, and looked through after that only.

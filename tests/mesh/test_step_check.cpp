@@ -96,6 +96,44 @@ void check_read(const StepText& s, std::size_t notes = 0) {
   CHECK(a.notes.size() == notes);
 }
 
+/// Adds a frustum of the radii 10 and 5 mm, 5 mm high; `half`, the cone's angle, is 45 degrees in the file's unit.
+void add_frustum(StepText& s, const std::string& half) {
+  const int product = s.product("cone");
+  const auto up = [&](double z, double axis) {
+    return s.frame(s.point(0, 0, z), s.direction(0, 0, axis), s.direction(1, 0, 0));
+  };
+  const auto circle = [&](double z, double radius, int vertex) {
+    const int c = s.add("CIRCLE(''," + r(up(z, 1)) + "," + std::to_string(radius) + ")");
+    return s.add("EDGE_CURVE(''," + r(vertex) + "," + r(vertex) + "," + r(c) + ",.T.)");
+  };
+  const auto face = [&](const std::vector<std::pair<int, const char*>>& edges, const std::string& surface) {
+    std::string loop;
+    for (const auto& [edge, sense] : edges)
+      loop += (loop.empty() ? "" : ",") + r(s.add("ORIENTED_EDGE('',*,*," + r(edge) + "," + sense + ")"));
+    const int bound = s.add("FACE_OUTER_BOUND(''," + r(s.add("EDGE_LOOP('',(" + loop + "))")) + ",.T.)");
+    return s.add("ADVANCED_FACE('',(" + r(bound) + ")," + r(s.add(surface)) + ",.T.)");
+  };
+  const int low = s.add("VERTEX_POINT(''," + r(s.point(10, 0, 0)) + ")"),
+            high = s.add("VERTEX_POINT(''," + r(s.point(5, 0, 5)) + ")");
+  const int wide = circle(0, 10, low), narrow = circle(5, 5, high);
+  const int along = s.add("VECTOR(''," + r(s.direction(-1, 0, 1)) + ",1.)");
+  const int line = s.add("LINE(''," + r(s.point(10, 0, 0)) + "," + r(along) + ")");
+  const int seam = s.add("EDGE_CURVE(''," + r(low) + "," + r(high) + "," + r(line) + ",.T.)");
+  const int side = face({{wide, ".T."}, {seam, ".T."}, {narrow, ".F."}, {seam, ".F."}},
+                        "CONICAL_SURFACE(''," + r(up(5, -1)) + ",5.," + half + ")");
+  const int bottom = face({{wide, ".F."}}, "PLANE(''," + r(up(0, -1)) + ")");
+  const int top = face({{narrow, ".T."}}, "PLANE(''," + r(up(5, 1)) + ")");
+  const int shell = s.add("CLOSED_SHELL('',(" + r(side) + "," + r(bottom) + "," + r(top) + "))");
+  s.shape(product, {s.origin(), s.add("MANIFOLD_SOLID_BREP(''," + r(shell) + ")")},
+          "ADVANCED_BREP_SHAPE_REPRESENTATION");
+}
+
+void check_frustum(const Assembly& a) {
+  REQUIRE(a.parts.size() == 1);
+  CHECK(report(*a.shapes[0]).closed);
+  CHECK(volume(*a.shapes[0]) == Approx(1e-9 * M_PI * 5 / 3 * (100 + 50 + 25)).epsilon(2e-3));
+}
+
 }  // namespace
 
 TEST_CASE("STEP: what is not a frame places no part", "[step]") {
@@ -324,7 +362,6 @@ TEST_CASE("STEP: a shape without a unit of length is taken for millimeters, and 
 }
 
 TEST_CASE("STEP: angles of cones are in the unit of the file", "[step]") {
-  // A frustum of the radii 10 and 5 mm, 5 mm high: half the cone's angle is 45 degrees.
   for (const std::string unit : {"radian", "degree", "minute of degrees"}) {
     INFO(unit);
     StepText s;
@@ -338,40 +375,30 @@ TEST_CASE("STEP: angles of cones are in the unit of the file", "[step]") {
       if (unit != "degree") angle = so_many("0.0166666666666667", angle);
       s.set_unit(".MILLI.", angle);
     }
-    const int product = s.product("cone");
-    const auto up = [&](double z, double axis) {
-      return s.frame(s.point(0, 0, z), s.direction(0, 0, axis), s.direction(1, 0, 0));
-    };
-    const auto circle = [&](double z, double radius, int vertex) {
-      const int c = s.add("CIRCLE(''," + r(up(z, 1)) + "," + std::to_string(radius) + ")");
-      return s.add("EDGE_CURVE(''," + r(vertex) + "," + r(vertex) + "," + r(c) + ",.T.)");
-    };
-    const auto face = [&](const std::vector<std::pair<int, const char*>>& edges, const std::string& surface) {
-      std::string loop;
-      for (const auto& [edge, sense] : edges)
-        loop += (loop.empty() ? "" : ",") + r(s.add("ORIENTED_EDGE('',*,*," + r(edge) + "," + sense + ")"));
-      const int bound = s.add("FACE_OUTER_BOUND(''," + r(s.add("EDGE_LOOP('',(" + loop + "))")) + ",.T.)");
-      return s.add("ADVANCED_FACE('',(" + r(bound) + ")," + r(s.add(surface)) + ",.T.)");
-    };
-    const int low = s.add("VERTEX_POINT(''," + r(s.point(10, 0, 0)) + ")"),
-              high = s.add("VERTEX_POINT(''," + r(s.point(5, 0, 5)) + ")");
-    const int wide = circle(0, 10, low), narrow = circle(5, 5, high);
-    const int along = s.add("VECTOR(''," + r(s.direction(-1, 0, 1)) + ",1.)");
-    const int line = s.add("LINE(''," + r(s.point(10, 0, 0)) + "," + r(along) + ")");
-    const int seam = s.add("EDGE_CURVE(''," + r(low) + "," + r(high) + "," + r(line) + ",.T.)");
-    const std::string half = unit == "radian" ? std::to_string(M_PI / 4) : unit == "degree" ? "45." : "2700.";
-    const int side = face({{wide, ".T."}, {seam, ".T."}, {narrow, ".F."}, {seam, ".F."}},
-                          "CONICAL_SURFACE(''," + r(up(5, -1)) + ",5.," + half + ")");
-    const int bottom = face({{wide, ".F."}}, "PLANE(''," + r(up(0, -1)) + ")");
-    const int top = face({{narrow, ".T."}}, "PLANE(''," + r(up(5, 1)) + ")");
-    const int shell = s.add("CLOSED_SHELL('',(" + r(side) + "," + r(bottom) + "," + r(top) + "))");
-    s.shape(product, {s.origin(), s.add("MANIFOLD_SOLID_BREP(''," + r(shell) + ")")},
-            "ADVANCED_BREP_SHAPE_REPRESENTATION");
+    add_frustum(s, unit == "radian" ? std::to_string(M_PI / 4) : unit == "degree" ? "45." : "2700.");
     const Assembly a = read(s);
-    REQUIRE(a.parts.size() == 1);
-    CHECK(report(*a.shapes[0]).closed);
-    CHECK(volume(*a.shapes[0]) == Approx(1e-9 * M_PI * 5 / 3 * (100 + 50 + 25)).epsilon(2e-3));
+    check_frustum(a);
+    CHECK(!has_note(a, "no unit of angle"));
   }
+}
+
+TEST_CASE("STEP: cones without a unit of angle are taken for degrees, and told", "[step]") {
+  StepText s;
+  add_frustum(s, "45.");
+  std::string text = s.text();
+  const std::size_t at = text.find("GLOBAL_UNIT_ASSIGNED_CONTEXT((");
+  const std::size_t comma = text.find(',', at), end = text.find("))", at);
+  text.erase(comma, end - comma);  // leaves the unit of length
+  const Assembly a = read_step_text(text);
+  check_frustum(a);
+  CHECK(has_note(a, "no unit of angle"));
+  CHECK(!has_note(a, "no unit of length"));
+  // Nothing depends on the unit where there is no cone.
+  text = Plate().s.text();
+  const std::size_t plate = text.find("GLOBAL_UNIT_ASSIGNED_CONTEXT((");
+  const std::size_t next = text.find(',', plate);
+  text.erase(next, text.find("))", plate) - next);
+  CHECK(!has_note(read_step_text(text), "no unit of angle"));
 }
 
 TEST_CASE("STEP: empty lists that no kind may have do no harm where no shape is made of them", "[step]") {
