@@ -20,8 +20,8 @@ class InputSource {
   virtual double begin() const noexcept = 0;
   /// Returns the pose X_WF (world) where the hand rests at that time.
   virtual Pose start() const noexcept = 0;
-  /// Returns the pose that the hand wants at `t` (s). `pen` is the pen's pose, as that of the file frame (X_WF): what
-  /// the hand itself feels of it. The times of the calls never decrease. Never allocates or throws.
+  /// Returns the pose that the hand wants at `t` (s), and its velocity. `pen` is the pen's present pose, which the hand
+  /// feels, as that of the file frame (X_WF). The times of the calls never decrease. Never allocates or throws.
   virtual HandTarget target(double t, const Pose& pen) noexcept = 0;
 };
 

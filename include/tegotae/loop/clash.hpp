@@ -13,7 +13,7 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Relation of two parts.
 enum class ClashKind : std::uint8_t {
-  overlap,  ///< deeper than the tolerance, or crossing surfaces of which none is closed
+  overlap,  ///< deeper than the tolerance, or the surfaces cross and neither is closed
   touch,    ///< a gap or an overlap of at most the tolerance
   near      ///< a gap of more than the tolerance
 };

@@ -12,7 +12,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// Whether the contact loop keeps the held part out of a fixed part that it touched or overlapped at the start.
 enum class InitialContactState : std::uint8_t {
   active,   ///< yes
-  shrunk,   ///< out of a copy of the fixed part that is smaller by InitialContact::inward_offset
+  shrunk,   ///< it keeps it out of a copy that is smaller by InitialContact::inward_offset
   filtered  ///< no
 };
 

@@ -76,7 +76,7 @@ class RunEdits {
 
   /// Continues with `parts` and the present settings. The part held now stays where it is, whatever pose `parts` gives
   /// it. Any thread but the run's may call it. Returns the parts as they are once they are in force. Before that, it
-  /// passes the number that TickView::segment will then have to `ready`.
+  /// passes to `ready` the number that TickView::segment will then have.
   ///
   /// Throws Error when there is no run, the loop cannot hold the parts (see HapticLoop), or their recording cannot be
   /// written. Also throws Error when the change has not come into force after a second: new parts block the path that

@@ -42,9 +42,9 @@ class ChannelReader {
 /// One end of a segment. The device's side creates the segment, the application attaches to it.
 class Channel : public ChannelReader {
  public:
-  /// Creates a segment that only this user may open. With an empty name the library makes one that is unique to this
-  /// process. The call replaces a segment that a dead process left, and refuses to replace that of a living one. It
-  /// also removes segments that killed processes left under such made names. The destructor of Channel removes the
+  /// Creates a segment that only this user may open. With an empty name the library generates one that is unique to
+  /// this process. The call replaces a segment that a dead process left, and refuses to replace that of a living one.
+  /// It also removes segments that killed processes left under generated names. The destructor of Channel removes the
   /// segment. Throws Error (kind device) with the cause.
   static Channel create(const std::string& name = {});
   /// Attaches an application; a segment has at most one. Throws Error (kind device) as ChannelReader::open does, and
