@@ -123,23 +123,26 @@ PlacedAssembly placed(Assembly assembly) {
 void bind_mesh(nb::module_& m) {
   nb::class_<Mesh>(m, "Mesh", R"(A triangle surface in its own frame, in m.
 
-Coincident vertices are welded, and vertices that no triangle uses are dropped, so indices may differ from those that
-were given; triangles keep their number and order. A mesh never changes, so any number of scenes, parts and threads may
-share one.
+The constructor welds coincident vertices and drops vertices that no triangle uses. So vertex indices may differ from
+those given; the triangles keep their number and order. A mesh never changes. Any number of scenes, parts and threads
+may share it.
 
 Parameters
 ----------
 vertices : (n, 3) array of float
     In m, in the mesh's frame.
 triangles : (m, 3) array of int
-    Indices into `vertices`, counter-clockwise seen from outside.
+    Indices into `vertices`, counterclockwise seen from outside.
 name : str
-    For messages.
+    Origin of the mesh, for messages.
 
 Raises
 ------
 Error
-    An index out of range, a number that is not finite or beyond 1000 km, no triangle, or another shape.)")
+    kind "setting": an index is out of range or not a whole number, a coordinate is not finite or beyond 1000 km, there
+    is no triangle, or an array has another shape.
+TypeError
+    The coordinates are text or complex numbers.)")
       .def(
           "__init__",
           [](Mesh* self, nb::handle vertices, nb::handle triangles, const std::string& name) {
@@ -154,21 +157,26 @@ Error
             const auto& v = mesh.shared->vertices;
             return view<VertexView>(mesh, v.front().data(), v.size());
           },
-          nb::rv_policy::automatic, "(n, 3) float64, m: a read-only view without a copy, which keeps the mesh.")
+          nb::rv_policy::automatic,
+          "Vertices, (n, 3) float64, m, in the mesh's frame: a read-only view without a copy. It keeps the mesh alive.")
       .def_prop_ro(
           "triangles",
           [](const Mesh& mesh) {
             const auto& t = mesh.shared->triangles;
             return view<TriangleView>(mesh, t.front().data(), t.size());
           },
-          nb::rv_policy::automatic, "(m, 3) uint32: a read-only view without a copy, which keeps the mesh.")
+          nb::rv_policy::automatic,
+          "Indices into `vertices`, (m, 3) uint32: a read-only view without a copy. It keeps the mesh alive.")
       .def_prop_ro(
-          "name", [](const Mesh& mesh) { return mesh.shared->name; }, "Where it came from, for messages.")
+          "name", [](const Mesh& mesh) { return mesh.shared->name; }, "Origin of the mesh, for messages.")
       .def_prop_ro(
-          "notes", [](const Mesh& mesh) { return mesh.shared->notes; }, "What is not as the file says, a line each.")
+          "notes", [](const Mesh& mesh) { return mesh.shared->notes; },
+          "Deviations of the mesh from its file, one line each.")
       .def("report", &report_of, nb::sig("def report(self) -> dict[str, typing.Any]"),
-           "What the surface is like: counts of vertices, triangles, components, boundary and non-manifold edges,\n"
-           "degenerate and duplicate faces, inverted shells; `closed`; the corners of its box in m.")
+           "Returns properties of the surface: the counts `vertices`, `triangles`, `components`, `boundary_edges`,\n"
+           "`non_manifold_edges`, `degenerate_faces`, `duplicate_faces` and `inverted_shells`; whether it is\n"
+           "`closed`; and the corners of its bounding box, `box_min` and `box_max`, each (3,) float64, m. Other\n"
+           "Python threads continue meanwhile.")
       .def(
           "center_of_mass",
           [](const Mesh& mesh) {
@@ -177,7 +185,9 @@ Error
             const nb::gil_scoped_acquire python;
             return to_array(center);
           },
-          "(3,) float64, m, of the homogeneous solid; of an open surface that of its box.")
+          "Returns the center of mass of the homogeneous solid, (3,) float64, m, in the mesh's frame. For a surface\n"
+          "that is not closed or has no volume, it is the centroid of the area. Other Python threads continue\n"
+          "meanwhile.")
       .def("__repr__", [](const Mesh& mesh) {
         return "Mesh(" + mesh.shared->name + ": " + std::to_string(mesh.shared->vertices.size()) + " vertices, " +
                std::to_string(mesh.shared->triangles.size()) + " triangles)";
@@ -194,9 +204,9 @@ void bind_load_mesh(nb::module_& m) {
       },
       nb::arg("path"), nb::arg("unit") = "mm", nb::arg("trusted") = false,
       nb::sig("def load_mesh(path: str | os.PathLike[str], unit: str = 'mm', trusted: bool = False) -> Mesh"),
-      R"(Reads STL, OBJ, PLY, OFF, glTF/GLB or 3MF as one surface.
+      R"(Reads a file in STL, OBJ, PLY, OFF, glTF/GLB or 3MF as one surface.
 
-Other Python threads go on meanwhile.
+Other Python threads continue meanwhile.
 
 Parameters
 ----------
@@ -204,8 +214,8 @@ path : str or os.PathLike
 unit : str
     Length of one unit of the file: "m", "cm", "mm", "um" or "in".
 trusted : bool
-    False: another process parses the file, bounded in time (60 s) and memory (4 GB), so that a damaged file ends that
-    process alone. True: this one does, which is a little faster.
+    False: another process parses the file, within 60 s and 4 GB of memory. A damaged file then ends only that process.
+    True: this process parses the file, which is a little faster.
 
 Returns
 -------
@@ -214,36 +224,39 @@ Mesh
 Raises
 ------
 Error
-    kind "file": the file cannot be used, with the reason.)");
+    kind "file": the file cannot be used; the message has the reason. kind "other": the unit is unknown.)");
 }
 
 void bind_assembly(nb::module_& m) {
   nb::class_<PlacedPart>(m, "AssemblyPart", "A leaf of an assembly: one placed instance of a shape.")
       .def_prop_ro(
-          "name", [](const PlacedPart& p) { return p.part.name; }, "Unique in the assembly.")
+          "name", [](const PlacedPart& p) { return p.part.name; }, "Name of the part, unique in the assembly.")
       .def_prop_ro(
-          "path", [](const PlacedPart& p) { return p.part.path; }, "The groups that it is in, the outermost first.")
+          "path", [](const PlacedPart& p) { return p.part.path; },
+          "Names of the groups that contain the part, the outermost first.")
       .def_prop_ro(
           "pose", [](const PlacedPart& p) { return to_array(p.part.pose); }, nb::rv_policy::automatic,
-          "(4, 4) float64, X_WF, m: of the shape's frame in the assembly's.")
+          "Pose X_WF of the mesh's frame in the frame of the assembly, (4, 4) float64, m.")
       .def_prop_ro(
           "color",
           [](const PlacedPart& p) -> std::optional<std::vector<double>> {
             if (!p.part.color) return std::nullopt;
             return std::vector<double>(p.part.color->begin(), p.part.color->end());
           },
-          "Red, green, blue (sRGB), opacity, each 0 to 1; None where the file has none.")
+          "Red, green, blue (sRGB) and opacity, each 0 to 1. None: the file gives no color.")
       .def_prop_ro(
-          "mesh", [](const PlacedPart& p) { return p.mesh; }, "In its own frame, m; instances share it.")
+          "mesh", [](const PlacedPart& p) { return p.mesh; },
+          "Surface in its own frame, m. Instances of one shape share it.")
       .def("__repr__", [](const PlacedPart& p) { return "AssemblyPart(" + p.part.name + ")"; });
-  nb::class_<PlacedAssembly>(m, "Assembly", "What a file of parts holds.")
+  nb::class_<PlacedAssembly>(m, "Assembly", "Contents of a file of parts, in the file's frame, in m.")
       .def_prop_ro(
-          "parts", [](const PlacedAssembly& a) { return a.parts; }, "In the order of the file.")
+          "parts", [](const PlacedAssembly& a) { return a.parts; }, "Leaves of the tree, in the order of the file.")
       .def_prop_ro(
           "unit", [](const PlacedAssembly& a) { return a.unit; },
-          "Of the file, or the one that its lengths were read in.")
+          "Unit of the file (\"m\", \"mm\", ...), or the one in which its lengths were read.")
       .def_prop_ro(
-          "notes", [](const PlacedAssembly& a) { return a.notes; }, "What is not as the file says, a line each.");
+          "notes", [](const PlacedAssembly& a) { return a.notes; },
+          "Deviations of the assembly from its file, one line each.");
 }
 
 void bind_read_assembly(nb::module_& m) {
@@ -263,21 +276,22 @@ void bind_read_assembly(nb::module_& m) {
       nb::arg("chord") = AssemblyOptions().chord, nb::arg("coarse_chord") = AssemblyOptions().coarse_chord,
       nb::sig("def read_assembly(path: str | os.PathLike[str], unit: str | None = None, *, split: bool = False, chord: "
               "float = 5e-06, coarse_chord: float = 5e-05) -> Assembly"),
-      R"(Reads STEP, glTF/GLB or 3MF with its tree, or another mesh file as one part.
+      R"(Reads a STEP, glTF/GLB or 3MF file with its tree, or another mesh file as one part.
 
-The file is parsed in this process. Other Python threads go on meanwhile.
+This process parses the file. Other Python threads continue meanwhile.
 
 Parameters
 ----------
 path : str or os.PathLike
 unit : str, optional
-    "m", "cm", "mm", "um" or "in": of the lengths of a file that does not say it (STL, OBJ, PLY, OFF), or that says m and
-    is wrong (glTF). None: m, and a file that is more than 20 m across is refused, for it is most often in mm.
+    "m", "cm", "mm", "um" or "in": unit of a file that does not state its own (STL, OBJ, PLY, OFF), or that states m
+    wrongly (glTF). None: m; then a file more than 20 m across is refused, because it is most often in mm.
 split : bool
-    Every connected piece of a surface is a part.
+    True: every connected component of a surface becomes a part.
 chord, coarse_chord : float
-    m: how far a facet of a STEP file may be from a face with a counterpart nearby, and from any other curved face (a
-    part alone in its file is between the two, by its size).
+    m: largest distance of a facet of a STEP file from its face. `chord` is for mating faces, which have a counterpart
+    nearby; `coarse_chord` is for other curved faces. A part alone in its file gets less than `coarse_chord`, by its
+    size.
 
 Returns
 -------
@@ -286,7 +300,8 @@ Assembly
 Raises
 ------
 Error
-    kind "file": the file cannot be used, with the reason.)");
+    kind "file": the file cannot be used, the unit is unknown, or a unit is given for a file that states its own (STEP,
+    3MF); the message has the reason. kind "other": a chord is not a positive length.)");
 }
 
 }  // namespace

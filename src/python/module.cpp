@@ -45,7 +45,7 @@ void translate(const std::exception_ptr& thrown, void*) {
 
 NB_MODULE(_tegotae, m) {
   using namespace tegotae::python;
-  m.doc() = "The compiled part of tegotae. Use the package tegotae, which has all of it.";
+  m.doc() = "The compiled part of tegotae. Use the package tegotae, which exports what is public.";
   m.attr("version") = TEGOTAE_VERSION_STRING;
   nanobind::register_exception_translator(translate);
   bind_meshes(m);

@@ -33,10 +33,12 @@ void number(nb::class_<ScriptPen, Pen>& c, const char* name, Get get, const char
 }
 
 void bind_script_pen(nb::module_& m) {
-  nb::class_<ScriptPen, Pen> c(m, "ScriptPen", R"(A pen without hardware: a body that a hand holds and the force pushes.
+  nb::class_<ScriptPen, Pen> c(m, "ScriptPen",
+                               R"(A pen without hardware: a rigid body that a hand and the rendered force push.
 
-The hand follows a script: between two times its position goes linearly and its rotation at a constant rate. Each rig
-begins at the script's first time. Same script, settings and steps give the same bits.
+The hand follows a script: between two times the position moves linearly and the rotation at a constant rate. Before the
+first and after the last time the hand rests. Each rig starts at the script's first time. The same script, settings and
+steps give the same bits. A rig raises Error (kind "setting") when it is made with a setting out of range.
 
 Parameters
 ----------
@@ -48,7 +50,8 @@ poses : (n, 4, 4) array of float
 Raises
 ------
 Error
-    Another shape, numbers that are not finite, no rotations, times that do not increase.)");
+    kind "setting": an array has another shape, a number is not finite, a pose is not rigid or lies beyond 10 km, or the
+    times do not increase.)");
   c.def(
        "__init__",
        [](ScriptPen* self, nb::handle times, nb::handle poses) { new (self) ScriptPen({}, script_of(times, poses)); },
@@ -57,31 +60,36 @@ Error
       .def_static(
           "read", [](const std::filesystem::path& path) { return ScriptPen({}, read_script(path.string())); },
           nb::arg("path"), nb::sig("def read(path: str | os.PathLike[str]) -> ScriptPen"),
-          "The script of a CSV file with the columns t,px,py,pz,qw,qx,qy,qz (s, m). Raises Error with file and line.")
+          "Returns a pen with the script of a CSV file with the columns t,px,py,pz,qw,qx,qy,qz (s, m). Raises Error\n"
+          "(kind \"file\") with `file` and `line`.")
       .def_prop_ro(
-          "begin", [](const ScriptPen& p) { return p.script.begin(); }, "s, of the script.")
+          "begin", [](const ScriptPen& p) { return p.script.begin(); }, "First time of the script, s.")
       .def_prop_ro(
-          "end", [](const ScriptPen& p) { return p.script.end(); }, "s, of the script.")
+          "end", [](const ScriptPen& p) { return p.script.end(); }, "Last time of the script, s.")
       .def(
           "target", [](const ScriptPen& p, double t) { return to_array(p.script.pose(t)); }, nb::arg("t"),
-          "(4, 4) float64, X_WF, m: where the hand wants the part at `t` (s).");
+          "Returns where the hand wants the held part's own frame at `t` (s): X_WF, (4, 4) float64, m.");
   number(
-      c, "hand_stiffness", [](auto& s) -> auto& { return s.hand.stiffness; }, "N/m, of the hand's grip.");
+      c, "hand_stiffness", [](auto& s) -> auto& { return s.hand.stiffness; }, "Stiffness of the hand's grip, N/m.");
   number(
-      c, "hand_damping", [](auto& s) -> auto& { return s.hand.damping; }, "N s/m.");
+      c, "hand_damping", [](auto& s) -> auto& { return s.hand.damping; },
+      "Damping of the hand's grip, N s/m, on the difference to the script's velocity.");
   number(
-      c, "hand_torsional_stiffness", [](auto& s) -> auto& { return s.hand.torsional_stiffness; }, "N m/rad.");
+      c, "hand_torsional_stiffness", [](auto& s) -> auto& { return s.hand.torsional_stiffness; },
+      "Torsional stiffness of the hand's grip, N m/rad.");
   number(
-      c, "hand_torsional_damping", [](auto& s) -> auto& { return s.hand.torsional_damping; }, "N m s/rad.");
+      c, "hand_torsional_damping", [](auto& s) -> auto& { return s.hand.torsional_damping; },
+      "Torsional damping of the hand's grip, N m s/rad.");
   number(
-      c, "hand_mass", [](auto& s) -> auto& { return s.hand.mass; }, "kg, that moves with the pen.");
+      c, "hand_mass", [](auto& s) -> auto& { return s.hand.mass; },
+      "Effective mass of the hand, which moves with the pen, kg.");
   number(
-      c, "mass", [](auto& s) -> auto& { return s.mass; }, "kg, apparent, of the pen.");
+      c, "mass", [](auto& s) -> auto& { return s.mass; }, "Apparent mass of the pen, kg.");
   number(
-      c, "friction", [](auto& s) -> auto& { return s.friction; }, "N, Coulomb friction of the pen.");
+      c, "friction", [](auto& s) -> auto& { return s.friction; }, "Coulomb friction of the pen, N.");
   number(
       c, "continuous_force", [](auto& s) -> auto& { return s.continuous_force; },
-      "N, what its motors stand for long; 0: not limited.");
+      "Force that the pen's motors can sustain, N; 0: unbounded.");
 }
 
 int visit(PyObject* self, visitproc visit, void* arg) {
@@ -101,26 +109,33 @@ PyType_Slot kSlots[] = {
     {Py_tp_traverse, reinterpret_cast<void*>(visit)}, {Py_tp_clear, reinterpret_cast<void*>(clear)}, {0, nullptr}};
 
 void bind_python_pen(nb::module_& m) {
-  nb::class_<PythonPen, Pen>(m, "PythonPen", nb::type_slots(kSlots), R"(A pen that is written in Python.
+  nb::class_<PythonPen, Pen>(m, "PythonPen", nb::type_slots(kSlots),
+                             R"(A pen written in Python. One rig at a time can run it.
 
 In real time a Python thread of its own calls `hand.write(wrench)` and `hand.read()` in turn, up to `rate` times a
-second, and meets the servo in a mailbox: the servo goes on at 1 kHz with the newest pose and never waits for Python.
-`rate` then tells what was reached. Without a new pose for 20 ms the force fades out. In simulated time both are called
-once a servo tick, in the thread that steps.
+second. It exchanges data with the servo through a mailbox. The servo continues at 1 kHz with the newest pose and never
+waits for Python. Without a new pose for 20 ms the force fades out. In simulated time the thread that steps calls both
+methods once a servo tick.
 
-What they raise ends the pen: the force goes off, and the rig's next step(), run() or stop() raises it.
+An exception in either method ends the pen: the force goes off, and the rig's next step(), run() or stop() raises it.
 
 Parameters
 ----------
 hand : object
-    With `read() -> (4, 4)`: X_WF, m, where the pen wants the held part's own frame; and, for a pen that renders force,
-    `write(wrench)`: (6,) float64, force (N) and torque (N m) on the pen at the held part's center of mass, world axes.
+    Has a method `read()`, which returns where the pen wants the held part's own frame: X_WF, (4, 4), m. For a pen that
+    renders force it also has a method `write(wrench)`. `wrench` is (6,) float64: force (N), then torque (N m) on the
+    pen at the held part's center of mass, in the axes of the world.
 rate : float
-    Hz, 50 to 4000: how often Python is asked at most.
+    Largest number of calls of each method in a second, 50 to 4000 Hz.
 max_force, max_torque : float
-    N and N m, peak, that it renders.
+    Peak force (N) and torque (N m) that the pen renders.
 continuous_force : float
-    N, that it renders for long; 0: not limited.)")
+    Force that the pen can sustain, N; 0: unbounded.
+
+Raises
+------
+Error
+    kind "setting": the rate is out of range, or `hand` has no method read().)")
       .def(
           "__init__",
           [](PythonPen* self, nb::object hand, double rate, double force, double torque, double continuous) {
@@ -133,16 +148,17 @@ continuous_force : float
                   "float = 0.188, continuous_force: float = 1.4) -> None"))
       .def_prop_ro(
           "rate", [](const PythonPen& p) { return p.hand().rate(); },
-          "Hz at which Python answered in the last quarter of a second or so; 0 before that. From any thread.")
+          "Rate that Python reached in the last quarter of a second or so, Hz; 0 before that. Any thread may read it.")
       .def_prop_ro(
           "samples", [](const PythonPen& p) { return p.hand().samples(); },
-          "Poses read since the rig started. From any thread.");
+          "Number of poses read since the rig started. Any thread may read it.");
 }
 
 }  // namespace
 
 void bind_pens(nb::module_& m) {
-  nb::class_<Pen>(m, "Pen", "What moves the held part and renders the force: ScriptPen, PythonPen.");
+  nb::class_<Pen>(m, "Pen",
+                  "Base class of pens, which move the held part and render the force: ScriptPen and PythonPen.");
   bind_script_pen(m);
   bind_python_pen(m);
 }

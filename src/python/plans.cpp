@@ -102,7 +102,7 @@ void bind_plans(nb::module_& m) {
             "numpy.typing.ArrayLike | None, "
             "clearance: float, seed: int, iterations: int | None, seconds: float | None, to: str | os.PathLike[str] | "
             "None) -> dict[str, typing.Any]"),
-        "The columns of tegotae.Plan.");
+        "Returns the columns of tegotae.Plan.");
 }
 
 }  // namespace tegotae::python

@@ -133,7 +133,7 @@ void bind_reviews(nb::module_& m) {
         nb::sig("def review_columns(recording: str | os.PathLike[str], scene: str | os.PathLike[str] | SceneFile | "
                 "None, goal: "
                 "numpy.typing.ArrayLike | None, report: str | os.PathLike[str] | None) -> dict[str, typing.Any]"),
-        "The columns of tegotae.Review.");
+        "Returns the columns of tegotae.Review.");
 }
 
 }  // namespace tegotae::python

@@ -126,42 +126,55 @@ Report report(const PythonRig& python) {
 }
 
 void bind_report(nb::module_& m) {
-  nb::class_<Report>(m, "Report", "What the last step did, as it was then.")
-      .def_ro("contacts", &Report::contacts, "Pairs of features with a gap of at most `contact_gap`.")
-      .def_ro("contact_gap", &Report::contact_gap, "m, what counts as contact.")
-      .def_ro("constraints", &Report::constraints, "Pairs of features that limited the motion, contacts included.")
-      .def_ro("gap", &Report::gap, "m, smallest that is known; inf when nothing is within reach.")
-      .def_ro("depth", &Report::depth, "m, deepest vertex inside another part; only \"penalty\" penetrates.")
-      .def_ro("resolves", &Report::resolves, "Programs solved.")
-      .def_ro("iterations", &Report::iterations, "Pivots of all programs.")
-      .def_ro("status", &Report::status, "\"not_needed\", \"solved\", \"infeasible\", \"stalled\".")
-      .def_ro("fraction", &Report::fraction, "Part of the wanted motion that was made, 0 to 1.")
-      .def_ro("lag", &Report::lag, "m, how far the part is behind the pen: centers, plus radius times angle.")
-      .def_ro("lag_reason", &Report::lag_reason, "\"none\", \"contact\", \"time\", \"capacity\", \"suspended\".")
+  nb::class_<Report>(m, "Report", "Report of a step. It is a copy: later steps do not change it.")
+      .def_ro("contacts", &Report::contacts, "Number of feature pairs with a gap of at most `contact_gap`.")
+      .def_ro("contact_gap", &Report::contact_gap, "m, largest gap of a contact in this step.")
+      .def_ro("constraints", &Report::constraints,
+              "Number of feature pairs that constrained the motion, contacts included.")
+      .def_ro("gap", &Report::gap,
+              "m, smallest known gap; inf when nothing is within reach, negative where parts penetrate.")
+      .def_ro("depth", &Report::depth,
+              "m, depth of the vertex that is deepest inside another part; only \"penalty\" penetrates.")
+      .def_ro("resolves", &Report::resolves, "Number of programs solved (\"penalty\": Newton steps).")
+      .def_ro("iterations", &Report::iterations, "Number of pivots of all programs (\"impulse\": impulses).")
+      .def_ro("status", &Report::status,
+              "How the last program ended: \"not_needed\", \"solved\", \"infeasible\" or \"stalled\".")
+      .def_ro("fraction", &Report::fraction, "Fraction of the wanted motion that the step made, 0 to 1.")
+      .def_ro("lag", &Report::lag,
+              "m, how far the part lags the pen: the distance of the two centers of mass, plus the part's radius\n"
+              "times the angle between the two poses. With a weight it is the lag behind the pose to which the\n"
+              "weight draws the part.")
+      .def_ro("lag_reason", &Report::lag_reason,
+              "Reason for the lag: \"none\", \"contact\", \"time\", \"capacity\" or \"suspended\".")
       .def_ro("unexplained_lag_ticks", &Report::unexplained_lag_ticks,
-              "Ticks so far in which the part was held back and no contact explains it.")
-      .def_ro("filtered", &Report::filtered, "Pairs that overlapped at the start and are not kept apart yet.")
-      .def_ro("shrunk", &Report::shrunk, "Pairs that touched at the start and have not come free.")
+              "Number of ticks so far in which something other than a contact held the part back.")
+      .def_ro("filtered", &Report::filtered,
+              "Number of pairs that overlapped at the start and have not separated yet. Nothing keeps them apart.")
+      .def_ro("shrunk", &Report::shrunk, "Number of pairs that touched at the start and have not separated yet.")
       .def_prop_ro(
-          "timed_out", [](const Report& r) { return r.flags.timed_out; }, "Time or work ran out.")
+          "timed_out", [](const Report& r) { return r.flags.timed_out; },
+          "Whether time or work ran out before the tick was done.")
       .def_prop_ro(
-          "overflow", [](const Report& r) { return r.flags.overflow; }, "A capacity was exceeded.")
+          "overflow", [](const Report& r) { return r.flags.overflow; },
+          "Whether a capacity was exceeded. The motion is still free.")
       .def_prop_ro(
           "input_ignored", [](const Report& r) { return r.flags.input_ignored; },
-          "The pen's pose was none that a pen can have.")
+          "Whether the tick ignored an invalid pen pose or time.")
       .def_prop_ro(
           "scene_changed", [](const Report& r) { return r.flags.scene_changed; },
-          "It is the first step in a changed scene.")
+          "Whether this was the first tick in a changed scene.")
       .def_prop_ro(
-          "part_changed", [](const Report& r) { return r.flags.part_changed; }, "... in which another part is held.")
+          "part_changed", [](const Report& r) { return r.flags.part_changed; },
+          "Whether that scene holds another part. The tick then did not follow the pen.")
       .def_prop_ro(
           "contact_wrench",
           [](const Report& r) -> nb::object {
             return r.contact_wrench ? nb::cast(to_array(*r.contact_wrench)) : nb::none();
           },
           nb::sig("def contact_wrench(self) -> numpy.typing.NDArray[numpy.float64] | None"),
-          "(6,) float64: force (N) and torque (N m) of all contacts on the part at its center of mass, world axes.\n"
-          "None: not available (free, or a resolver that knows no forces).");
+          "Sum of the contact forces on the held part, (6,) float64: force (N), then torque (N m) about the part's\n"
+          "center of mass, in the axes of the world and the lengths of the pen. None: not available, because the\n"
+          "part is free or the resolver reports no forces.");
 }
 
 const char* word(ChangeState state) {
@@ -181,18 +194,20 @@ const char* word(ChangeState state) {
 }
 
 void bind_change(nb::module_& m) {
-  nb::class_<SceneChange>(m, "Change", "A change of a running scene. All of it from any thread.")
-      .def_prop_ro("number", &SceneChange::number, "From 1 on.")
+  nb::class_<SceneChange>(m, "Change", "A change of a running scene. Any thread may use it.")
+      .def_prop_ro("number", &SceneChange::number,
+                   "Number of the change, from 1 on. The number of a canceled change is used again.")
       .def_prop_ro(
           "state", [](const SceneChange& c) { return word(c.state()); },
-          "\"pending\" (waits for a step, or for the held part to be out of its way), \"in_force\",\n"
-          "\"superseded\", \"replaced\" (while it was pending), \"canceled\".")
+          "Present state: \"pending\" (it waits for a tick, or until the held part is out of its way), \"in_force\",\n"
+          "\"superseded\" (a later change came into force), \"replaced\" (by a later change while it was pending) or\n"
+          "\"canceled\".")
       .def(
           "wait", [](const SceneChange& c, double seconds) { return word(c.wait(seconds)); }, nb::arg("seconds"),
           nb::call_guard<nb::gil_scoped_release>(),
-          "Waits for at most `seconds` until it is no longer pending; returns the state then. Another thread must "
-          "step.")
-      .def("cancel", &SceneChange::cancel, "Takes it back. False when it is no longer pending.");
+          "Waits at most `seconds` until the change is no longer pending, and returns its state. Another thread must\n"
+          "step the rig meanwhile. Other Python threads continue.")
+      .def("cancel", &SceneChange::cancel, "Cancels the change. Returns False when it is no longer pending.");
 }
 
 RigClock clock_of(const std::string& name) {
@@ -247,8 +262,12 @@ void bind_lifecycle(RigClass& c) {
           "__init__",
           [](PythonRig* self, const Scene& scene, const std::string& device) { new (self) PythonRig(scene, device); },
           nb::arg("scene"), nb::arg("device"))
-      .def("start", &PythonRig::start, "Starts the device and its servo. Raises Error with the cause.")
-      .def("stop", &PythonRig::stop, "Force off; servo and device stop. What a pen in Python raised is raised here.")
+      .def("start", &PythonRig::start,
+           "Starts the device and its servo. Has no effect on a rig that runs. Raises Error with the cause, and what\n"
+           "the first read() of a PythonPen raised.")
+      .def("stop", &PythonRig::stop,
+           "Switches the force off, and stops servo and device. Has no effect on a rig that does not run. Raises\n"
+           "what a PythonPen raised.")
       .def(
           "__enter__",
           [](PythonRig& rig) -> PythonRig& {
@@ -260,47 +279,64 @@ void bind_lifecycle(RigClass& c) {
           "__exit__", [](PythonRig& rig, nb::args) { rig.stop(); },
           nb::sig("def __exit__(self, *args: object) -> None"))
       .def("step", &PythonRig::step, nb::arg("count") = 1,
-           "`count` ticks: each reads the pen, moves the part as near to it as the others allow, and publishes the "
-           "result.\n"
-           "Other Python threads continue meanwhile, and Ctrl-C ends it where there are several.")
+           "Runs `count` ticks. Each reads the pen, moves the part as near to it as the other parts allow, and\n"
+           "publishes the result to the servo. Other Python threads continue meanwhile. Ctrl-C ends a call with\n"
+           "several ticks. Raises Error when the rig does not run, and what a PythonPen raised.")
       .def("run", &PythonRig::run, nb::arg("seconds"), nb::arg("callback") = nb::none(),
            nb::sig("def run(self, seconds: float, callback: collections.abc.Callable[[Rig], object] | None = None) -> "
                    "None"),
            R"(Steps until `seconds` after start(), or until request_stop().
 
-Without a callback the loop has a thread that never waits for Python, and other Python threads go on; Ctrl-C ends it.
-In real time it steps at most once a period, with real-time priority where the system grants it.
+Without a callback the loop runs in a thread that never waits for Python, and other Python threads continue. In real
+time it steps at most once a period, with real-time priority where the system grants it. Ctrl-C ends it.
 
 Parameters
 ----------
 seconds : float
-    Of the rig's time since start().
+    Time at which the run ends, s since start().
 callback : callable, optional
-    Called as callback(rig) after each step; the next step waits for it, the servo does not. What it raises ends the
-    run.)")
-      .def("request_stop", &PythonRig::request_stop, "Ends run() after the step that it is in. From any thread.")
-      .def("change", &PythonRig::change, nb::arg("scene"),
-           R"(Continues in another scene: parts added, removed or moved, or another one held.
-
-The part that is held now goes on from where it is. From any thread. A later change replaces one that is pending.
+    Called as callback(rig) after each step. The next step waits for it; in real time the servo does not.
 
 Raises
 ------
 Error
-    The scene cannot be held; nothing changes then.)");
+    The rig does not run, or another thread steps it. The call also raises what the callback or a PythonPen raised,
+    which ends the run.)")
+      .def("request_stop", &PythonRig::request_stop, "Ends run() after its present step. Any thread may call it.")
+      .def("change", &PythonRig::change, nb::arg("scene"),
+           R"(Continues in another scene: with parts added, removed or moved, or with another part held.
+
+The part held now continues from where it is, whatever pose `scene` gives it. Another held part starts at its pose in
+`scene`, and the pen's present pose maps to it. A later change replaces one that is still pending. Any thread may call
+it; the call builds the new scene, and the rig can step meanwhile.
+
+Parameters
+----------
+scene : Scene
+    Copied.
+
+Returns
+-------
+Change
+    Comes into force between two steps.
+
+Raises
+------
+Error
+    The contact loop cannot hold the scene. Then nothing changes.)");
 }
 
 void bind_state(RigClass& c) {
   c.def_prop_ro(
        "part", [](const PythonRig& r) { return to_array(r.from_any_thread().part()); }, nb::rv_policy::automatic,
-       "(4, 4) float64, X_WF, m: of the held part's own frame. From any thread.")
+       "Pose X_WF of the held part's own frame, (4, 4) float64, m. Any thread may read it.")
       .def_prop_ro(
           "pen", [](const PythonRig& r) { return to_array(r.at_rest().pen().state.pose); }, nb::rv_policy::automatic,
-          "(4, 4) float64, Y, m: where the pen wants the held part's own frame.")
+          "Pose Y where the pen wants the held part's own frame, (4, 4) float64, m, world.")
       .def_prop_ro(
           "wrench", [](const PythonRig& r) { return to_array(r.at_rest().pen().wrench); }, nb::rv_policy::automatic,
-          "(6,) float64: force (N) and torque (N m) on the pen, as rendered, at the held part's center of mass,\n"
-          "world axes.")
+          "Wrench on the pen, as rendered, (6,) float64: force (N), then torque (N m) about the held part's center\n"
+          "of mass, in the axes of the world.")
       .def_prop_ro(
           "force_off",
           [](const PythonRig& r) -> std::optional<std::string> {
@@ -308,39 +344,45 @@ void bind_state(RigClass& c) {
             if (reason == ForceOff::none) return std::nullopt;
             return to_string(reason);
           },
-          "Why the device renders no force; None: it does.")
+          "Why the device renders no force, in words. None: it renders force.")
       .def_prop_ro(
           "center", [](const PythonRig& r) { return to_array(r.at_rest().loop().center()); }, nb::rv_policy::automatic,
-          "(3,) float64, m: the held part's center of mass in its own frame.")
+          "Center of mass of the held part, (3,) float64, m, in its own frame.")
       .def_prop_ro(
           "held", [](const PythonRig& r) { return r.from_any_thread().loop().held(); },
-          "Name of the held part. From any thread.")
+          "Name of the held part. Any thread may read it.")
       .def_prop_ro(
-          "time", [](const PythonRig& r) { return r.at_rest().time(); }, "s since start(), of the last step.")
+          "time", [](const PythonRig& r) { return r.at_rest().time(); }, "Time of the last step, s since start().")
       .def_prop_ro(
-          "steps", [](const PythonRig& r) { return r.at_rest().steps(); }, "Since start().")
+          "steps", [](const PythonRig& r) { return r.at_rest().steps(); }, "Number of steps since start().")
       .def_prop_ro(
           "connected", [](const PythonRig& r) { return r.at_rest().connected(); },
-          "The pen was there in the last step.")
-      .def_prop_ro("report", &report, "Of the last step; before the first one, of the start.")
+          "Whether there was a pen in the last step.")
+      .def_prop_ro("report", &report, "Report of the last step; before the first one, of the start.")
       .def_prop_ro("contacts", &contacts, nb::sig("def contacts(self) -> numpy.typing.NDArray[numpy.void]"),
-                   R"(The contacts of the last step: a structured array, a row each.
+                   R"(Contacts of the last step: a structured array with one row for each contact.
 
-Fields: `part` (number of the fixed part), `point_a`, `point_b` ((3,), m, world, on the held and on the fixed part),
+Fields: `part` (number of the fixed part), `point_a` and `point_b` ((3,), m, world: on the held and on the fixed part),
 `normal` ((3,), unit, from the fixed to the held part, world), `gap` (m), `force` (N, on the held part along `normal`;
-nan: not available), `friction` ((3,), N, on the held part, world), `slides`, `ticks` (in contact before this one),
-`kind_a`, `feature_a`, `kind_b`, `feature_b` (0 vertex, 1 edge, 2 face, and its index), `began`.)")
+nan: not available), `friction` ((3,), N, on the held part across `normal`, world), `slides` (the held part's point
+slid), `ticks` (number of earlier ticks for which the contact has lasted), `kind_a`, `feature_a`, `kind_b` and
+`feature_b` (kind and index of the nearest feature of each mesh: 0 vertex, 1 edge, 2 face), `began` (the contact is
+new).)")
       .def_prop_ro("events", &events, nb::sig("def events(self) -> numpy.typing.NDArray[numpy.void]"),
-                   "Contacts that began (`began`) or ended in the last step, with the fields of `contacts`.")
-      .def_prop_ro("servo", &servo, nb::sig("def servo(self) -> dict[str, typing.Any]"),
-                   "What the servo has done since start(): ticks, missed, rate_hz, late_us and compute_us (p50, p99,\n"
-                   "p999, max). In simulated time ticks alone. From any thread.")
+                   "Contacts that began or ended in the last step: a structured array with the fields of `contacts`.\n"
+                   "`began` is False for a contact that ended; its row has the state of the step before.")
+      .def_prop_ro(
+          "servo", &servo, nb::sig("def servo(self) -> dict[str, typing.Any]"),
+          "Statistics of the servo since start(): `ticks`, `missed` (periods without a tick), `rate_hz`, and in us\n"
+          "`late_us` and `compute_us` (each with p50, p99, p999, max). In simulated time only the ticks and their\n"
+          "rate have a meaning. Any thread may read it.")
       .def_prop_ro(
           "missing_realtime", [](const PythonRig& r) { return r.at_rest().missing_realtime(); },
-          "What the system did not grant to the servo or to run(); empty: nothing.")
+          "What the system did not grant to the servo or to run(), in one line; empty: it granted everything.")
       .def_prop_ro(
           "stability", [](const PythonRig& r) { return r.at_rest().stability(); },
-          "Whether the coupling is stable with this device, in words.");
+          "The coupling's stiffness and its stability limits with this device, in one line; empty for a device in\n"
+          "another process.");
 }
 
 }  // namespace
@@ -351,9 +393,11 @@ void bind_rig(nb::module_& m) {
   RigClass rig(m, "Rig", nb::type_slots(kSlots),
                R"(A scene, a pen, and everything between them: servo, shared memory, contact loop.
 
-The pen carries the held part, the part stays out of the others, and the pen feels it. Use it in a `with` statement,
-which starts and stops it. One thread steps; what is for any thread says so, and the rest raises Error while another
-thread steps.
+The pen carries the held part, the part stays out of the others, and the hand feels it through the pen. Use the rig in a
+`with` statement, which starts and stops it.
+
+One thread steps the rig. Where any thread may make a call, the docstring says so. All other calls raise Error while
+another thread steps.
 
 Parameters
 ----------
@@ -362,17 +406,18 @@ scene : Scene
 pen : Pen
     ScriptPen or PythonPen.
 clock : str
-    "simulated": step() and run() alone move time on, and the same scene and pen do the same, bit for bit. "real": the
-    machine's clock; the servo has a thread of its own at 1 kHz.
+    "simulated": each step advances the time, and the same scene, pen and build give the same run, bit for bit. "real":
+    the machine's clock; the servo has a thread of its own at 1 kHz.
 period : float
-    s between two steps, 1e-5 to 1: of simulated time, and at least that in run().
+    s between two steps, 1e-5 to 1: exactly, in simulated time; at least, in run() in real time.
 device : str
-    "shm:NAME", the device of another process (tegotae-device), in real time.
+    "shm:NAME": the device of another process (tegotae-device), in real time.
 
 Raises
 ------
 Error
-    The parts overlap at the start (kind "overlap", with `part`), a setting is out of range, there is no such device.)");
+    Parts overlap at the start (kind "overlap", with `part`), a setting is out of range (kind "setting"), or there is no
+    such device (kind "device").)");
   bind_lifecycle(rig);
   bind_state(rig);
   m.attr("contact_dtype") = contact_type();

@@ -215,7 +215,7 @@ nb::dict read(const std::filesystem::path& path) {
 void bind_runs(nb::module_& m) {
   m.def("recording_columns", &read, nb::arg("path"),
         nb::sig("def recording_columns(path: str | os.PathLike[str]) -> dict[str, typing.Any]"),
-        "The columns of tegotae.Recording.");
+        "Returns the columns of tegotae.Recording.");
   m.def(
       "run", &run, nb::arg("scene"), nb::arg("pen") = nb::none(), nb::kw_only(), nb::arg("record") = nb::none(),
       nb::arg("real_time") = false, nb::arg("seconds") = 0.0, nb::arg("check_all") = false,
@@ -223,35 +223,39 @@ void bind_runs(nb::module_& m) {
           "def run(scene: str | os.PathLike[str] | SceneFile | Scene, pen: ScriptPen | None = None, *, record: str | "
           "os.PathLike[str] | None = None, real_time: bool = False, seconds: float = 0.0, check_all: bool = False) -> "
           "dict[str, typing.Any]"),
-      R"(Runs a scene with a simulated pen to the end of its script, and asks FCL about the poses.
+      R"(Runs a scene with a simulated pen to the end of its script. FCL checks the poses.
 
-It never waits for Python, and other Python threads go on; Ctrl-C ends it.
+The run never waits for Python, and other Python threads continue. Ctrl-C ends it with KeyboardInterrupt.
 
 Parameters
 ----------
 scene : str, os.PathLike, SceneFile or Scene
-    A scene file, or a scene in memory, which needs a `pen`.
+    A scene file by its path or as load_scene() read it, or a scene in memory, which needs a `pen`.
 pen : ScriptPen, optional
-    Instead of the file's.
+    Replaces the file's pen and script.
 record : str or os.PathLike, optional
-    Recording, CSV or (by its ending) MCAP, for read_recording() and review().
+    Path of the recording to write, for read_recording() and review(): MCAP when it ends in .mcap, otherwise CSV.
 real_time : bool
-    False: simulated time, as fast as it goes and the same each time.
+    False: simulated time, as fast as possible and the same on every run.
 seconds : float
-    s; 0: to the end of the script and half a second more.
+    Length of the run, s. 0: to the end of the script, and half a second more.
 check_all : bool
-    FCL is asked about every pose, however long it takes; otherwise for a quarter of the run's time or 2 s.
+    True: FCL checks every pose, however long it takes. False: FCL checks poses during the run, and afterwards for a
+    quarter of the time that the run took, or 2 s if that is longer.
 
 Returns
 -------
 dict
-    As `tegotae run --json`: `completed`, `depth_m`, `ticks`, `seconds`, `contacts_max`, `lag`, `penetrating` of
-    `checked` of `poses`, `force_max_n`, `torque_max_nm`, `tick_us`, `servo`, `recordings` and more.
+    Figures as in `tegotae run --json`: `completed`, `depth_m`, `ticks`, `seconds`, `contacts_max`, `lag`, `poses`,
+    `checked` (poses that FCL checked), `penetrating` (how many of those intersect), `force_max_n`, `torque_max_nm`,
+    `tick_us`, `servo`, `recordings`, `record_failure` (why a recording is incomplete) and more. The suffix is the unit:
+    m, N, N m (nm) or us.
 
 Raises
 ------
 Error
-    The scene cannot be used or held, or the recording cannot be written.)");
+    The scene or the pen cannot be used, the loop cannot hold the scene, or the recording cannot be begun or would
+    replace a file of the scene.)");
 }
 
 }  // namespace tegotae::python

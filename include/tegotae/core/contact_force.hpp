@@ -18,25 +18,25 @@ struct ContactForce {
   Feature feature_a = {};        ///< of A's mesh; not in recordings
   Feature feature_b = {};        ///< of B's mesh; not in recordings
   Vec3 friction = Vec3::Zero();  ///< N, perpendicular to `n`, world; at most mu × force long
-  double mu = 0;                 ///< coefficient of friction of the two parts; 0 of a plane that holds one motion only
-  bool slides = false;           ///< the point slid in this tick; false: it sticks, or there is no friction
+  double mu = 0;        ///< coefficient of friction of the two parts; 0 for a one-shot constraint (kOneShotAge)
+  bool slides = false;  ///< the point slid in this tick; false: it sticks, or there is no friction
 };
 
-/// The contacts that carry force. Six are enough to hold a rigid body, so at most six carry, however many touch. Where
-/// a face lies flat, a few of its corners carry everything, and only the sum is meaningful. Each force stays within its
-/// own friction cone.
+/// Contacts that carry force. Six are enough to hold a rigid body, so at most six carry force, however many touch.
+/// Where a face lies flat, a few of its corners carry everything, and only the sum is meaningful. Each force stays
+/// within its own friction cone.
 struct ContactForces {
   static constexpr int kMax = 6;         ///< degrees of freedom of a free body
   std::array<ContactForce, kMax> items;  ///< the first `count` of them are valid
   int count = 0;                         ///< 0: no contact carries force, or the forces are not available
   bool available = false;                ///< whether the forces are known; not in recordings
-  /// The part of the springs' wrench that the contact forces do not balance, because the held part has not arrived yet:
-  /// the tick ran out of time, the bound on a tick's motion applied, or a gap is opening. Zero at rest. At the held
-  /// part's center of mass, world.
+  /// Part of the springs' wrench that the contact forces do not balance, because the held part has not arrived yet: the
+  /// tick ran out of time, the bound on a tick's motion applied, or a gap is opening. Zero at rest. At the held part's
+  /// center of mass, world.
   Wrench lag;
 
-  /// Returns the total force of all contacts and its moment about `center_W` (m, world). The moment arms are divided by
-  /// `scale` (see Scene::scale).
+  /// Returns the total force of all contacts (N) and its moment (N·m) about `center_W` (m, world). The moment arms are
+  /// divided by `scale` (see Scene::scale), because the hand feels torques in the pen's lengths.
   Wrench sum(const Vec3& center_W, double scale = 1) const noexcept {
     Wrench w;
     for (int i = 0; i < count; ++i) {

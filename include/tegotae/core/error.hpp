@@ -19,7 +19,7 @@ enum class ErrorKind : std::uint8_t {
   device    ///< a device cannot be reached, or another application uses it
 };
 
-/// Place of an error, as far as it is known. It complements Error::what().
+/// Place of an error, as far as it is known, for programs. Error::what() names it for people.
 struct ErrorPlace {
   std::string file = {};  ///< path; empty: none
   int line = 0;           ///< in the file, from 1 on; 0: none

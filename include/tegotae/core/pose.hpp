@@ -10,8 +10,8 @@ namespace tegotae TEGOTAE_EXPORT {
 using Vec3 = Eigen::Vector3d;              ///< x, y, z
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< linear part first, then angular
 using Mat3 = Eigen::Matrix3d;              ///< rows and columns x, y, z
-/// In the order w, x, y, z; of unit length wherever it is a rotation. It is not aligned, because Eigen aligns by the
-/// flags of the compiler: a Pose would have another layout in a program that is built with -mavx2.
+/// Quaternion in the order w, x, y, z; of unit length wherever it is a rotation. It is not aligned: Eigen aligns by the
+/// compiler's flags, so a Pose would have another layout in a program that is built with -mavx2.
 using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 /// Rigid pose X_WB: maps coordinates in frame B to frame W, p_W = q * p_B + p. Lengths in m, `q` a unit quaternion.
@@ -19,18 +19,18 @@ struct Pose {
   Quat q = Quat::Identity();  ///< R_WB
   Vec3 p = Vec3::Zero();      ///< p_WB: position of B's origin in W, m
 
-  /// The point `p_B` (m, frame B) expressed in W.
+  /// Returns the point `p_B` (m, frame B) expressed in W.
   Vec3 operator*(const Vec3& p_B) const { return q * p_B + p; }
-  /// X_WC = X_WB * X_BC.
+  /// Returns X_WC = X_WB * X_BC.
   Pose operator*(const Pose& X_BC) const { return {(q * X_BC.q).normalized(), q * X_BC.p + p}; }
-  /// X_BW.
+  /// Returns X_BW.
   Pose inverse() const {
     const Quat qi = q.conjugate();
     return {qi, -(qi * p)};
   }
 };
 
-// A library that was built without -mavx2 must find the numbers of a program that was built with it.
+// A library built without -mavx2 must agree on the layout with a program built with it.
 static_assert(sizeof(Pose) == 56 && alignof(Pose) == 8 && alignof(Vec3) == 8 && alignof(Mat3) == 8 &&
                   sizeof(Vec6) == 48 && alignof(Vec6) == 16,
               "Eigen is configured to lay its types out in another way than the library's");
@@ -47,13 +47,14 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();  ///< N·m
 };
 
-/// A small rigid displacement: `dp` (m) of a stated center, `dr` the rotation vector (rad) about that center, in W.
+/// Rigid displacement of a body: `dp` (m) of a stated center, and the rotation vector `dr` (rad) about that center,
+/// both in W.
 struct Displacement {
   Vec3 dp = Vec3::Zero();  ///< m
   Vec3 dr = Vec3::Zero();  ///< rad
 };
 
-/// Returns the rotation vector (rad, angle in [0, π]) of `q`.
+/// Returns the rotation vector of the unit quaternion `q` (rad, of length 0 to π).
 Vec3 rotation_vector(const Quat& q);
 /// Returns the unit quaternion of the rotation vector `r` (rad).
 Quat rotation(const Vec3& r);

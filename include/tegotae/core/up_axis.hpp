@@ -4,7 +4,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Axis of the world that points up, for those who show parts. Nothing that is computed depends on it; gravity has a
+/// Axis of the world that points up, for programs that display parts. No computation depends on it. Gravity has a
 /// direction of its own (WeightSettings).
 enum class UpAxis { x /**< x is up */, y /**< y is up */, z /**< z is up */ };
 

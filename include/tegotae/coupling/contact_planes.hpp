@@ -12,18 +12,18 @@ namespace tegotae TEGOTAE_EXPORT {
 struct ContactPlane {
   Vec3 normal = Vec3::Zero();  ///< unit, out of the obstacle, world
   Vec3 point = Vec3::Zero();   ///< of the held part at X, m, world
-  double clearance = 0;        ///< m; negative: the point should move out by this much
+  double clearance = 0;        ///< m; negative: the point should move outward by this much
   double mu = 0;               ///< coefficient of friction while the plane holds the point
 };
 
-/// What the contact loop knows about the held part's next millimeter, for the faster servo: the constraints that held
-/// the part in the last tick, then the nearest others. A free body needs no more than six.
+/// Constraints on the next millimeter of the held part's motion, for the faster servo: first those that held the part
+/// in the last tick, then the nearest others. A free body needs no more than six.
 struct ContactPlanes {
   static constexpr int kMax = 6;          ///< degrees of freedom of a free body
   std::array<ContactPlane, kMax> planes;  ///< the first `count` of them are valid
   int count = 0;                          ///< 0: none is known, and X stays where it is until the next tick
   Pose X;                                 ///< pose of the held part's file frame at which they were taken
-  Pose pen;                               ///< Y that the tick answered
+  Pose pen;                               ///< Y that this tick answered
 
   /// Returns whether the planes were taken at `pose`, bit for bit. Planes of another pose would pull the part where no
   /// contact is.

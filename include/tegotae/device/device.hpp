@@ -16,10 +16,10 @@ struct DeviceInfo {
   int motion_freedom = 6;             ///< sensed degrees of freedom: 3 or 6
   int force_freedom = 6;              ///< rendered degrees of freedom: 0 (input only), 3 or 6
   WrenchLimits limits;                ///< peak
-  double continuous_force = 1.4;      ///< N, which its motors can sustain; 0: unbounded
+  double continuous_force = 1.4;      ///< N, force that its motors can sustain; 0: unbounded
   double damping = 0;                 ///< N·s/m, of the device alone; 0: not known
   double torsional_damping = 0;       ///< N·m·s/rad; 0: not known
-  double friction = 0.04;             ///< Coulomb, N
+  double friction = 0.04;             ///< Coulomb friction, N
   double position_resolution = 3e-5;  ///< m
 };
 
@@ -60,12 +60,12 @@ enum class ForceOff : std::uint32_t {
   no_force = TEGOTAE_SHM_REASON_NO_FORCE,              ///< the device is an input only
 };
 
-/// Returns a text for people, e.g. "the contact loop's heartbeat is too old".
+/// Returns a text for people, e.g. "ready, force off".
 const char* to_string(DeviceStatus status) noexcept;
-const char* to_string(ForceOff reason) noexcept;  ///< the same
+const char* to_string(ForceOff reason) noexcept;  ///< returns a text for people, e.g. "the pen moved too fast"
 
-/// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. One thread makes all
-/// calls, the servo's; any thread may call info().
+/// A haptic pen in its own space: SI units, axes of the world. The servo maps it to the held part. Only one thread
+/// makes calls, the servo's; any thread may call info().
 class Device {
  public:
   virtual ~Device() = default;
@@ -73,7 +73,7 @@ class Device {
   /// Returns the device's properties. They do not change while the device is started.
   virtual DeviceInfo info() const = 0;
 
-  /// Connects and makes the device ready or enabled. Throws Error with the cause.
+  /// Connects, and makes the device ready or enabled. Throws Error with the cause when it cannot be used.
   virtual void start() = 0;
   /// Switches the force off and disconnects. Throws Error when the device cannot be left in a safe state.
   virtual void stop() = 0;
@@ -81,29 +81,30 @@ class Device {
   /// Returns the newest state. Never waits. When the device does not answer, it returns the last state, and reason()
   /// says so.
   virtual DeviceState read() noexcept = 0;
-  /// Renders `wrench` (on the pen, at reference_point(), in the axes of the world) until the next call.
+  /// Renders `wrench` (on the pen, at reference_point(), in the axes of the world, N and N·m) until the next call.
   virtual void write(const Wrench& wrench) noexcept = 0;
 
-  virtual DeviceStatus status() const noexcept = 0;  ///< its present status
-  virtual ForceOff reason() const noexcept = 0;      ///< why it renders no force; ForceOff::none when it does
+  virtual DeviceStatus status() const noexcept = 0;  ///< returns its present status
+  virtual ForceOff reason() const noexcept = 0;      ///< returns why it renders no force; ForceOff::none when it does
 
   /// Returns the device's reference point, in the pen's frame, m. DeviceState::velocity is the velocity of this point,
   /// and wrenches act at it. The servo maps it to the held part's center of mass. The default is the origin of the
   /// pen's frame.
   virtual Vec3 reference_point() const noexcept { return Vec3::Zero(); }
-  /// Receives the held part's center of mass, m, file frame, each time that another part is held. Only a pen whose body
-  /// is the part itself uses it as its reference point, as SimulatedDevice does; other drivers ignore it.
+  /// Receives the held part's center of mass (m, file frame) each time that another part is held. Only a pen whose body
+  /// is the part itself uses it, as its reference point, as SimulatedDevice does. Other drivers ignore it.
   virtual void set_held_center(const Vec3&) noexcept {}
 
-  /// Sets whether the device moves with the clock (hardware always does) or by advance() alone. Called before start().
+  /// Sets whether the device moves with the clock (hardware always does) or by advance() alone. The rig or run calls it
+  /// before start().
   virtual void use_wall_clock(bool) noexcept {}
   /// Advances a device that does not move with the clock by `dt` seconds of virtual time. Called between two calls of
   /// read().
   virtual void advance(double) noexcept {}
 
-  /// Receives the tracking error: the displacement from the part's pose to the pose where the pen wants it. The servo
-  /// calls it before read() while an application is attached. An input that is integrated uses it to stay near the
-  /// part.
+  /// Receives the tracking error: the displacement of the held part's center of mass from the part's pose to the pose
+  /// where the pen wants it, in the world's axes and the pen's meters. The servo calls it before read() while an
+  /// application is attached. An input that is integrated uses it to stay near the part.
   virtual void set_tracking_error(const Displacement&) noexcept {}
 };
 

@@ -7,13 +7,15 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// The pose to which a mouse or a test leads the hand of a simulated pen. One thread sets it, the servo's thread reads
-/// it, and neither waits for the other.
+/// Pose to which a mouse or a test leads the hand of a simulated pen. One thread sets it, the servo's thread reads it,
+/// and neither waits for the other.
 class InputGuide {
  public:
-  /// Makes the hand carry the held part's file frame to `hand`, as fast as a hand can.
+  /// Makes the hand carry the held part's file frame to `hand` (X_WF, world), as fast as a hand can. Only one thread
+  /// may call it.
   void lead(const Pose& hand) noexcept;
-  /// Reads into `hand` where the hand is led. Returns false, and leaves `hand` unchanged, before the first lead().
+  /// Reads into `hand` the pose to which the hand is led. Returns false, and leaves `hand` unchanged, before the first
+  /// lead().
   bool target(Pose& hand) const noexcept;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Where a hand wants the held part's file frame to be.
+/// Pose where a hand wants the held part's file frame to be, and its velocity there.
 struct HandTarget {
   Pose pose;       ///< X_WF, in the world
   Twist velocity;  ///< of the file frame (`v` of its origin), world
@@ -18,10 +18,10 @@ class InputSource {
 
   /// Returns the time at which the motion begins, s.
   virtual double begin() const noexcept = 0;
-  /// Returns where the hand rests at that time.
+  /// Returns the pose X_WF (world) where the hand rests at that time.
   virtual Pose start() const noexcept = 0;
-  /// Returns what the hand wants at `t` (s). `pen` is the pen's pose, as that of the file frame: what the hand itself
-  /// feels of it. Calls come with times that never decrease. Never allocates or throws.
+  /// Returns the pose that the hand wants at `t` (s), and its velocity. `pen` is the pen's present pose, which the hand
+  /// feels, as that of the file frame (X_WF). The times of the calls never decrease. Never allocates or throws.
   virtual HandTarget target(double t, const Pose& pen) noexcept = 0;
 };
 

@@ -11,8 +11,8 @@ struct WrenchLimits {
   double torque = 0.188;  ///< N·m
 };
 
-/// Returns `wrench` scaled down as a whole, so that neither its force nor its torque exceeds its limit; the directions
-/// of both and their ratio stay. Returns zero when an entry is not finite.
+/// Returns `wrench`, scaled down when its force or torque exceeds its limit. One factor scales both, so that their
+/// directions and their ratio stay. Returns zero when an entry is not finite.
 Wrench saturated(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
 }  // namespace tegotae

@@ -8,18 +8,18 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// Returns the rotation from the device's axes (right, up, toward the user) to those of a world whose z points up and y
-/// away from the user.
+/// Returns the rotation from the device's axes (right, up, toward the user) to those of a world whose z points up and
+/// whose y points away from the user.
 Quat desktop_axes();
 
-/// Which of the vendor's devices to use, and how it stands.
+/// Which device of the vendor to use, and how its axes lie in the world.
 struct OpenHapticsSettings {
-  std::string library = "libHD.so";  ///< of the vendor's runtime; loaded by start()
-  std::string device;                ///< its name in the vendor's set-up; empty: the default device
+  std::string library = "libHD.so";  ///< library of the vendor's runtime, which start() loads
+  std::string device;                ///< its name in the vendor's setup; empty: the default device
   Quat axes = desktop_axes();        ///< from the device's axes to the world's
 };
 
-/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, which is loaded at run time. Its
+/// A pen of 3D Systems (PHANTOM Premium, Touch and others) through OpenHaptics' HDAPI, which start() loads. Its
 /// reference point is the gimbal, the origin of the pen's frame.
 ///
 /// The vendor's scheduler calls back at its own rate (1 kHz). read() and write() exchange data with it through
@@ -27,11 +27,11 @@ struct OpenHapticsSettings {
 /// is rendered for half a second.
 class OpenHapticsDevice final : public Device {
  public:
-  /// Loads and connects nothing yet; start() does.
+  /// Stores the settings. Loads and connects nothing; start() does.
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings = {});
   ~OpenHapticsDevice() override;  ///< stops
 
-  /// Returns what the vendor's library reports of the device; the defaults before start().
+  /// Returns the properties that the vendor's library reports; before start(), the defaults of DeviceInfo.
   DeviceInfo info() const override;
   /// Throws Error when the library or a function of it is missing, or when the device cannot be used.
   void start() override;

@@ -5,10 +5,11 @@
  * There is one segment for each device: a POSIX shared-memory object of exactly sizeof(struct tegotae_shm_segment)
  * bytes, owned by the user and with permission 0600, in the machine's byte order. A process that attaches checks owner,
  * permission, size, magic and version before use. While they live, the device's process and the application each hold a
- * write lock (F_OFD_SETLK) on a byte of the object. A device that cannot lock its byte finds the name in use. A device
- * that can replaces what a dead process left: it unlinks the object and creates it anew. Units: m, rad, s, N, N*m;
- * times are CLOCK_MONOTONIC in ns; quaternions are w, x, y, z and of unit length; all vectors are expressed in the
- * world.
+ * write lock (F_OFD_SETLK) on a byte of the object. A device that cannot lock its byte reports that the name is in use.
+ * A device that can lock it replaces the object of a dead process: it unlinks the object and creates it anew.
+ *
+ * Units: m, rad, s, N, N*m; times are CLOCK_MONOTONIC in ns; quaternions are w, x, y, z and of unit length; all vectors
+ * are expressed in the world.
  *
  * Every slot has one writer and any number of readers. A sequence counter guards it (a seqlock): 0 = never written, odd
  * = being written, even = complete. Neither side ever waits for the other.
@@ -44,7 +45,7 @@
 /** Changes with every change of the layout or of a field's meaning. */
 #define TEGOTAE_SHM_VERSION UINT32_C(6)
 
-/** Bytes of the object that the device's process and the application lock. The kernel ends a lock of an open file
+/** Offsets of the bytes that the device's process and the application lock. The kernel ends a lock of an open file
  * description with the process that holds it, so the lock proves that the process lives. */
 enum { TEGOTAE_SHM_LOCK_DEVICE = 0, TEGOTAE_SHM_LOCK_APPLICATION = 1 };
 
@@ -75,7 +76,7 @@ enum {
   TEGOTAE_SHM_REASON_FORCE_EXCEEDED = 15, /**< the device reports a request above what it may render */
   TEGOTAE_SHM_REASON_NO_FORCE = 16        /**< the device is an input only and renders no force */
 };
-/** Capacity for reasons in tegotae_shm_statistics.force_off: those above and later ones. */
+/** Capacity for reasons in tegotae_shm_statistics.force_off: the reasons above, and later ones. */
 #define TEGOTAE_SHM_REASONS 24
 
 /** tegotae_shm_device.flags: what the safety chain does to a force that is on */
@@ -93,8 +94,8 @@ enum {
  * follow */
 enum {
   TEGOTAE_SHM_CLUTCH_NONE = 0,        /**< it follows all of it */
-  TEGOTAE_SHM_CLUTCH_TRANSLATION = 1, /**< turns with the pen, stays in its place */
-  TEGOTAE_SHM_CLUTCH_ALL = 2          /**< does not move */
+  TEGOTAE_SHM_CLUTCH_TRANSLATION = 1, /**< the part turns with the pen but stays in its place */
+  TEGOTAE_SHM_CLUTCH_ALL = 2          /**< the part does not move */
 };
 
 /** tegotae_shm_statistics.realtime: what the system granted to the servo's thread */
@@ -116,7 +117,7 @@ enum {
 struct tegotae_shm_device {
   int64_t heartbeat_ns;             /**< time of the servo tick */
   uint64_t tick;                    /**< number of the servo tick, from 0 */
-  int64_t time_ns;                  /**< when the pen was sampled (a simulated device in virtual time: its own clock) */
+  int64_t time_ns;                  /**< time of the pen's sample (in virtual time, of the device's own clock) */
   uint64_t sequence;                /**< number of the pen's sample */
   uint32_t status;                  /**< TEGOTAE_SHM_STATUS_... */
   uint32_t reason;                  /**< TEGOTAE_SHM_REASON_... */
@@ -138,12 +139,12 @@ struct tegotae_shm_device {
   uint32_t home_counter;            /**< the application's last home command that the servo executed */
   double force_limit;               /**< N, upper bound of the rendered force */
   double torque_limit;              /**< N*m, upper bound of the rendered torque */
-  double continuous_force;          /**< N, which the motors can sustain; 0: unbounded */
+  double continuous_force;          /**< N, force that the motors can sustain; 0: unbounded */
   double stiffness_limit;           /**< N/m, the stiffest passive coupling of this device and rate; 0: not known */
-  double torsional_stiffness_limit; /**< N*m/rad, the same */
-  double thermal_load;              /**< running RMS of the force over continuous_force, 1: all that is allowed; or 0 */
-  double energy;                    /**< J that the hand has put into the coupling, less what it got back */
-  int64_t attachment;               /**< that of the application that the servo serves; 0: none yet */
+  double torsional_stiffness_limit; /**< N*m/rad, the same for rotations */
+  double thermal_load; /**< running RMS of the force divided by continuous_force: up to 1; 0 if unbounded */
+  double energy;       /**< J that the hand has put into the coupling, less what it got back */
+  int64_t attachment;  /**< the one of the application that the servo serves; 0: none yet */
 };
 
 /** A constraint that holds the part back: its point `point` may move against `normal` by at most `clearance`. */
@@ -159,24 +160,24 @@ struct tegotae_shm_application {
   int64_t heartbeat_ns;     /**< time of writing */
   uint64_t tick;            /**< number of the contact loop's tick */
   uint64_t device_sequence; /**< the pen's sample that this tick answered */
-  int64_t attachment;       /**< when this application attached, monotonic ns: another value is another application */
+  int64_t attachment;       /**< time when this application attached, ns: another value is another application */
   uint32_t touching;        /**< nonzero: at least one contact; otherwise the wrench is the load */
   uint32_t enable;          /**< nonzero: the application asks for force */
-  uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: what the part does not follow now */
+  uint32_t clutch;          /**< TEGOTAE_SHM_CLUTCH_...: motion of the pen that the part does not follow now */
   uint32_t home_counter; /**< a new value other than 0 makes Y jump to the home pose; begins at 0 in each attachment */
   double position[3];    /**< of the held part's file frame (the proxy X) */
   double orientation[4]; /**< of the same */
   double velocity[3];    /**< of the held part's center of mass */
   double angular_velocity[3]; /**< of the same */
   double center[3];           /**< center of mass of the held part, in its file frame */
-  double stiffness;           /**< N/m, which the hand feels at any scale */
+  double stiffness;           /**< N/m, as the hand feels it at any scale */
   double damping;             /**< N*s/m */
   double torsional_stiffness; /**< N*m/rad */
   double torsional_damping;   /**< N*m*s/rad */
   double scale;               /**< meters of the world for a meter of the pen, from 0.01 to 100 */
   double home_position[3];    /**< of the held part's file frame */
   double home_orientation[4]; /**< of the same */
-  double load_force[3];       /**< N, weight and guide, on the pen at the held part's center of mass; 0: none */
+  double load_force[3];       /**< N, of weight and guide, on the pen at the held part's center of mass; 0: none */
   double load_torque[3];      /**< N*m, of the same about that center */
   double pen_position[3];     /**< Y that this tick answered */
   double pen_orientation[4];  /**< of the same */
@@ -195,7 +196,7 @@ struct tegotae_shm_statistics {
   double compute_us[4];                    /**< the servo's own work in a tick: p50, p99, p99.9, maximum */
   uint32_t realtime;                       /**< TEGOTAE_SHM_REALTIME_..., added */
   int32_t cpu;                             /**< CPU to which the thread is bound; -1: none */
-  uint64_t force_off[TEGOTAE_SHM_REASONS]; /**< by reason: how often the force went off, or stayed off for it */
+  uint64_t force_off[TEGOTAE_SHM_REASONS]; /**< by reason: how often the force went off, or stayed off, for it */
   double recent_late_us;                   /**< the largest lateness since the statistics before these */
 };
 
@@ -208,8 +209,8 @@ struct tegotae_shm_segment {
   uint32_t version;     /**< TEGOTAE_SHM_VERSION */
   uint32_t size;        /**< bytes of the whole segment */
   uint64_t owner_pid;   /**< the process that created it */
-  int64_t created_ns;   /**< when */
-  uint64_t owner_start; /**< when that process started, to tell a reused process id apart: clock ticks since
+  int64_t created_ns;   /**< time of its creation */
+  uint64_t owner_start; /**< start of that process, which distinguishes a reused process id: clock ticks since
                            boot (field 22 of /proc/PID/stat); 0: not known */
 
   TEGOTAE_SHM_ALIGN uint64_t device_counter;              /**< sequence counter of the slot that follows */
@@ -244,8 +245,8 @@ TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, application_counter) == 
 TEGOTAE_SHM_ASSERT(offsetof(struct tegotae_shm_segment, statistics_counter) == 1280, "layout of tegotae_shm_segment");
 TEGOTAE_SHM_ASSERT(sizeof(struct tegotae_shm_segment) == 1600, "layout of tegotae_shm_segment");
 
-/** Attempts of a read before it gives up. A write takes well under a microsecond. A reader that still fails has met a
- * writer that was preempted or killed in the middle, and continues with what it read last. */
+/** Attempts of a read before it gives up. A write takes well under a microsecond. When all attempts fail, the writer
+ * was preempted or killed during a write, and the reader continues with what it read last. */
 #define TEGOTAE_SHM_READ_ATTEMPTS 64
 
 /** Writes `bytes` (a multiple of 8) of `payload` into a slot. Only the slot's one writer may call it. */

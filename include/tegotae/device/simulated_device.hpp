@@ -31,29 +31,32 @@ struct SimulatedDeviceSettings {
   Vec3 inertia = Vec3(1.2e-4, 1.2e-4, 0.4e-4);  ///< about the center of mass along the file frame's axes, kg·m²
   double friction = 0.04;                       ///< Coulomb, N
   WrenchLimits limits;                          ///< bounds of the rendered wrench, whatever the application asks for
-  double continuous_force = 1.4;                ///< N, which the motors can sustain; 0: unbounded
-  double position_resolution = 3e-5;            ///< m, of the center of mass; 0 for none
-  double rotation_resolution = 1e-4;            ///< rad; 0 for none
-  double velocity_cutoff_hz = 50.0;  ///< of the low-pass filter on the velocity that follows from the steps of the pose
+  double continuous_force = 1.4;                ///< N, force that the motors can sustain; 0: unbounded
+  double position_resolution = 3e-5;            ///< m, of the center of mass; 0: none
+  double rotation_resolution = 1e-4;            ///< rad; 0: none
+  /// Cutoff (Hz) of the low-pass filter on the velocity, which is computed from the steps of the pose.
+  double velocity_cutoff_hz = 50.0;
   bool wall_clock = false;  ///< read() advances by the time since the last read(); otherwise only advance() does
-  /// On the wall clock: the hand waits at the script's first pose until an application attaches.
+  /// On the wall clock, the hand waits at the script's first pose until an application attaches.
   bool wait_for_application = false;
 };
 
-/// Returns DeviceInfo of a SimulatedDevice with these settings.
+/// Returns the DeviceInfo of a SimulatedDevice with `settings`.
 DeviceInfo device_info(const SimulatedDeviceSettings& settings);
 
 /// A pen without hardware: a rigid body that a hand and the rendered wrench push. The hand follows a script or an
-/// operator's intent. The same settings, script and calls give the same bits.
+/// InputSource. The same settings, script and calls give the same bits.
 class SimulatedDevice final : public Device {
  public:
-  /// Starts at rest at the script's first pose. Throws Error for a setting that is not finite or out of range.
+  /// Starts at rest at the script's first pose. `center` is the held part's center of mass (m, file frame). Throws
+  /// Error (kind setting) for a setting that is not finite or out of range.
   SimulatedDevice(const SimulatedDeviceSettings& settings, StylusScript script, const Vec3& center = Vec3::Zero());
-  /// Starts at rest where `hand` begins. Keeps a reference to it, which must outlive the device.
+  /// Starts at rest at the pose where `hand` begins. Keeps a reference to `hand`, which must outlive the device. Throws
+  /// Error like the other constructor.
   SimulatedDevice(const SimulatedDeviceSettings& settings, InputSource& hand, const Vec3& center = Vec3::Zero());
   ~SimulatedDevice() override;
 
-  /// Returns its properties. The damping is the hand's, because the hand never lets go.
+  /// Returns its properties. Their damping is the hand's, because the hand never lets go.
   DeviceInfo info() const override;
   void start() override;
   void stop() override;
@@ -67,17 +70,16 @@ class SimulatedDevice final : public Device {
       const Displacement& lead) noexcept override;  ///< a call shows that an application is attached
   void use_wall_clock(bool on) noexcept override;   ///< sets SimulatedDeviceSettings::wall_clock
 
-  /// Makes the hand follow `guide` from its first InputGuide::lead() on, and no longer the script. Call it before
-  /// start(); keeps a reference.
+  /// Makes the hand follow `guide`, and no longer the script, from the first InputGuide::lead() on. Call it before
+  /// start(). Keeps a reference to `guide`, which must outlive the device.
   void follow(const InputGuide& guide) noexcept;
-  /// Advances by `dt` seconds (rounded to 1 ns) of virtual time. It does so before start() too, because the hand is
-  /// there.
+  /// Advances by `dt` seconds (rounded to 1 ns) of virtual time, also before start().
   void advance(double dt) noexcept override;
-  /// Returns the hand's time, s: the begin of the script plus the time advanced. Any thread may call it.
+  /// Returns the time of the hand, s: the begin of the script plus the time advanced. Any thread may call it.
   double script_time() const noexcept;
-  /// Return the exact pose and velocity (v of the center of mass), before resolution and filter.
+  /// Returns the exact pose X_WF, before resolution and filter.
   Pose true_pose() const noexcept;
-  Twist true_velocity() const noexcept;  ///< m/s and rad/s, world
+  Twist true_velocity() const noexcept;  ///< exact velocity: `v` of the center of mass (m/s) and `w` (rad/s), world
 
  private:
   struct Impl;

@@ -12,7 +12,7 @@ namespace tegotae TEGOTAE_EXPORT {
 /// Whether the contact loop keeps the held part out of a fixed part that it touched or overlapped at the start.
 enum class InitialContactState : std::uint8_t {
   active,   ///< yes
-  shrunk,   ///< out of a copy of the fixed part that is smaller by InitialContact::inward_offset
+  shrunk,   ///< it keeps it out of a copy that is smaller by InitialContact::inward_offset
   filtered  ///< no
 };
 
@@ -25,15 +25,15 @@ struct InitialContact {
   Clash clash;               ///< at the held part's pose in the scene: touch or overlap, gap or depth, place
   double inward_offset = 0;  ///< m: how far the fixed part's faces are moved inward while the pair is shrunk
   InitialContactState state = InitialContactState::active;  ///< after the last tick
-  /// Order in which the pairs separated, counted from 1 over those that did after the first tick began. 0: before;
-  /// kNotYet: not yet.
+  /// Order in which the pairs separated, counted from 1 over those that separated after the first tick began. 0:
+  /// separated before; kNotYet: not separated yet.
   std::uint32_t freed = 0;
 };
 
 /// How the held part starts, and the state of its initial contacts since.
 struct InitialContactReport {
-  std::vector<InitialContact> pairs;  ///< pairs that were not free, in the order of the scene's parts
-  /// m: to separate the pairs that touch, the loop moved the held part; no point of the part moved farther than this.
+  std::vector<InitialContact> pairs;  ///< pairs that were not free at the start, in the order of the scene's parts
+  /// m: how far any point of the held part moved at most when the loop separated the pairs that touch.
   double shift = 0;
 };
 

@@ -17,16 +17,18 @@ enum class ChangeState : std::uint8_t {
   canceled     ///< it was canceled while it was pending
 };
 
-/// A change of a running scene (HapticLoop::change, Rig::change). Copies refer to the same change. Any thread may make
-/// any call, also after the loop is gone.
+/// Handle of a change of a running scene (HapticLoop::change, Rig::change). Copies refer to the same change. Any thread
+/// may make any call, also after the loop is gone.
 class SceneChange {
  public:
-  std::uint64_t number() const noexcept;  ///< from 1 on; the number of a canceled change is used again
-  ChangeState state() const noexcept;     ///< its present state
+  /// Returns the number of the change, from 1 on. The number of a canceled change is used again.
+  std::uint64_t number() const noexcept;
+  ChangeState state() const noexcept;  ///< returns its present state
   /// Waits for at most `seconds` until the change is no longer pending, and returns its state. Another thread must step
   /// the loop meanwhile.
   ChangeState wait(double seconds) const;
-  /// Cancels the change. Returns false when it is no longer pending. Waits while another change is being built.
+  /// Cancels the change. Returns false, and does nothing, when the change is no longer pending or the loop is gone.
+  /// Waits while another change is being built.
   bool cancel();
   const InitialContactReport& start() const noexcept;  ///< how the held part starts in the changed scene
 

@@ -21,8 +21,8 @@ struct alignas(64) LaneBlock {
   double v[kRowLanes];  ///< by row
 };
 
-/// N×6 matrix G of fixed capacity: the rows of G x >= d. The length of x counts in the metric of x: for a rigid body
-/// with contact Jacobian J and mass matrix M, G = J M^(-1/2) and x = M^(1/2) δ. Filling the matrix never allocates.
+/// N×6 matrix G of fixed capacity: the rows of G x >= d. Lengths of x are in the metric of x: for a rigid body with
+/// contact Jacobian J and mass matrix M, G = J M^(-1/2) and x = M^(1/2) δ. Filling the matrix never allocates.
 class LowRankMatrix {
  public:
   /// Makes an empty matrix for up to `capacity` rows. No other call allocates.
@@ -50,7 +50,7 @@ class LowRankMatrix {
   /// Returns the rows in blocks of eight. Entries beyond rows() in the last block have no meaning.
   const RowBlock* blocks() const noexcept { return blocks_.data(); }
 
-  /// Returns row `i` of rows().
+  /// Returns row `i`, from 0 to rows() - 1.
   Vec6 row(int i) const noexcept {
     const RowBlock& block = blocks_[static_cast<std::size_t>(i / kRowLanes)];
     Vec6 g;

@@ -6,8 +6,8 @@
 namespace tegotae TEGOTAE_EXPORT {
 
 /// Returns `mesh` welded: merges bit-equal vertices, then those within one step of single precision at the largest
-/// coordinate (3 nm at 25 mm), and drops unused ones. Count and order of the faces stay; a face whose corners merged is
-/// still there.
+/// coordinate (3 nm at 25 mm), and drops unused vertices. Number and order of the faces stay, also of faces whose
+/// corners merged.
 TriangleMesh weld(const TriangleMesh& mesh);
 
 }  // namespace tegotae

@@ -11,8 +11,8 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// How an operator works. A figure without a named source is an assumption of ours, chosen so that the three profiles
-/// span what people do with a pen.
+/// How an operator works. A figure without a named source is our assumption. We chose the figures so that the three
+/// profiles span the range of people with a pen.
 struct OperatorProfile {
   std::string name;   ///< "careful", "average", "hasty"
   HandSettings hand;  ///< mass, stiffness and damping of the grip
@@ -33,9 +33,9 @@ struct OperatorProfile {
   double wiggle;           ///< tilt of the first wiggle, rad; later ones grow
 };
 
-/// The three profiles: "careful", "average", "hasty".
+/// Returns the three profiles: "careful", "average", "hasty".
 const std::vector<OperatorProfile>& operator_profiles();
-/// Returns the profile of that name. Throws Error for an unknown one.
+/// Returns the profile of that name. Throws Error (kind setting) for an unknown one.
 const OperatorProfile& operator_profile(const std::string& name);
 
 /// Task of an operator: bring the tip of the held part to a hole, and push the part in along the hole's axis.
@@ -44,11 +44,11 @@ struct InsertionTask {
   Pose goal;                     ///< X_WF of the part when it is fully inserted
   Vec3 tip = Vec3::Zero();       ///< of the part, m, file frame
   Vec3 inward = -Vec3::UnitZ();  ///< unit vector along the hole, world
-  double depth = 0;              ///< of the goal's tip below the surface that the hole is in, m
+  double depth = 0;              ///< m, depth of the goal's tip below the surface that the hole is in
   double hover = 4e-3;           ///< height over the surface from which the operator brings the tip down, m
   Vec3 offset = Vec3::Zero();    ///< added to the tip's first target, m, world, across `inward`
   Vec3 tilt = Vec3::Zero();      ///< added to the part's first orientation, rotation vector, rad, world
-  bool own_errors = true;        ///< whether the profile's aim_error and tilt_error are added to those two
+  bool own_errors = true;        ///< adds the profile's aim_error and tilt_error to these two
 };
 
 /// A model of a person at a simulated pen. The model carries the part over the hole on a minimum-jerk path and brings
@@ -58,18 +58,18 @@ struct InsertionTask {
 /// give the same bits.
 class Operator final : public InputSource {
  public:
-  /// Throws Error for an impossible task or profile.
+  /// Throws Error (kind setting) for an impossible task or profile.
   Operator(const OperatorProfile& profile, const InsertionTask& task, std::uint64_t seed);
   ~Operator() override;
 
-  /// Shows the operator where the held part is (X_WF) at `t` (s). It acts on it `visual_delay` later.
+  /// Shows the operator where the held part is (X_WF) at `t` (s). The operator responds `visual_delay` later.
   void see(double t, const Pose& X) noexcept;
 
   double begin() const noexcept override { return 0; }
   Pose start() const noexcept override;
   HandTarget target(double t, const Pose& pen) noexcept override;
 
-  /// Returns whether it wiggles because it makes no progress.
+  /// Returns whether the operator wiggles because it makes no progress.
   bool stuck() const noexcept;
 
  private:

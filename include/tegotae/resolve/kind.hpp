@@ -12,16 +12,16 @@ namespace tegotae TEGOTAE_EXPORT {
 /// baselines for comparison; each is a loop of its own and solves no program.
 enum class ResolverKind : std::uint8_t {
   qp,       ///< least energy of the coupling's springs
-  lp,       ///< the paper's linear program: least sum of contact forces
-  impulse,  ///< collisions one at a time
-  penalty   ///< springs in proportion to penetration; the only one in which parts interpenetrate
+  lp,       ///< linear program of the paper (equations 5 to 7): least sum of contact forces
+  impulse,  ///< collisions one at a time, by impulses (Mirtich and Canny, 1995)
+  penalty   ///< springs in proportion to penetration (McNeely et al., 1999); the only one in which parts interpenetrate
 };
 
 /// Returns the names of the kinds in scene files, recordings and on command lines: "qp", "lp", "impulse", "penalty".
 const std::vector<std::string>& resolver_names();
 /// Returns the name of `kind`.
 const std::string& to_string(ResolverKind kind);
-/// Returns the kind of that name. For an unknown name it throws Error, which lists the known ones.
+/// Returns the kind of that name. Throws Error, which lists the known names, for an unknown name.
 ResolverKind resolver_kind(const std::string& name);
 
 }  // namespace tegotae

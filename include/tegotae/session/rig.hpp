@@ -27,8 +27,8 @@ enum class RigClock : std::uint8_t {
 /// How a Rig runs.
 struct RigSettings {
   RigClock clock = RigClock::real;  ///< source of its time
-  double period = 1e-3;             ///< s between two steps: exactly, in simulated time; at least, in run()
-  ServoSettings servo = {};         ///< for a device in this process
+  double period = 1e-3;             ///< s between two steps, 1e-5 to 1: exactly, in simulated time; at least, in run()
+  ServoSettings servo = {};         ///< servo of a device in this process
 };
 
 /// A scene, a pen, and everything between them: servo, shared memory, contact loop. The pen carries the held part, the
@@ -39,25 +39,27 @@ struct RigSettings {
 class Rig {
  public:
   /// Uses a device in this process. Keeps a reference to it, and calls it until stop(). With RigClock::simulated,
-  /// ContactSettings::tick_budget has no effect: work alone bounds a tick. Throws Error as HapticLoop and Servo do.
+  /// ContactSettings::tick_budget has no effect: only the amount of work bounds a tick. Throws Error as HapticLoop
+  /// does, and for a period or scale out of range (kind setting).
   Rig(const Scene& scene, Device& device, const RigSettings& settings = {});
-  /// Uses the device of another process, "shm:NAME" (see Attachment). Throws Error when there is none, and as
-  /// HapticLoop does.
+  /// Uses the device of another process, "shm:NAME" (see Attachment). Throws Error (kind device) when there is none,
+  /// and as HapticLoop does.
   Rig(const Scene& scene, const std::string& device);
   ~Rig();  ///< stops
   Rig(const Rig&) = delete;
   Rig& operator=(const Rig&) = delete;
 
-  /// Starts the device and its servo. Throws Error with the cause.
+  /// Starts the device and its servo. Has no effect on a rig that runs. Throws Error as Device::start and Servo do,
+  /// also for a servo setting out of range.
   void start();
-  /// Switches the force off, and stops servo and device. No effect when they do not run. Throws Error as Device::stop
-  /// does.
+  /// Switches the force off, and stops servo and device. Has no effect when they do not run. Throws Error as
+  /// Device::stop does.
   void stop();
 
   /// Runs one tick: reads the pen, moves the held part as near to it as the others allow, and publishes the result to
   /// the servo. Returns the report, valid until the next call. When there is no pen to read (another process's device
   /// is gone), the part stays where it is, and the report is that of the last tick. Never allocates or throws. Call it
-  /// between start() and stop().
+  /// between start() and stop(); otherwise it only returns the last report.
   const TickReport& step() noexcept;
   /// Steps until `seconds` after start(), or until request_stop(). Calls `after_step(*this)` after each step. In real
   /// time it steps at most once a period, in the calling thread, which meanwhile has real-time priority where the
@@ -78,32 +80,36 @@ class Rig {
   /// thread may call it. Throws Error when the loop cannot hold the scene; then nothing changes.
   SceneChange change(Scene next);
 
-  /// Pulls the hand gently along `path` from the next step on: poses X_WF of the held part's file frame, as read_path()
-  /// gives them. It pulls along the path where that is nearest to the pen, and beside it also back; from 10 mm off the
-  /// path on it fades, beyond 20 mm (lengths of the hand) there is none. The pull is at most 1 N, and where
-  /// WeightSettings::max_force is set no more than that less half of the weight; it never moves the part into another
-  /// one. It comes over 0.3 s, and what pulled before goes as fast. No poses, and another held part, end it. Needs the
-  /// resolver "qp"; throws Error with another one. Allocates: call it between two steps, in their thread.
+  /// Pulls the hand gently along `path` from the next step on. `path` has poses X_WF of the held part's file frame, as
+  /// read_path() returns them. No poses end the pull, and so does another held part.
+  ///
+  /// The pull is along the path at its place nearest to the pen, and beside the path also back to it. It fades from 10
+  /// mm off the path on, and ends at 20 mm (lengths of the hand). It is at most 1 N. Where WeightSettings::max_force is
+  /// set, it is also at most that force less half of the weight. It comes on over 0.3 s, and an earlier pull goes off
+  /// in the same time. It never moves the part into another one.
+  ///
+  /// Needs the resolver "qp" or a custom one; throws Error (kind setting) with another one. Allocates: call it between
+  /// two steps, in their thread.
   void guide(const std::vector<Pose>& path);
 
-  double time() const noexcept;           ///< s since start(), as of the last step
-  std::uint64_t steps() const noexcept;   ///< made since start()
+  double time() const noexcept;           ///< time of the last step, s since start()
+  std::uint64_t steps() const noexcept;   ///< number of steps since start()
   Pose part() const noexcept;             ///< X of the held part's file frame, to draw it; any thread may call it
   const PenSample& pen() const noexcept;  ///< the sample that the last step answered, with the newest rendered wrench
-  bool connected() const noexcept;        ///< the pen was there in the last step
-  const TickReport& report() const;       ///< of the last step; before the first one, of the start
+  bool connected() const noexcept;        ///< whether there was a pen in the last step
+  const TickReport& report() const;       ///< report of the last step; before the first one, of the start
   const std::vector<ContactPoint>& contacts() const;        ///< as HapticLoop::contacts
   const std::vector<ContactEvent>& contact_events() const;  ///< as HapticLoop::contact_events
   const InitialContactReport& start_report() const;   ///< what the held part touched at the start, as HapticLoop::start
   const HapticLoop& loop() const noexcept;            ///< everything else that the contact loop reports
-  ServoStatistics servo_statistics() const noexcept;  ///< of the servo, since start()
-  std::string missing_realtime()
-      const;  ///< what the system did not grant to the servo or to run(); empty: it granted everything
-  std::string stability() const;  ///< StabilityReport::text() of a device in this process, for people
+  ServoStatistics servo_statistics() const noexcept;  ///< statistics of the servo since start()
+  /// Returns what the system did not grant to the servo or to run(), in one line; empty: it granted everything.
+  std::string missing_realtime() const;
+  std::string stability() const;  ///< StabilityReport::text() of a device in this process; empty for another process's
 
  private:
   struct State;
-  /// While it lives the calling thread has the contact loop's priority.
+  /// While it lives, the calling thread has the contact loop's priority.
   class Pace {
    public:
     explicit Pace(Rig& rig);

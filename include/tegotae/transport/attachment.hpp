@@ -11,21 +11,22 @@
 
 namespace tegotae TEGOTAE_EXPORT {
 
-/// An application's attachment to a device in another process (tegotae-device, or a custom driver). It outlives the
-/// device: while there is none, read() returns false and the application keeps the part where it is; then the object
-/// attaches to the next device of that name. Use it in one thread, the contact loop's.
+/// Attachment of an application to a device in another process (tegotae-device, or a custom driver). It outlives the
+/// device. While there is no device, read() returns false and the application keeps the part where it is. Then the
+/// object attaches to the next device of that name. Use it in one thread, the contact loop's.
 ///
 /// When it attaches, the pen's present pose maps to the held part's present pose, so that nothing jumps.
 class Attachment {
  public:
   /// `device` is "shm:NAME" with the name of the segment; the other parameters are those of ContactLink. Throws Error
-  /// when there is no such device, when another application is attached to it, and when `scale` is out of range (see
-  /// ContactLink::set_scale).
+  /// (kind device) when there is no such device or another application is attached to it, and Error (kind setting) when
+  /// `scale` is out of range (see ContactLink::set_scale).
   Attachment(const std::string& device, const CouplingSettings& coupling, const Vec3& center, double scale = 1);
 
   /// Reads the newest sample of the pen. Returns false, and leaves `pen` unchanged, when there is none to follow: the
-  /// device's heartbeat is older than 20 ms, its process is gone, or it has not yet adopted the part's pose. While the
-  /// device is lost, the call searches for it ten times a second; only then may the call take longer or allocate.
+  /// device's heartbeat is older than 20 ms at `now_ns` (monotonic clock), its process is gone, or it has not yet
+  /// adopted the part's pose. While the device is lost, the call searches for it ten times a second; only then may it
+  /// take longer or allocate.
   bool read(PenSample& pen, std::int64_t now_ns) noexcept;
   /// Publishes as ContactLink::publish does. Call it once a tick, whatever read() returned, because it is the
   /// heartbeat.

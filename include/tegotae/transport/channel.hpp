@@ -15,24 +15,24 @@ class Segment;
 class ChannelReader {
  public:
   /// Opens an existing segment for reading, whether or not others use it. `name` is a POSIX shared-memory name such as
-  /// "/tegotae-pen"; the slash is optional. Throws Error unless the segment belongs to this user, no other user may
-  /// open it, its size, magic and version are those of this library, and its device's process lives.
+  /// "/tegotae-pen"; the slash is optional. Throws Error (kind device) unless the segment belongs to this user, no
+  /// other user may open it, its size, magic and version are those of this library, and its device's process lives.
   static ChannelReader open(const std::string& name);
 
   ~ChannelReader();
   ChannelReader(ChannelReader&&) noexcept;  ///< afterwards the other one may only be destroyed or assigned to
   ChannelReader& operator=(ChannelReader&&) noexcept;  ///< as the constructor; releases its own segment
 
-  const std::string& name() const noexcept;  ///< with the slash
+  const std::string& name() const noexcept;  ///< name with the slash
   std::uint64_t owner_pid() const noexcept;  ///< process id of the device
-  std::int64_t created_ns()
-      const noexcept;  ///< time of creation, monotonic clock; distinguishes a segment from its successor
+  /// Returns the time of creation, ns, monotonic clock. It distinguishes a segment from its successor.
+  std::int64_t created_ns() const noexcept;
 
   /// Reads the newest complete write of the device. Returns false, and leaves `payload` unchanged, when the device has
   /// not written yet or is stuck in a write. Never waits, allocates or throws.
   bool read(tegotae_shm_device& payload) const noexcept;
-  bool read(tegotae_shm_application& payload) const noexcept;  ///< the same, of the application
-  bool read(tegotae_shm_statistics& payload) const noexcept;   ///< the same, of the servo about itself
+  bool read(tegotae_shm_application& payload) const noexcept;  ///< the same for the application
+  bool read(tegotae_shm_statistics& payload) const noexcept;   ///< the same for the statistics of the servo
 
  protected:
   explicit ChannelReader(std::unique_ptr<Segment> segment);  ///< takes a mapped segment
@@ -42,19 +42,19 @@ class ChannelReader {
 /// One end of a segment. The device's side creates the segment, the application attaches to it.
 class Channel : public ChannelReader {
  public:
-  /// Creates a segment that only this user may open. With an empty name the library makes one that is unique to this
-  /// process. The call replaces a segment that a dead process left, and refuses to replace that of a living one. It
-  /// also removes segments with such made names that killed processes left. The destructor of Channel removes the
-  /// segment. Throws Error with the cause.
+  /// Creates a segment that only this user may open. With an empty name the library generates one that is unique to
+  /// this process. The call replaces a segment that a dead process left, and refuses to replace that of a living one.
+  /// It also removes segments that killed processes left under generated names. The destructor of Channel removes the
+  /// segment. Throws Error (kind device) with the cause.
   static Channel create(const std::string& name = {});
-  /// Attaches an application; a segment has one at a time. Throws Error as ChannelReader::open does, and when another
-  /// application is attached.
+  /// Attaches an application; a segment has at most one. Throws Error (kind device) as ChannelReader::open does, and
+  /// when another application is attached.
   static Channel attach(const std::string& name);
 
-  /// Writes the slot whose only writer is the device's servo. Never waits, allocates or throws.
+  /// Writes the slot of the device. Its only writer is the device's servo. Never waits, allocates or throws.
   void write(const tegotae_shm_device& payload) noexcept;
-  void write(const tegotae_shm_application& payload) noexcept;  ///< the same; the writer is the application
-  void write(const tegotae_shm_statistics& payload) noexcept;   ///< the same; the writer is the servo
+  void write(const tegotae_shm_application& payload) noexcept;  ///< the same; the only writer is the application
+  void write(const tegotae_shm_statistics& payload) noexcept;   ///< the same; the only writer is the servo
 
  private:
   using ChannelReader::ChannelReader;

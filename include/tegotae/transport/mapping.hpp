@@ -10,14 +10,14 @@ namespace tegotae TEGOTAE_EXPORT {
 
 /// Which part of the pen's motion the held part does not follow.
 enum class Clutch : std::uint32_t {
-  none = TEGOTAE_SHM_CLUTCH_NONE,
+  none = TEGOTAE_SHM_CLUTCH_NONE,                ///< the part follows all of it
   translation = TEGOTAE_SHM_CLUTCH_TRANSLATION,  ///< the part turns with the pen but stays in its place
   all = TEGOTAE_SHM_CLUTCH_ALL,                  ///< the part does not move
 };
 
 /// Effect of the pen's buttons on the mapping from pen to part.
 struct MappingSettings {
-  std::uint32_t clutch_buttons = 0;       ///< while one of these is pressed, the pen is clutched; 0: no button clutches
+  std::uint32_t clutch_buttons = 0;       ///< bit i: button i clutches the pen while it is pressed; 0: no button does
   Clutch clutch_by_button = Clutch::all;  ///< which part of the motion they clutch
 };
 

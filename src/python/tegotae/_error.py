@@ -1,15 +1,16 @@
-"""What is raised for bad input and for set-up that fails."""
+"""The exception of bad input and failed set-up steps."""
 
 
 class Error(RuntimeError):
-    """Bad input or a failed set-up step: a file, a scene, a setting, a device.
+    """Bad input or a failed set-up step (a file, a scene, a setting, a device).
 
-    Its text is one line that names the file, line, key or part, what is wrong with it and, where it helps, what to do.
+    The text is one line. It names the file, line, key or part, says what is wrong and, where it helps, what to do.
 
     Attributes
     ----------
     kind : str
-        "file", "setting", "overlap", "device" or "other".
+        "file" (absent, damaged, or with impossible content), "setting" (a value is out of range), "overlap" (parts
+        intersect at the start), "device" (it cannot be reached, or another application uses it) or "other".
     file : str
         Path; empty: none.
     line : int

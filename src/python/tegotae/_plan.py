@@ -1,4 +1,4 @@
-"""A path by which a part comes out of an assembly, or goes to a goal."""
+"""Plans: a path by which a part leaves an assembly or reaches a goal."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from ._tegotae import Scene, SceneFile, plan_columns
 
 @dataclass(frozen=True)
 class Plan:
-    """What a planner found. Arrays are in the order of C, may be written, and belong to nobody else.
+    """Result of plan(). Its arrays are C-contiguous and writable, and share no memory with others.
 
     Attributes
     ----------
     found : bool
-        There is a path, and it is proved free.
+        Whether there is a path. The whole path is proved free.
     path : (n, 4, 4) float64
-        X, m: where the held part's own frame goes, a row every 10 ms at 20 mm/s. Without a solution: the way to the
-        farthest pose that was reached.
+        Poses X_WF of the held part's own frame, m, every 10 ms at 20 mm/s. Without a solution: the path to the farthest
+        pose that the search reached.
     t : (n,) float64
-        s, of each pose.
+        Time of each pose, s.
     clearance : float
-        m: the whole path is proved to leave this much to every other part; 0 without a solution.
+        Clearance to every other part that is proved for the whole path, m; 0 without a solution.
     distance : (n,) float64
-        m, measured: from the pose to the nearest part.
+        Measured distance from each pose to the nearest part, m; inf when there is none.
     part : (n,) int32
-        Number of that part, index into `parts`; -1: there is none.
+        Number of that part, an index into `parts`; -1: there is none.
     parts : list of str
-        Names of the scene's parts, by their numbers.
+        Names of the scene's parts, in the order of their numbers.
     in_the_way : dict of str to int
-        How many motions of the search each part stopped, those that stopped most first.
+        Number of motions of the search that each part stopped, the largest first.
     summary : dict
-        As `tegotae plan --json`.
+        The same as `tegotae plan --json`.
     """
 
     found: bool
@@ -62,35 +62,35 @@ def plan(
     seconds: float | None = None,
     to: str | os.PathLike[str] | None = None,
 ) -> Plan:
-    """Looks for a path of the held part, as `tegotae plan` does.
+    """Searches for a path of the held part, as `tegotae plan` does.
 
-    The planner is in this process and no file is written without `to`. Other Python threads go on meanwhile; plans of
-    several threads are made one after the other. Ctrl-C ends it with KeyboardInterrupt.
+    The planner runs in this process. It writes files only when `to` is given. Other Python threads continue meanwhile;
+    calls of plan() from several threads run one after the other. Ctrl-C ends the call with KeyboardInterrupt.
 
     Parameters
     ----------
     scene : str, os.PathLike, SceneFile or Scene
-        A scene file, or a scene in memory, which stays as it is.
+        A scene file, or a scene in memory, which does not change.
     hold : str, optional
-        Name of the part that is to move; None: the scene's held one.
+        Name of the part to move; None: the scene's held part.
     goal : (4, 4) array of float, optional
-        Where its own frame is to go, m; None: out of all other parts.
+        Goal pose X_WF of that part's own frame, m; None: free of all other parts.
     clearance : float
-        m, that the path is to leave at least.
+        Smallest clearance that the path must leave, m; 0: what the contact loop leaves, 1.1 um.
     seed : int
         The same seed, scene and build give the same path, unless `seconds` ends the search.
     iterations : int, optional
-        Of the search, at most; None: 20 000, or any number where `seconds` is given.
+        Largest number of iterations of the search; None: 20 000, or unbounded when `seconds` is given.
     seconds : float, optional
-        s, that the search may take; None: only iterations end it.
+        Time that the search may take, s; None: only `iterations` ends it.
     to : str or os.PathLike, optional
-        Folder that gets what the program writes: path.csv, path.glb, script.csv, recording.csv, plan.json. The scene is
-        then one of a file, which the recording names.
+        Folder for the files that `tegotae plan` writes: path.csv, path.glb, script.csv, recording.csv, plan.json. The
+        scene must then come from a file, because the recording names it.
 
     Returns
     -------
     Plan
-        Also when none was found: what is in the way, and how far it got.
+        Also without a solution: it then says what is in the way, and how far the search got.
 
     Raises
     ------

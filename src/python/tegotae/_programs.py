@@ -1,4 +1,4 @@
-"""Where the programs are that come with the package."""
+"""Paths of the programs that come with the package."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from ._error import Error
 
 
 def program(name: str) -> str:
-    """Path of the program `name`: where this Python's scripts are, else in PATH. Raises Error when it is not there."""
+    """Returns the path of the program `name`: among this Python's scripts, else in PATH.
+
+    Raises Error (kind "file") when neither has it.
+    """
     schemes = [sysconfig.get_default_scheme(), sysconfig.get_preferred_scheme("user")]
     for folder in [sysconfig.get_path("scripts", scheme) for scheme in schemes]:
         path = os.path.join(folder, name)

@@ -1,4 +1,4 @@
-"""What a recording tells about the assembly."""
+"""Reviews: what a recording says about the assembly."""
 
 from __future__ import annotations
 
@@ -14,41 +14,42 @@ from ._tegotae import SceneFile, review_columns
 
 @dataclass(frozen=True)
 class Review:
-    """Does the part go, along which way, how close to what, with how much force.
+    """Result of review(): whether the part reaches its goal, on which path, how close to which part, with what force.
 
-    Arrays are in the order of C, may be written, and belong to nobody else.
+    Its arrays are C-contiguous and writable, and share no memory with others.
 
     Attributes
     ----------
     goes : bool
-        The part gets where it should. False too where nothing can be said: see `outcome`.
+        Whether the part reaches its goal. Also False when the recording does not decide it: see `outcome`.
     outcome : str
-        "goes", "does not go", or "open": there is no goal, it is where the part began, or the recording ends before its
-        script does.
+        "goes", "does not go", or "open": there is no goal, the goal is where the part began, or the recording ends
+        before its script does.
     verdict : str
-        The same in a sentence.
+        The outcome in a sentence.
     evidence : list of str
-        What speaks for it, a line each.
+        Findings behind the verdict, one line each.
     t : (n,) float64
-        s, of each pose that was looked at.
+        Time of each pose that the review examined, s.
     path : (n, 4, 4) float64
-        X, m: where the held part's own frame was.
+        Poses X_WF of the held part's own frame, m.
     clearance : (n,) float64
-        m, distance to the nearest part.
+        Distance to the nearest part, m; inf when there is none.
     part : (n,) int32
-        Number of that part, index into `parts`; -1: there is none.
+        Number of that part, an index into `parts`; -1: there is none.
     parts : list of str
-        Names of the scene's parts, by their numbers.
+        Names of the scene's parts, in the order of their numbers.
     force, torque : (n,) float64
-        N and N m, felt.
+        Magnitudes of the felt force (N) and torque (N m).
     assembly_force : (m,) structured or None
-        Of the assembly over depth, a row for each of 200 segments of the way; nan where the part was not seen moving
-        so. None: the recording has no contact forces (MCAP has those of "qp"). Fields, float64: `depth`, m along the
-        way, the segment's middle; and in N, positive against the motion: `insertion` and `insertion_peak`, mean and
-        largest as it went on; `friction`, what of `insertion` is friction; `seating`, mean as it stood at the deepest;
-        `pull_out` and `pull_out_peak`, mean and largest as it came back.
+        Force of the assembly over depth, one row for each of 200 segments of the path; nan where the part did not move
+        in that way. None: the part did not move, or the recording has no contact forces (MCAP has those of "qp").
+        Fields, float64: `depth` (m along the path, at the middle of the segment); and in N, positive against the
+        motion: `insertion` and `insertion_peak` (mean and largest as the part went in), `friction` (the part of
+        `insertion` that is friction), `seating` (mean as it stood at the deepest place), `pull_out` and `pull_out_peak`
+        (mean and largest as it came back).
     report : str or None
-        Path of the HTML report, where one was asked for.
+        Path of the HTML report; None: none was requested.
     """
 
     goes: bool
@@ -75,24 +76,30 @@ def review(
 ) -> Review:
     """Reports on a recording, as `tegotae review` does.
 
-    It is made in this process on all processors, and no file is written without `report`. Other Python threads go on
-    meanwhile; Ctrl-C ends it with KeyboardInterrupt.
+    The review runs in this process on all processors. It writes a file only when `report` is given. Other Python
+    threads continue meanwhile. Ctrl-C ends the call with KeyboardInterrupt.
 
     Parameters
     ----------
     recording : str or os.PathLike
-        CSV or MCAP, of a run of a scene file.
+        Recording (CSV or MCAP) of a run of a scene file.
     scene : str, os.PathLike or SceneFile, optional
-        Its scene file, or that in memory; None: the one that the recording names.
+        Scene file of that run, by its path or in memory; None: the file that the recording names.
     goal : (4, 4) array of float, optional
-        Where the held part's own frame was to go, m; None: where the scene's script ends.
+        Goal pose X_WF of the held part's own frame, m; None: the goal that the recording names, or else where the
+        scene's script ends.
     report : str or os.PathLike, optional
-        Also write the HTML report here.
+        Path of the HTML report to write.
+
+    Returns
+    -------
+    Review
 
     Raises
     ------
     Error
-        The recording or its scene cannot be used.
+        The recording or its scene cannot be used, or the report cannot be written or would replace a file that was
+        read.
     """
     found = review_columns(recording, scene, goal, report)
     said = json.loads(found["said"])

@@ -1,4 +1,4 @@
-"""Scenes of what was read."""
+"""Scenes made from assemblies."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from ._tegotae import Assembly, Scene
 
 
 def scene_of(assembly: Assembly, hold: str) -> Scene:
-    """A scene of all parts of `assembly`, of which the pen holds the one called `hold`.
+    """Returns a scene with all parts of `assembly`, at their poses. The pen holds the part named `hold`.
 
-    Raises Error when there is no such part; the message names those that there are.
+    Raises Error (kind "setting") when there is no such part; the message lists the names that there are.
     """
     scene = Scene()
     for part in assembly.parts:
