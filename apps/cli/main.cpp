@@ -77,60 +77,30 @@ CLI::App* add_experiment(CLI::App& app, experiments::Options& options) {
   return experiment;
 }
 
-}  // namespace
+/// All commands with their options.
+struct Commands {
+  explicit Commands(CLI::App& app)
+      : run(add_run(app, run_options)),
+        replay(add_replay(app, replay_options)),
+        view(add_view(app, view_options)),
+        check(add_check(app, check_options)),
+        import(add_import(app, import_options)),
+        review(review::add_review(app, review_options)),
+        tries(study::add_try(app, try_options)),
+        study(study::add_study(app, study_options)),
+        plan(plan::add_plan(app, plan_options)) {
+    for (CLI::App* reads : {run, view, check, replay, review, tries, study, study_options.run, study_options.merge,
+                            study_options.one, plan})
+      reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
+    measure = add_bench(app, bench_options);
+    experiment = add_experiment(app, trials);
+  }
 
-int main(int argc, char** argv) {
-  CLI::App app("Haptic rendering of rigid parts that never pass through each other.", "tegotae");
-  app.require_subcommand(1);
-
-  RunCommand run_options;
-  CLI::App* run = add_run(app, run_options);
-
-  ReplayOptions replay_options;
-  CLI::App* replay = add_replay(app, replay_options);
-
-  ViewOptions view_options;
-  CLI::App* view = add_view(app, view_options);
-
-  CheckOptions check_options;
-  CLI::App* check = add_check(app, check_options);
-
-  ImportOptions import_options;
-  const CLI::App* import = add_import(app, import_options);
-
-  review::ReviewOptions review_options;
-  CLI::App* review = review::add_review(app, review_options);
-
-  study::TryOptions try_options;
-  CLI::App* tries = study::add_try(app, try_options);
-
-  study::StudyOptions study_options;
-  CLI::App* study = study::add_study(app, study_options);
-
-  plan::PlanCommand plan_options;
-  CLI::App* plan = plan::add_plan(app, plan_options);
-
-  bool trusted = false;
-  for (CLI::App* reads : {run, view, check, replay, review, tries, study, study_options.run, study_options.merge,
-                          study_options.one, plan})
-    reads->add_flag("--trusted", trusted, "Load meshes in this process, not in one bounded in time and memory");
-
-  bench::BenchOptions bench_options;
-  const CLI::App* measure = add_bench(app, bench_options);
-  bench_options.command = "tegotae";
-  for (int i = 1; i < argc; ++i) bench_options.command += std::string(" ") + argv[i];
-
-  experiments::Options trials;
-  const CLI::App* experiment = add_experiment(app, trials);
-
-  add_progress(app);
-
-  app.footer("tegotae FILE is tegotae view FILE.");
-  std::vector<char*> words = with_view(app, argc, argv);
-  return guarded_main(app, static_cast<int>(words.size()) - 1, words.data(), [&] {
+  /// Runs the command that was given.
+  int execute() {
     set_hierarchy_cache(default_cache_folder());
-    const MeshLoader load = [trusted](const std::string& mesh, double unit) {
-      return trusted ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
+    const MeshLoader load = [in_process = trusted](const std::string& mesh, double unit) {
+      return in_process ? load_mesh(mesh, unit) : load_mesh_isolated(mesh, unit);
     };
     check_options.load = replay_options.load = review_options.load = load;
     try_options.load = study_options.load = plan_options.load = load;
@@ -147,5 +117,34 @@ int main(int argc, char** argv) {
     if (plan->parsed()) return plan::run_plan(plan_options);
     if (import->parsed()) return import_file(import_options);
     return run_scene(run_options, load);
-  });
+  }
+
+  RunCommand run_options;
+  ReplayOptions replay_options;
+  ViewOptions view_options;
+  CheckOptions check_options;
+  ImportOptions import_options;
+  review::ReviewOptions review_options;
+  study::TryOptions try_options;
+  study::StudyOptions study_options;
+  plan::PlanCommand plan_options;
+  bench::BenchOptions bench_options;
+  experiments::Options trials;
+  bool trusted = false;
+  CLI::App *run, *replay, *view, *check, *import, *review, *tries, *study, *plan, *measure, *experiment;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Haptic rendering of rigid parts that never pass through each other.", "tegotae");
+  app.require_subcommand(1);
+  Commands commands(app);
+  add_progress(app);
+  commands.bench_options.command = "tegotae";
+  for (int i = 1; i < argc; ++i) commands.bench_options.command += std::string(" ") + argv[i];
+
+  app.footer("tegotae FILE is tegotae view FILE.");
+  std::vector<char*> words = with_view(app, argc, argv);
+  return guarded_main(app, static_cast<int>(words.size()) - 1, words.data(), [&] { return commands.execute(); });
 }

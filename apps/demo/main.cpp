@@ -78,10 +78,12 @@ bool run(double ratio) {
 int main(int argc, char** argv) try {
   if (argc > 1) {
     const std::string option = argv[1];
-    if (option == "--version") return std::puts("tegotae " TEGOTAE_VERSION_STRING) < 0;
-    std::fputs("demo: carries a peg into its hole twice, in real time; it takes --help and --version only\n",
-               option == "--help" ? stdout : stderr);
-    return option == "--help" ? 0 : 2;
+    const bool asked = option == "--help" || option == "--version";
+    std::fputs(option == "--version"
+                   ? "tegotae " TEGOTAE_VERSION_STRING "\n"
+                   : "demo: carries a peg into its hole twice, in real time; it takes --help and --version only\n",
+               asked ? stdout : stderr);
+    return asked && std::fflush(stdout) == 0 ? 0 : 2;
   }
   bool in = true;
   for (const double ratio : {0.94, 0.99}) in = run(ratio) && in;

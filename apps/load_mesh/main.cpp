@@ -11,7 +11,11 @@ int main(int argc, char** argv) {
     std::puts(only == "--version" ? "tegotae " TEGOTAE_VERSION_STRING
                                   : "Reads a mesh file for another program of tegotae, bounded in time and memory. Not "
                                     "for people: `tegotae check FILE` reports on a mesh.");
-    return 0;
+    return std::fflush(stdout) == 0 ? 0 : 2;
+  }
+  if (argc != 5) {
+    std::fputs("tegotae-load-mesh: not for people, see --help; `tegotae check FILE` reports on a mesh\n", stderr);
+    return 2;
   }
   return tegotae::run_mesh_helper(argc, argv);
 }

@@ -120,8 +120,8 @@ PlacedAssembly placed(Assembly assembly) {
   return all;
 }
 
-void bind_mesh(nb::module_& m) {
-  nb::class_<Mesh>(m, "Mesh", R"(A triangle surface in its own frame, in m.
+constexpr char kMeshDoc[] =
+    R"(A triangle surface in its own frame, in m.
 
 The constructor welds coincident vertices and drops vertices that no triangle uses. So vertex indices may differ from
 those given; the triangles keep their number and order. A mesh never changes. Any number of scenes, parts and threads
@@ -142,7 +142,10 @@ Error
     kind "setting": an index is out of range or not a whole number, a coordinate is not finite or beyond 1000 km, there
     is no triangle, or an array has another shape.
 TypeError
-    The coordinates are text or complex numbers.)")
+    The coordinates are text or complex numbers.)";
+
+void bind_mesh(nb::module_& m) {
+  nb::class_<Mesh>(m, "Mesh", kMeshDoc)
       .def(
           "__init__",
           [](Mesh* self, nb::handle vertices, nb::handle triangles, const std::string& name) {

@@ -251,6 +251,47 @@ PyType_Slot kSlots[] = {
 
 using RigClass = nb::class_<PythonRig>;
 
+constexpr char kRunDoc[] =
+    R"(Steps until `seconds` after start(), or until request_stop().
+
+Without a callback the loop runs in a thread that never waits for Python, and other Python threads continue. In real
+time it steps at most once a period, with real-time priority where the system grants it. Ctrl-C ends it.
+
+Parameters
+----------
+seconds : float
+    Time at which the run ends, s since start().
+callback : callable, optional
+    Called as callback(rig) after each step. The next step waits for it; in real time the servo does not.
+
+Raises
+------
+Error
+    The rig does not run, or another thread steps it. The call also raises what the callback or a PythonPen raised,
+    which ends the run.)";
+
+constexpr char kChangeDoc[] =
+    R"(Continues in another scene: with parts added, removed or moved, or with another part held.
+
+The part held now continues from where it is, whatever pose `scene` gives it. Another held part starts at its pose in
+`scene`, and the pen's present pose maps to it. A later change replaces one that is still pending. Any thread may call
+it; the call builds the new scene, and the rig can step meanwhile.
+
+Parameters
+----------
+scene : Scene
+    Copied.
+
+Returns
+-------
+Change
+    Comes into force between two steps.
+
+Raises
+------
+Error
+    The contact loop cannot hold the scene. Then nothing changes.)";
+
 void bind_lifecycle(RigClass& c) {
   c.def(
        "__init__",
@@ -285,45 +326,9 @@ void bind_lifecycle(RigClass& c) {
       .def("run", &PythonRig::run, nb::arg("seconds"), nb::arg("callback") = nb::none(),
            nb::sig("def run(self, seconds: float, callback: collections.abc.Callable[[Rig], object] | None = None) -> "
                    "None"),
-           R"(Steps until `seconds` after start(), or until request_stop().
-
-Without a callback the loop runs in a thread that never waits for Python, and other Python threads continue. In real
-time it steps at most once a period, with real-time priority where the system grants it. Ctrl-C ends it.
-
-Parameters
-----------
-seconds : float
-    Time at which the run ends, s since start().
-callback : callable, optional
-    Called as callback(rig) after each step. The next step waits for it; in real time the servo does not.
-
-Raises
-------
-Error
-    The rig does not run, or another thread steps it. The call also raises what the callback or a PythonPen raised,
-    which ends the run.)")
+           kRunDoc)
       .def("request_stop", &PythonRig::request_stop, "Ends run() after its present step. Any thread may call it.")
-      .def("change", &PythonRig::change, nb::arg("scene"),
-           R"(Continues in another scene: with parts added, removed or moved, or with another part held.
-
-The part held now continues from where it is, whatever pose `scene` gives it. Another held part starts at its pose in
-`scene`, and the pen's present pose maps to it. A later change replaces one that is still pending. Any thread may call
-it; the call builds the new scene, and the rig can step meanwhile.
-
-Parameters
-----------
-scene : Scene
-    Copied.
-
-Returns
--------
-Change
-    Comes into force between two steps.
-
-Raises
-------
-Error
-    The contact loop cannot hold the scene. Then nothing changes.)");
+      .def("change", &PythonRig::change, nb::arg("scene"), kChangeDoc);
 }
 
 void bind_state(RigClass& c) {

@@ -26,9 +26,14 @@ class LocalPen final : public PenPort {
 
   void start() override {
     device_.start();
-    // Asks the device what it is, which some know when they are started.
-    servo_.emplace(device_, channel_, settings_);
-    if (wall_clock_) servo_->start();
+    try {
+      // Asks the device what it is, which some know when they are started.
+      servo_.emplace(device_, channel_, settings_);
+      if (wall_clock_) servo_->start();
+    } catch (...) {
+      device_.stop();
+      throw;
+    }
   }
   void stop() override {
     if (servo_) servo_->stop();

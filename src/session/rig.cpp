@@ -4,7 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "loop/scene_parts.hpp"
 #include "servo/loop_priority.hpp"
@@ -37,6 +40,11 @@ Scene in_its_time(Scene scene, RigClock clock) {
   return scene;
 }
 
+Scene without_parts(Scene scene) {
+  scene.parts.clear();
+  return scene;
+}
+
 }  // namespace
 
 struct Rig::State {
@@ -53,16 +61,32 @@ struct Rig::State {
   StepSchedule schedule;
   WeightRamp carried;
   GuidePull pulled;
-  Scene rules;                           ///< the scene that it began with, without its parts
-  std::optional<LoopPriority> priority;  ///< in run()
+  Scene rules;          ///< of the scene in force when changes were last taken, without its parts
+  std::mutex changing;  ///< guards `changes`
+  std::vector<std::pair<SceneChange, Scene>> changes;  ///< later than `rules`, each with its rules
+  std::optional<LoopPriority> priority;                ///< in run()
   std::string missing;
 
   State(const Scene& scene, const RigSettings& settings_in)
       : settings(settings_in),
         loop(in_its_time(scene, settings.clock)),
         schedule(nanoseconds(settings.period)),
-        rules(scene) {
-    rules.parts.clear();
+        rules(without_parts(scene)) {}
+
+  /// Returns the scene in force, without its parts. The pen is mapped with the first scene's scale throughout. `next`
+  /// is a change that has been asked for. Any thread may call it.
+  Scene take_changes(std::optional<std::pair<SceneChange, Scene>> next = {}) {
+    const std::lock_guard<std::mutex> lock(changing);
+    if (next) changes.push_back(std::move(*next));
+    const auto is_pending = [](const auto& change) { return change.first.state() == ChangeState::pending; };
+    const auto done = std::stable_partition(changes.begin(), changes.end(), is_pending);
+    for (auto at = done; at != changes.end(); ++at) {
+      if (at->first.state() != ChangeState::in_force) continue;
+      at->second.scale = rules.scale;
+      rules = std::move(at->second);
+    }
+    changes.erase(done, changes.end());
+    return rules;
   }
 
   bool simulated() const { return settings.clock == RigClock::simulated; }
@@ -182,12 +206,15 @@ SceneChange Rig::change(Scene next) {
   State& s = *state_;
   Part& part = held_part(next);
   if (part.name == s.loop.held()) part.pose = s.loop.latest();
-  return s.loop.change(in_its_time(std::move(next), s.settings.clock));
+  Scene rules = without_parts(next);
+  SceneChange change = s.loop.change(in_its_time(std::move(next), s.settings.clock));
+  s.take_changes(std::make_pair(change, std::move(rules)));
+  return change;
 }
 
 void Rig::guide(const std::vector<Pose>& path) {
   State& s = *state_;
-  s.pulled.set(path.empty() ? std::nullopt : std::make_optional(guide_along(path, s.rules, s.loop)));
+  s.pulled.set(path.empty() ? std::nullopt : std::make_optional(guide_along(path, s.take_changes(), s.loop)));
 }
 
 double Rig::time() const noexcept {

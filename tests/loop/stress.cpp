@@ -31,30 +31,73 @@ void print(const std::string& name, const StressResult& r, const LatencyHistogra
       us.p50, us.p99, us.p999, us.max, r.seconds_loop, r.seconds_check);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"Random pens over many scenes; every committed piece and poses inside it are asked of FCL."};
+struct StressRun {
   int scripts = 1000;
   unsigned seed = 1;
   std::vector<std::string> scenes;
   std::string resolver = "both";
   double friction = 0;
   StressOptions options;
-  app.add_option("--scripts", scripts, "How many, over the scenes in turn")->capture_default_str();
-  app.add_option("--seed", seed, "Of the first script; the next ones count up")->capture_default_str();
-  app.add_option("--scene", scenes, "Only this scene; can be given several times");
-  app.add_option("--resolver", resolver, "lp, qp or both in turn")
+};
+
+void add_options(CLI::App& app, StressRun& run) {
+  app.add_option("--scripts", run.scripts, "How many, over the scenes in turn")->capture_default_str();
+  app.add_option("--seed", run.seed, "Of the first script; the next ones count up")->capture_default_str();
+  app.add_option("--scene", run.scenes, "Only this scene; can be given several times");
+  app.add_option("--resolver", run.resolver, "lp, qp or both in turn")
       ->check(CLI::IsMember({"lp", "qp", "both"}))
       ->capture_default_str();
-  app.add_option("--friction", friction, "Coefficients from a fifth of this up to this, by script; with qp alone")
+  app.add_option("--friction", run.friction, "Coefficients from a fifth of this up to this, by script; with qp alone")
       ->check(CLI::Range(0.0, 10.0));
-  app.add_option("--ticks", options.ticks, "Of a script, 1 ms each")->capture_default_str();
-  app.add_option("--between", options.between, "Poses asked inside a piece, on the two readings of its path in turn")
+  app.add_option("--ticks", run.options.ticks, "Of a script, 1 ms each")->capture_default_str();
+  app.add_option("--between", run.options.between,
+                 "Poses asked inside a piece, on the two readings of its path in turn")
       ->capture_default_str();
-  app.add_option("--budget", options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
-  app.add_option("--record", options.record, "Folder for a scene file and a recording of each script");
+  app.add_option("--budget", run.options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
+  app.add_option("--record", run.options.record, "Folder for a scene file and a recording of each script");
   app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
+}
+
+/// Runs script `i` and adds it to the sums of its scene.
+StressResult run_script(const StressRun& run, int i,
+                        std::map<std::string, std::pair<StressResult, LatencyHistogram>>& results) {
+  const int n = static_cast<int>(run.scenes.size()), round = i / n;
+  const std::string& name = run.scenes[static_cast<std::size_t>(i % n)];
+  const unsigned seed = run.seed + static_cast<unsigned>(i);
+  StressOptions options = run.options;
+  options.resolver = run.resolver != "both" ? run.resolver : round % 2 == 0 ? "qp" : "lp";
+  options.mu = run.friction * (1 + round % 5) / 5;
+  auto& [sum, cpu] = results[name];
+  StressResult one = run_stress_script(stress_scene(name, seed), seed, options, cpu);
+  if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());
+  if (!one.first_late.empty()) std::printf("LATE: %s\n", one.first_late.c_str());
+  if (one.infeasible + one.stalled > 0)
+    std::printf("UNSOLVED: %s seed %u resolver %s\n", name.c_str(), seed, options.resolver.c_str());
+  if (i % 100 == 99) std::printf("%d scripts\n", i + 1);
+  sum.add(one);
+  return one;
+}
+
+int run_all(StressRun run) {
+  if (run.friction > 0) run.resolver = "qp";
+  if (run.scenes.empty()) run.scenes = stress_scene_names();
+  std::map<std::string, std::pair<StressResult, LatencyHistogram>> results;
+  StressResult all;
+  for (int i = 0; i < run.scripts; ++i) all.add(run_script(run, i, results));
+  for (const auto& [name, result] : results) print(name, result.first, result.second);
+  std::printf("%lld scripts, %lld poses checked: %lld intersecting, %lld programs without an answer\n",
+              (long long)all.scripts, (long long)all.poses, (long long)all.intersecting,
+              (long long)(all.infeasible + all.stalled));
+  std::printf("%lld ticks held back for long without a contact\n", (long long)all.unexplained);
+  return all.intersecting + all.late_unreported + all.unexplained > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Random pens over many scenes; every committed piece and poses inside it are asked of FCL."};
+  StressRun run;
+  add_options(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -62,34 +105,7 @@ int main(int argc, char** argv) {
   }
   setlinebuf(stdout);
   try {
-    if (friction > 0) resolver = "qp";
-    if (scenes.empty()) scenes = stress_scene_names();
-    std::map<std::string, std::pair<StressResult, LatencyHistogram>> results;
-    StressResult all;
-    for (int i = 0; i < scripts; ++i) {
-      const auto n = static_cast<int>(scenes.size());
-      const std::string& name = scenes[i % n];
-      if (resolver == "both")
-        options.resolver = (i / n) % 2 == 0 ? "qp" : "lp";
-      else
-        options.resolver = resolver;
-      options.mu = friction * (1 + (i / n) % 5) / 5;
-      auto& [sum, cpu] = results[name];
-      const StressResult one = run_stress_script(stress_scene(name, seed + i), seed + i, options, cpu);
-      if (!one.first_intersecting.empty()) std::printf("INTERSECTS: %s\n", one.first_intersecting.c_str());
-      if (!one.first_late.empty()) std::printf("LATE: %s\n", one.first_late.c_str());
-      if (one.infeasible + one.stalled > 0)
-        std::printf("UNSOLVED: %s seed %u resolver %s\n", name.c_str(), seed + i, options.resolver.c_str());
-      if (i % 100 == 99) std::printf("%d scripts\n", i + 1);
-      sum.add(one);
-      all.add(one);
-    }
-    for (const auto& [name, result] : results) print(name, result.first, result.second);
-    std::printf("%lld scripts, %lld poses checked: %lld intersecting, %lld programs without an answer\n",
-                (long long)all.scripts, (long long)all.poses, (long long)all.intersecting,
-                (long long)(all.infeasible + all.stalled));
-    std::printf("%lld ticks held back for long without a contact\n", (long long)all.unexplained);
-    return all.intersecting + all.late_unreported + all.unexplained > 0 ? 1 : 0;
+    return run_all(run);
   } catch (const Error& e) {
     std::fprintf(stderr, "stress: %s\n", e.what());
     return 2;

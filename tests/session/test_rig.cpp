@@ -236,6 +236,33 @@ TEST_CASE("a rig guides the hand along a path, another one, and no more", "[rig]
   CHECK(rig.loop().held() == "other");
 }
 
+TEST_CASE("a guide follows the rules of the scene in force", "[rig][guide]") {
+  Scene scene = floor_scene();
+  const Pose start{Quat::Identity(), Vec3(0, 0, 0.015)}, end{Quat::Identity(), Vec3(0.1, 0, 0.015)};
+  SimulatedDevice pen({}, StylusScript({{0, start}}));
+  Rig rig(scene, pen, simulated());
+  rig.start();
+  rig.step();
+  scene.contact.resolver = ResolverKind::lp;
+  rig.change(scene);
+  rig.guide({start, end});  // pending: the scene in force has qp
+  rig.guide({});
+  rig.step();
+  CHECK_THROWS_WITH(rig.guide({start, end}), Contains("lp does not support a load"));
+  scene.contact.resolver = ResolverKind::qp;
+  scene.weight.max_force = 0.25;
+  rig.change(scene);
+  scene.contact.resolver = ResolverKind::impulse;
+  rig.change(scene);  // replaces the one that is pending
+  scene.contact.resolver = ResolverKind::qp;
+  rig.change(scene);
+  rig.step();
+  rig.guide({start, end});
+  for (int i = 0; i < 1000; ++i) rig.step();
+  // Half of the force that the device stands for, of which the weight may take the other half.
+  CHECK(rig.pen().wrench.force.norm() == Approx(0.25).epsilon(0.01));
+}
+
 TEST_CASE("a guided step allocates nothing; what knows no load is not guided", "[rig][guide]") {
   const Pose start{Quat::Identity(), Vec3(0, 0, 0.015)};
   Scene scene = floor_scene();
