@@ -18,16 +18,27 @@ OnSimplex closest_on_segment(const Vec3& q, const Vec3& a, const Vec3& b, unsign
   return {a + (t / len2) * ab, bit_a | bit_b};
 }
 
+/// A triangle's normal and, of each edge, what points inwards, for the distances of several points: not of unit length.
+struct Inside {
+  Vec3 n;
+  double n2 = 0;
+  std::array<Vec3, 3> inward;
+  explicit Inside(const Simplex& s) {
+    if (s.size < 3) return;
+    n = (s.p[1] - s.p[0]).cross(s.p[2] - s.p[0]);
+    n2 = n.squaredNorm();
+    for (unsigned k = 0; k < 3; ++k) inward[k] = n.cross(s.p[(k + 1) % 3] - s.p[k]);
+  }
+};
+
 /// Point on triangle by its Voronoi regions: each edge's outer half-plane is tested in the triangle's plane.
-OnSimplex closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& p) {
-  const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
-  const double n2 = n.squaredNorm();
+OnSimplex closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& p, const Inside& of) {
   OnSimplex best{p[0], 1};
   double best2 = (q - p[0]).squaredNorm();
-  bool inside = n2 > 0;
+  bool inside = of.n2 > 0;
   for (unsigned k = 0; k < 3; ++k) {
     const unsigned l = (k + 1) % 3;
-    if (n2 > 0 && n.cross(p[l] - p[k]).dot(q - p[k]) > 0) continue;  // strictly on the inner side of this edge
+    if (of.n2 > 0 && of.inward[k].dot(q - p[k]) > 0) continue;  // strictly on the inner side of this edge
     inside = false;
     const OnSimplex s = closest_on_segment(q, p[k], p[l], 1u << k, 1u << l);
     const double d2 = (q - s.p).squaredNorm();
@@ -36,18 +47,18 @@ OnSimplex closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& p) {
       best2 = d2;
     }
   }
-  if (inside) return {q - ((q - p[0]).dot(n) / n2) * n, 7};
+  if (inside) return {q - ((q - p[0]).dot(of.n) / of.n2) * of.n, 7};
   return best;
 }
 
-OnSimplex closest_on(const Vec3& q, const Simplex& s) {
+OnSimplex closest_on(const Vec3& q, const Simplex& s, const Inside& of) {
   switch (s.size) {
     case 1:
       return {s.p[0], 1};
     case 2:
       return closest_on_segment(q, s.p[0], s.p[1], 1, 2);
     default:
-      return closest_on_triangle(q, s.p);
+      return closest_on_triangle(q, s.p, of);
   }
 }
 
@@ -63,12 +74,13 @@ ClosestPoints closest_points(const Simplex& a, const Simplex& b) {
     const double d2 = (pa - pb).squaredNorm();
     if (d2 < best.squared_distance) best = {pa, pb, d2, ma, mb};
   };
+  const Inside of_a(a), of_b(b);
   for (unsigned i = 0; i < static_cast<unsigned>(a.size); ++i) {
-    const OnSimplex s = closest_on(a.p[i], b);
+    const OnSimplex s = closest_on(a.p[i], b, of_b);
     take(a.p[i], s.p, 1u << i, s.mask);
   }
   for (unsigned j = 0; j < static_cast<unsigned>(b.size); ++j) {
-    const OnSimplex s = closest_on(b.p[j], a);
+    const OnSimplex s = closest_on(b.p[j], a, of_a);
     take(s.p, b.p[j], s.mask, 1u << j);
   }
   // What is left are pairs of points inside two edges.
