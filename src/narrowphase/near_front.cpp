@@ -15,6 +15,8 @@ constexpr double kNearParallel = 1e-4;
 // Directions between supporting corners that are tried after the axes of two boxes: where corners or edges of far
 // boxes face each other the axes say little.
 constexpr int kSupports = 3;
+// Boxes are stored in single precision, their axes are unit vectors up to rounding.
+constexpr double kArmRounding = 1 + 1e-5;
 
 /// Half of what the box covers along a direction given in its tree's axes.
 double extent(const PatchNode& node, const Vec3& n) {
@@ -47,8 +49,8 @@ class BoxAxes {
       for (int j = 0; j < 3; ++j) cosine_[i][j] = a_[i].dot(b_[j]);
   }
 
-  /// Its unit normal from B to A; zero where none separates.
-  Vec3 best() {
+  /// Its unit normal from B to A; zero where none separates. Edges are not asked where faces are `enough`.
+  Vec3 best(double enough) {
     for (int i = 0; i < 3; ++i) {
       double of_b = 0, of_a = 0;
       for (int j = 0; j < 3; ++j) {
@@ -58,7 +60,7 @@ class BoxAxes {
       offer(a_[i], half_a_[i] + of_b, 1);
       offer(b_[i], half_b_[i] + of_a, 1);
     }
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3 && most_ < enough; ++i)
       for (int j = 0; j < 3; ++j) offer_edges(i, j);
     return best_;
   }
@@ -91,17 +93,25 @@ class BoxAxes {
 
 }  // namespace
 
+NearFront::NearFront(std::shared_ptr<const PatchTree> a, std::shared_ptr<const PatchTree> b)
+    : a_(std::move(a)), b_(std::move(b)) {
+  arms_.reserve(a_->nodes().size());
+  for (const PatchNode& node : a_->nodes())
+    arms_.push_back(kArmRounding * (node.center_vec().norm() + Vec3(node.half[0], node.half[1], node.half[2]).norm()));
+}
+
 void NearFront::place(const Pose& X_BA) {
   // No point of A goes farther than the origin of its tree and the turn about it take it.
   const Displacement d = placed_ ? displacement(X_, X_BA, a_->origin()) : Displacement();
-  way_ += d.dp.norm() + a_->radius() * d.dr.norm();
+  way_ += d.dp.norm();
+  turn_ += d.dr.norm();
   X_ = X_BA;
   placed_ = true;
   R_ = X_BA.q.toRotationMatrix();
   t_ = X_BA * a_->origin() - b_->origin();
   if (front_.empty() || front_.size() > kGrown * built_ + kMore) {
-    way_ = 0;
-    front_.assign(1, {0, 0, Vec3::Zero(), -kInfinity});
+    way_ = turn_ = 0;
+    front_.assign(1, {0, 0, Vec3::Zero(), arms_[0], -kInfinity});
     built_ = 0;
   }
 }
@@ -112,73 +122,79 @@ double NearFront::gap(const Pair& pair) const {
   return in_a.dot(a.center_vec()) + pair.normal.dot(t_ - b.center_vec()) - extent(a, in_a) - extent(b, pair.normal);
 }
 
-double NearFront::search(Pair& pair) const {
+/// Looks for a direction along which the pair is farther apart, until it is `enough`; returns how far.
+double NearFront::search(Pair& pair, double enough) const {
   const PatchNode &a = a_->nodes()[pair.a], &b = b_->nodes()[pair.b];
   const Vec3 between = R_ * a.center_vec() + t_ - b.center_vec();
   double best = gap(pair);
   const auto offer = [&](const Vec3& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return false;
-    const Pair other{pair.a, pair.b, direction / length, 0};
+    const Pair other{pair.a, pair.b, direction / length, 0, 0};
     const double found = gap(other);
     if (found <= best) return false;
     best = found;
     pair.normal = other.normal;
     return true;
   };
-  offer(BoxAxes(a, b, R_, between).best());
-  offer(between);
-  for (int i = 0; i < kSupports && best > 0; ++i)
+  offer(BoxAxes(a, b, R_, between).best(enough));
+  if (best < enough) offer(between);
+  for (int i = 0; i < kSupports && best > 0 && best < enough; ++i)
     if (!offer(between + R_ * corner(a, R_.transpose() * -pair.normal) - corner(b, pair.normal))) break;
   return best;
 }
 
 void NearFront::keep(Pair pair, double gap) {
-  pair.until = gap + way_;
+  pair.until = gap + gone(pair);
   front_.push_back(pair);
 }
 
 void NearFront::open(const Pair& pair, double gap, double bound, bool searched) {
   if (gap >= bound - kTolerance) return keep(pair, gap);
   open_.push_back({gap, searched, pair});
-  std::push_heap(open_.begin(), open_.end());
 }
 
-/// Takes out of the front what may be under the bound.
-void NearFront::collect(double bound) {
+/// Takes out of the front what may be under the bound; asks about leaves at once.
+void NearFront::collect(double& bound, LeafQuery& leaves) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < front_.size(); ++i) {
     Pair& pair = front_[i];
-    if (pair.until - way_ < bound - kTolerance) {
-      const double now = gap(pair);
+    if (bound > 0 && pair.until - gone(pair) < bound - kTolerance) {
+      double now = gap(pair);
       if (now < bound - kTolerance) {
-        open_.push_back({now, false, pair});
-        continue;
+        const PatchNode &a = a_->nodes()[pair.a], &b = b_->nodes()[pair.b];
+        if (!a.leaf() || !b.leaf()) {
+          open_.push_back({now, false, pair});
+          continue;
+        }
+        now = std::max(now, leaves.distance(a, b, pair.normal, bound));
       }
-      pair.until = now + way_;
+      pair.until = now + gone(pair);
     }
     front_[kept++] = pair;
   }
   front_.resize(kept);
-  std::make_heap(open_.begin(), open_.end());
 }
 
 void NearFront::split(const Open& top, double bound) {
   const PatchNode &a = a_->nodes()[top.pair.a], &b = b_->nodes()[top.pair.b];
   const bool of_a = b.leaf() || (!a.leaf() && a.half[0] + a.half[1] >= b.half[0] + b.half[1]);
-  for (std::uint32_t child = 0; child < 2; ++child) {
+  std::array<Open, 2> children;
+  for (std::uint32_t k = 0; k < 2; ++k) {
     Pair pair = top.pair;
-    (of_a ? pair.a : pair.b) = (of_a ? a : b).first + child;
-    open(pair, std::max(top.gap, gap(pair)), bound, false);
+    (of_a ? pair.a : pair.b) = (of_a ? a : b).first + k;
+    pair.arm = arms_[pair.a];
+    children[k] = {std::max(top.gap, gap(pair)), false, pair};
   }
+  if (children[0].gap < children[1].gap) std::swap(children[0], children[1]);
+  for (const Open& child : children) open(child.pair, child.gap, bound, false);
 }
 
 void NearFront::query(const Pose& X_BA, double& bound, LeafQuery& leaves) {
   place(X_BA);
   open_.clear();
-  collect(bound);
+  collect(bound, leaves);
   while (!open_.empty()) {
-    std::pop_heap(open_.begin(), open_.end());
     Open top = open_.back();
     open_.pop_back();
     if (!(bound > 0) || top.gap >= bound - kTolerance) {
@@ -190,7 +206,7 @@ void NearFront::query(const Pose& X_BA, double& bound, LeafQuery& leaves) {
       const double least = leaves.distance(a, b, top.pair.normal, bound);
       keep(top.pair, std::max(top.gap, least));
     } else if (!top.searched) {
-      const double found = search(top.pair);
+      const double found = search(top.pair, bound - kTolerance);
       open(top.pair, std::max(top.gap, found), bound, true);
     } else {
       split(top, bound);
