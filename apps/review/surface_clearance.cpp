@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <unordered_map>
 
 #include "broadphase/bounding_spheres.hpp"
 #include "core/parallel_for.hpp"
+#include "feature/point_course.hpp"
 #include "feature/signed_distance.hpp"
 #include "loop/scene_parts.hpp"
 #include "narrowphase/patch_cache.hpp"
@@ -20,8 +20,7 @@ namespace {
 // Triangles are cut until no edge is longer than this share of the part's radius, or a coarser one for many.
 constexpr double kEdgeShare = 1.0 / 8;
 constexpr double kCoarser = 1.3;
-constexpr std::size_t kBlock = 64;      // points that a thread takes at a time
-constexpr std::size_t kNearFaces = 12;  // of a part, that a point is followed past
+constexpr std::size_t kBlock = 64;  // points that a thread takes at a time
 
 struct Refined {
   std::vector<Vec3> points;
@@ -72,108 +71,66 @@ SignedDistance distance_to(const std::shared_ptr<const TriangleMesh>& mesh) {
   return SignedDistance(std::make_shared<Surface>(mesh), cached_patch_tree(mesh));
 }
 
-/// What one thread knows of a point while it follows it: of each part the faces that are nearest, as of some pose.
-struct Followed {
-  struct Near {
-    double until = 0;                 ///< of the point's way, when a face or one that is not known may touch it
-    double others = 0;                ///< the same of those that are not known
-    std::vector<FaceDistance> faces;  ///< with the way at which each may touch it
-  };
-  std::vector<Near> parts;
-};
-
-/// Follows points along a path and asks for distances only where they may have become less.
+/// Finds how near points come to other parts along a path.
 class PathClearance {
  public:
   PathClearance(const Scene& scene, const std::vector<RecordFrame>& rows, const std::vector<std::size_t>& numbers,
                 double reach)
       : reach_(reach) {
-    const TriangleMesh& held = *held_part(scene).mesh;
-    const Sphere ball = bounding_sphere(held);
-    center_ = ball.center;
-    std::map<const TriangleMesh*, std::shared_ptr<const NearestFace>> faces;
+    const Sphere ball = bounding_sphere(*held_part(scene).mesh);
     BoundingSpheres spheres;
+    std::vector<const Part*> others;
     for (const Part& part : scene.parts) {
       if (part.held) continue;
       spheres.add(bounding_sphere(*part.mesh), part.pose);
-      others_.push_back({part.mesh.get(), part.pose.inverse(), nullptr});
+      others.push_back(&part);
     }
+    std::vector<std::uint32_t> near;
+    std::vector<bool> ever(others.size());
     for (const std::size_t i : numbers) {
-      Step step;
-      step.X = rows[i].x;
-      if (!steps_.empty()) {
-        const Displacement d = displacement(steps_.back().X, step.X, center_);
-        step.way = steps_.back().way + d.dp.norm();
-        step.turn = steps_.back().turn + d.dr.norm();
-      }
-      spheres.query(step.X * ball.center, ball.radius, reach, step.near);
-      for (const std::uint32_t k : step.near) {
-        auto& known = faces[others_[k].mesh];
-        if (!known) known = nearest_faces(scene.parts, others_[k].mesh);
-        others_[k].faces = known;
-      }
-      steps_.push_back(std::move(step));
+      const Pose& X = rows[i].x;
+      if (!poses_.empty() && X.p == poses_.back().p && X.q.coeffs() == poses_.back().q.coeffs()) continue;
+      poses_.push_back(X);
+      spheres.query(X * ball.center, ball.radius, reach, near);
+      for (const std::uint32_t k : near) ever[k] = true;
     }
+    for (std::size_t k = 0; k < others.size(); ++k)
+      if (ever[k]) others_.push_back({cached_patch_tree(others[k]->mesh), others[k]->pose.inverse()});
   }
 
+  /// What a thread knows from the point before.
+  struct Followed {
+    PointCourse course;
+    NearPlace last{0, 0, kNone, 0};
+  };
+
   /// The least distance of the point (held part's file frame) to another part over the path, at most the reach.
-  /// `followed` is scratch.
   double least(const Vec3& point, Followed& followed) const {
-    const double arm = (point - center_).norm();
-    followed.parts.resize(others_.size());
-    for (Followed::Near& near : followed.parts) near.until = near.others = 0;  // nothing is known
-    double best = reach_;
-    for (const Step& step : steps_) {
-      const double way = step.way + arm * step.turn;
-      for (const std::uint32_t k : step.near)
-        if (followed.parts[k].until - way < best) best = ask(others_[k], step.X * point, way, best, followed.parts[k]);
+    PointCourse& course = followed.course;
+    course.places().clear();
+    for (const Pose& X : poses_) course.places().push_back(X * point);
+    course.build();
+    NearPlace best{reach_, 0, kNone, 0};
+    // A neighbor came nearest at about the same place.
+    if (const NearPlace& last = followed.last; last.surface != kNone) {
+      const Other& other = others_[last.surface];
+      if (course.nearer_there(*other.tree, other.X_FW, last.place, last.face, best)) best.surface = last.surface;
     }
-    return best;
+    for (std::uint32_t k = 0; k < others_.size(); ++k)
+      if (course.nearer(*others_[k].tree, others_[k].X_FW, best)) best.surface = k;
+    followed.last = best;
+    return best.distance;
   }
 
  private:
   struct Other {
-    const TriangleMesh* mesh;
+    std::shared_ptr<const PatchTree> tree;
     Pose X_FW;  ///< W in its file frame
-    std::shared_ptr<const NearestFace> faces;
   };
-  struct Step {
-    Pose X;
-    double way = 0, turn = 0;  ///< gone so far, m and rad
-    std::vector<std::uint32_t> near;
-  };
-
-  static std::shared_ptr<const NearestFace> nearest_faces(const std::vector<Part>& parts, const TriangleMesh* mesh) {
-    const auto part = std::find_if(parts.begin(), parts.end(), [mesh](const Part& p) { return p.mesh.get() == mesh; });
-    return std::make_shared<NearestFace>(std::make_shared<Surface>(part->mesh), cached_patch_tree(part->mesh));
-  }
-
-  /// The point's distance to a part, if it is less than `best`, else `best`.
-  double ask(const Other& other, const Vec3& p_W, double way, double best, Followed::Near& near) const {
-    const Vec3 p = other.X_FW * p_W;
-    if (near.others - way < best) {
-      near.others = other.faces->gather(p, best + reach_, kNearFaces, near.faces) + way;
-      for (FaceDistance& f : near.faces) {
-        best = std::min(best, f.distance);
-        f.distance += way;
-      }
-    } else {
-      for (FaceDistance& f : near.faces) {
-        if (f.distance - way >= best) continue;
-        const double distance = other.faces->distance(p, f.face);
-        best = std::min(best, distance);
-        f.distance = distance + way;
-      }
-    }
-    near.until = near.others;
-    for (const FaceDistance& f : near.faces) near.until = std::min(near.until, f.distance);
-    return best;
-  }
 
   double reach_;
-  Vec3 center_;
+  std::vector<Pose> poses_;  ///< without those in which it stays
   std::vector<Other> others_;
-  std::vector<Step> steps_;
 };
 
 }  // namespace
@@ -217,7 +174,7 @@ void add_clearance(const Scene& scene, const std::vector<RecordFrame>& rows, con
   const PathClearance path(scene, rows, looked_at, reach);
   const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
   const auto color = [&](int block) {
-    Followed followed;
+    PathClearance::Followed followed;
     const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
     for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) {
       const float* p = surface.positions.data() + 3 * i;

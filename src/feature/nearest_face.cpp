@@ -4,12 +4,6 @@
 #include <vector>
 
 namespace tegotae {
-namespace {
-
-// Boxes are stored in single precision, their axes are unit vectors up to rounding.
-constexpr double kBoxRounding = 1 - 1e-5;
-
-}  // namespace
 
 bool NearestFace::complete() const {
   std::vector<std::pair<std::uint32_t, std::size_t>> stack{{0, 1}};
@@ -29,34 +23,6 @@ void NearestFace::try_face(const Vec3& p, std::uint32_t face, NearFace& best) co
   const ClosestPoints c =
       closest_points({1, {p}}, {3, {tree_->corner(face, 0), tree_->corner(face, 1), tree_->corner(face, 2)}});
   if (c.squared_distance < best.squared) best = {c.squared_distance, c.b, face, c.mask_b};
-}
-
-double NearestFace::distance(const Vec3& p, std::uint32_t face) const noexcept {
-  NearFace found;
-  found.squared = INFINITY;
-  try_face(p, face, found);
-  return std::sqrt(found.squared);
-}
-
-double NearestFace::gather(const Vec3& p, double within, std::size_t most, std::vector<FaceDistance>& faces) const {
-  faces.clear();
-  NearFace limit;
-  limit.squared = within * within;
-  find(p, limit, [&](std::uint32_t face) {
-    NearFace found;
-    found.squared = limit.squared;
-    try_face(p, face, found);
-    if (found.face == kNone) return false;
-    faces.push_back({std::sqrt(found.squared), face});
-    std::push_heap(faces.begin(), faces.end());
-    if (faces.size() > most) {
-      limit.squared = faces.front().distance * faces.front().distance;
-      std::pop_heap(faces.begin(), faces.end());
-      faces.pop_back();
-    }
-    return false;  // find() need not: the limit follows the farthest
-  });
-  return std::sqrt(limit.squared);
 }
 
 void NearestFace::find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept {

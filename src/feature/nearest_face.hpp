@@ -10,19 +10,16 @@
 
 namespace tegotae {
 
+/// Of squared distances from a PatchNode: boxes are stored in single precision, their axes are unit vectors up to
+/// rounding.
+inline constexpr double kBoxRounding = 1 - 1e-5;
+
 /// A nearest point of a surface; file frame.
 struct NearFace {
   double squared = 0;          ///< distance, m²
   Vec3 point = Vec3::Zero();   ///< m
   std::uint32_t face = kNone;  ///< that has the point; kNone: no face was near enough
   unsigned mask = 0;           ///< corners of the face that carry the point (see ClosestPoints)
-};
-
-/// How far a face is from a point, m.
-struct FaceDistance {
-  double distance;
-  std::uint32_t face;
-  bool operator<(const FaceDistance& other) const { return distance < other.distance; }
 };
 
 /// Nearest faces of a surface to points, by its hierarchy. Immutable.
@@ -63,13 +60,8 @@ class NearestFace {
       stack[top++] = near;
     }
   }
-  /// The `most` faces nearest to `p`, in any order, or all that are nearer than `within` (m) if they are fewer; returns
-  /// the distance (m) below which there are no others.
-  double gather(const Vec3& p, double within, std::size_t most, std::vector<FaceDistance>& faces) const;
   /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
   void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
-  /// How far `face` is from `p`, m.
-  double distance(const Vec3& p, std::uint32_t face) const noexcept;
   /// Replaces `best` by the nearest point of one face if that is nearer.
   void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
 

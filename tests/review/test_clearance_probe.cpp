@@ -4,6 +4,7 @@
 
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "models/helical.hpp"
 #include "models/shapes.hpp"
 #include "review/surface_clearance.hpp"
 #include "shared/clearance_probe.hpp"
@@ -106,6 +107,83 @@ TEST_CASE("a box over a floor: every point's least clearance is the height of it
     CHECK(surface.clearance[i] == Approx(least).margin(1e-8));
     far += surface.clearance[i] == static_cast<float>(reach);
   }
+  CHECK(far > 0);
+}
+
+namespace {
+
+/// The clearance of every point as it is defined: all points, poses and triangles.
+std::vector<double> brute_clearances(const Scene& scene, const std::vector<RecordFrame>& rows, double reach,
+                                     const ColoredSurface& surface) {
+  std::vector<Triangle> others;
+  for (const Part& part : scene.parts)
+    if (!part.held)
+      for (const Triangle& t : triangles(*part.mesh, part.pose)) others.push_back(t);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < surface.positions.size(); i += 3) {
+    const Vec3 p(surface.positions[i], surface.positions[i + 1], surface.positions[i + 2]);
+    double least = reach;
+    for (const RecordFrame& row : rows)
+      for (const Triangle& t : others) least = std::min(least, point_triangle(row.x * p, t));
+    out.push_back(least);
+  }
+  return out;
+}
+
+/// Asks about all rows and compares; returns how many points are farther than the reach.
+int compare(const Scene& scene, const std::vector<RecordFrame>& rows, double reach, std::size_t most) {
+  const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const Part& p) { return p.held; });
+  ColoredSurface surface = sampled_surface(held->mesh, most);
+  add_clearance(scene, rows, looked_at(rows.size(), rows.size()), reach, {}, surface);
+  const std::vector<double> expected = brute_clearances(scene, rows, reach, surface);
+  int far = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    INFO("point " << i);
+    // Of single precision, as colors are.
+    REQUIRE(surface.clearance[i] == Approx(expected[i]).epsilon(1e-6).margin(1e-12));
+    far += expected[i] == reach;
+  }
+  return far;
+}
+
+}  // namespace
+
+TEST_CASE("colors of a nut that is turned with play are those of all points, poses and triangles") {
+  shapes::WavyThread thread;
+  thread.segments = 14;
+  thread.rings = 6;
+  shapes::WavyThread wider = thread;
+  wider.radius += 1.5e-4;
+  wider.low = -0.004;
+  Scene scene;
+  scene.parts.push_back({"screw", shared(shapes::screw(thread)), Pose{}, false});
+  scene.parts.push_back({"held", shared(shapes::nut(wider, 0.012)), Pose{}, true});
+  std::vector<RecordFrame> rows;
+  const int count = GENERATE(1, 2, 9, 70);  // below, at and above a run of places
+  for (int i = 0; i < count; ++i) {
+    // Steps of 1 mm at the thread: more than the gap. The nut rests now and then.
+    const double angle = 0.12 * (i / 3 * 3), play = 1e-4;
+    rows.push_back(
+        at(1e-3 * i, {rotation({0, 0, angle}),
+                      {play * std::cos(2 * angle), play * std::sin(3 * angle), thread.pitch * angle / (2 * M_PI)}}));
+  }
+  const int far = compare(scene, rows, 1e-3, 700);
+  CHECK(far > 0);  // its outside
+}
+
+TEST_CASE("colors between several parts are those of all points, poses and triangles") {
+  std::mt19937 rng(GENERATE(5, 6));
+  Scene scene;
+  const auto left = shared(random_star_body(rng, 40, 0.01));
+  scene.parts.push_back({"left", left, {Quat::Identity(), {-0.025, 0, 0}}, false});
+  scene.parts.push_back({"held", shared(random_convex_body(rng, 30, 0.008)), Pose{}, true});
+  scene.parts.push_back({"right", left, {rotation({1, 2, 0.5}), {0.025, 0, 0.003}}, false});  // the same mesh
+  scene.parts.push_back({"away", left, {Quat::Identity(), {0, 0, 0.2}}, false});
+  std::vector<RecordFrame> rows;
+  for (int i = 0; i <= 100; ++i)
+    // To the left part, then in a jump near the right one, which it cuts.
+    rows.push_back(at(1e-3 * i, {rotation({0.01 * i, 0, 0.05 * i}), {i < 50 ? -5e-3 - 6e-5 * i : 0.012, 5e-5 * i, 0}}));
+  const int far = compare(scene, rows, 5e-3, 300);
   CHECK(far > 0);
 }
 
