@@ -46,13 +46,17 @@ bool ContactLoop::resolve(const Vec6& wanted, double cap, TickReport& report, Tr
 
 bool ContactLoop::try_shorter_motions(const Vec6& wanted, double cap, TickReport& report, Vec6& motion) {
   const double far = size(metric_.unwhiten(wanted));
+  // Of a motion that mostly leads aside little is left when it is cut to a sub-step's length, however long it is.
+  const auto brings = [&](const Vec6& m, double longest) {
+    return std::min(1.0, longest / std::max(size(metric_.unwhiten(m)), kRest)) * m.dot(wanted);
+  };
   Vec6 best = motion;
   bool any = false;
-  for (double way = std::min(cap, far); way > margin_ && size(metric_.unwhiten(best)) < kWorthwhile * way;
-       way *= kShorter) {
+  for (double way = std::min(cap, far);
+       way > margin_ && brings(best, way) < kWorthwhile * way / far * wanted.squaredNorm(); way *= kShorter) {
     if (!solve((way / far) * wanted, report, motion)) continue;
     any = true;
-    if (motion.dot(wanted) > best.dot(wanted)) best = motion;
+    if (brings(motion, cap) > brings(best, cap)) best = motion;
   }
   motion = best;
   return any;
