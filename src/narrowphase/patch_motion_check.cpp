@@ -45,7 +45,7 @@ constexpr int kSomePairs = 500, kFacesPerPair = 5;
 constexpr int kEnoughPairs = 4000;
 constexpr double kOneSided = 0.35;
 // A front that has proved so many motions with that many pairs stays.
-constexpr int kProvedWithMany = 50;
+constexpr int kProvedWithMany = 20;
 // What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
 constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
