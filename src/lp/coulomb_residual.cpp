@@ -8,7 +8,7 @@ namespace {
 
 /// The nearest (n, t) with |t| <= mu n, in place.
 void project_on_cone(double mu, double& n, double& t0, double& t1) noexcept {
-  const double t = std::hypot(t0, t1);
+  const double t = std::sqrt(t0 * t0 + t1 * t1);
   if (t <= mu * n) return;
   if (mu * t <= -n) {
     n = t0 = t1 = 0;
@@ -30,7 +30,7 @@ double contact_residual(const FrictionProblem& p, const Vec6& z, const FrictionF
     s1 = p.tangents[f.row].row[1].dot(z);
   }
   // De Saxcé's velocity turns the law, which is none of normality, into one of a projection.
-  const double open = n.dot(z) - p.bounds[f.row] + mu * std::hypot(s0, s1);
+  const double open = n.dot(z) - p.bounds[f.row] + mu * std::sqrt(s0 * s0 + s1 * s1);
   const double weight = n.squaredNorm();
   double pn = f.normal - open / weight, p0 = f.tangential[0] - s0 / weight, p1 = f.tangential[1] - s1 / weight;
   project_on_cone(mu, pn, p0, p1);

@@ -73,6 +73,7 @@ bool FrictionActiveSet::add(int row) noexcept {
     m.slip[1] = m.t[1].dot(z_);
     const double far = length(m.slip[0], m.slip[1]);
     m.slides = far > slip_;
+    m.along = std::max(far, slip_);
     if (m.slides) set_direction(m, m.slip[0] / far, m.slip[1] / far);
   } else {
     set_direction(m, 0, 0);
@@ -125,16 +126,16 @@ bool FrictionActiveSet::step() noexcept {
   const double stiff = 1 / give_;
   products_ = 0;
   for (int k = 0; k < count_; ++k) {
-    const Member& m = members_[static_cast<std::size_t>(k)];
+    Member& m = members_[static_cast<std::size_t>(k)];
     const double push = m.normal + m.bound * stiff;
     if (m.slides) {
       r += push * m.column;
       push_product(stiff, m.column, m.n);
-      // As z turns the slip, friction turns with it.
-      const double far = length(m.slip[0], m.slip[1]);
-      if (m.mu > 0 && far > slip_ && m.normal > 0) {
+      // As z turns the slip, friction turns with it: across it by what z goes across, over how far it goes along.
+      m.turns = m.mu > 0 && m.normal > 0;
+      if (m.turns) {
         const Vec6 across = m.direction[0] * m.t[1] - m.direction[1] * m.t[0];
-        push_product(m.mu * m.normal / far, across, across);
+        push_product(m.mu * m.normal / m.along, across, across);
       }
     } else {
       r += push * m.n + m.tangential[0] * m.t[0] + m.tangential[1] * m.t[1];
@@ -199,19 +200,32 @@ FrictionActiveSet::Change FrictionActiveSet::stick_or_turn() noexcept {
   for (int k = 0; k < count_; ++k) {
     Member& m = members_[static_cast<std::size_t>(k)];
     if (m.mu == 0 || !m.slides) continue;
-    const double far = length(m.slip[0], m.slip[1]);
-    if (m.slip[0] * m.direction[0] + m.slip[1] * m.direction[1] < -slip_) {
+    const double far = length(m.slip[0], m.slip[1]), force = m.normal * m.length;
+    double d[2] = {m.direction[0], m.direction[1]};
+    if (far > slip_ && force > kForce * scale_)
+      turn_ = std::max(turn_, length(m.slip[0] / far - d[0], m.slip[1] / far - d[1]) *
+                                  std::min(1.0, m.mu * force / (kMatters * scale_)));
+    // Direction and length are unknowns of their own (Newton's method for z, the direction and the length): the next
+    // direction is the one that friction had in this round, not that of the slip, which turns by any angle where little
+    // of it is left.
+    if (m.turns) {
+      const double by = (d[0] * m.slip[1] - d[1] * m.slip[0]) / m.along, size = std::sqrt(1 + by * by);
+      d[0] = (m.direction[0] - by * m.direction[1]) / size;
+      d[1] = (m.direction[1] + by * m.direction[0]) / size;
+    }
+    m.along = m.slip[0] * d[0] + m.slip[1] * d[1];
+    if (m.along < -slip_) {
       if (++m.flips > kMaxFlips) return Change::failed;
       m.slides = false;
       for (int i = 0; i < 2; ++i) m.tangential[i] = -m.mu * m.normal * m.direction[i];
       changed = true;
+    } else if (m.turns) {
+      set_direction(m, d[0], d[1]);
     } else if (far > slip_) {
-      const double d0 = m.slip[0] / far, d1 = m.slip[1] / far, force = m.normal * m.length;
-      if (force > kForce * scale_)
-        turn_ = std::max(turn_, length(d0 - m.direction[0], d1 - m.direction[1]) *
-                                    std::min(1.0, m.mu * force / (kMatters * scale_)));
-      set_direction(m, d0, d1);
+      set_direction(m, m.slip[0] / far, m.slip[1] / far);
+      m.along = far;
     }
+    m.along = std::max(m.along, slip_);
   }
   return changed ? Change::some : Change::none;
 }
@@ -233,6 +247,7 @@ FrictionActiveSet::Change FrictionActiveSet::slide() noexcept {
     const double force = length(m.tangential[0], m.tangential[1]);
     m.slides = true;
     set_direction(m, -m.tangential[0] / force, -m.tangential[1] / force);
+    m.along = slip_;  // first along that line only
     m.tangential[0] = m.tangential[1] = 0;
   }
   return Change::some;
@@ -263,6 +278,12 @@ bool FrictionActiveSet::refine(const FrictionProblem& problem, const Vec6& from,
     Member& m = members_[static_cast<std::size_t>(count_ - 1)];
     m.normal = f.normal;
     if (m.slides) continue;
+    const double force = length(f.tangential[0], f.tangential[1]);
+    if (f.slides && force > 0) {  // first along the line of its friction only
+      m.slides = true;
+      set_direction(m, -f.tangential[0] / force, -f.tangential[1] / force);
+      continue;
+    }
     m.tangential[0] = f.tangential[0];
     m.tangential[1] = f.tangential[1];
   }

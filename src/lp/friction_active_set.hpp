@@ -22,7 +22,8 @@ class FrictionActiveSet {
   /// does not slide. False when the rounds or the time ran out or it went in a circle.
   bool solve(const FrictionProblem& problem, const Vec6& from) noexcept;
 
-  /// Starts from an answer that is nearly right: its contacts with force, which slide where `from` has them slide.
+  /// Starts from an answer that is nearly right: its contacts with force, which slide where `from` or the forces have
+  /// them slide.
   bool refine(const FrictionProblem& problem, const Vec6& from, const std::vector<FrictionForce>& forces) noexcept;
 
   // Of the last solve that ended:
@@ -43,8 +44,10 @@ class FrictionActiveSet {
     double tangential[2];  ///< τ while it sticks
     double direction[2];   ///< of slip, unit, or 0
     double slip[2];        ///< T z
+    double along;          ///< of the slip that its direction was set for, along it; at least slip_
     int row, flips;
     bool slides;
+    bool turns;  ///< its direction is an unknown of the last round
   };
   enum class Change { none, some, failed };
 

@@ -11,7 +11,13 @@ struct Tangents {
   explicit Tangents(const Vec3& n) noexcept {
     // Of two axes the one that is far from the normal.
     constexpr double kFar = 0.6;
-    direction[0] = n.cross(std::abs(n.x()) < kFar ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    if (std::abs(n.x()) < kFar) {
+      const double inverse = 1 / std::sqrt(n.y() * n.y() + n.z() * n.z());
+      direction[0] = {0, inverse * n.z(), -inverse * n.y()};
+    } else {
+      const double inverse = 1 / std::sqrt(n.x() * n.x() + n.z() * n.z());
+      direction[0] = {-inverse * n.z(), 0, inverse * n.x()};
+    }
     direction[1] = n.cross(direction[0]);
   }
 

@@ -20,6 +20,7 @@ bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metr
   if (!any_) return false;
   if (metric.axes() != axes_) made_ = 0;
   axes_ = metric.axes();
+  const Mat3 turns = metric.turns();
   const std::size_t rows = std::min(contacts.size(), mu_.size());
   bool found = false;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -35,7 +36,10 @@ bool FrictionRows::fill(const std::vector<Contact>& contacts, const Metric& metr
     if (i < made_ && at.n == c.n && at.r == c.r) continue;
     at = {c.n, c.r};
     const Tangents tangents(c.n);
-    for (int k = 0; k < 2; ++k) tangents_[i].row[k] = metric.row(c, tangents.direction[k]);
+    for (int k = 0; k < 2; ++k) {
+      const Vec3& e = tangents.direction[k];
+      tangents_[i].row[k] << e, turns * c.r.cross(e);
+    }
   }
   made_ = std::max(made_, rows);
   return found;

@@ -39,6 +39,8 @@ class Metric {
     g.tail<3>() = (axes_W_.transpose() * c.r.cross(e)).cwiseQuotient(radii_);
     return g;
   }
+  /// What row() makes its last three of: they are this matrix times r × e, but for rounding.
+  Mat3 turns() const { return radii_.cwiseInverse().asDiagonal() * axes_W_.transpose(); }
 
  private:
   Mat3 axes_ = Mat3::Identity();  ///< as columns, file frame

@@ -367,7 +367,8 @@ TEST_CASE("from a guess, good or bad, comes nothing that breaks the law", "[fric
     if (r.exact) CHECK(law_error(p, r.z, r.forces).worst() < 1e-6 * wanted.norm());
     last = r.forces;
     if (!r.exact || last.empty()) continue;
-    // Its own forces lead back to it, unless others hold the part too: a guess begins with all contacts sticking.
+    // Its own forces lead back to it, unless others hold the part too. When all contacts began as sticking 378 of 398
+    // did.
     ++with_forces;
     const Vec6 z = r.z;
     const FrictionResult& again = solver.solve(p, last);
@@ -376,7 +377,7 @@ TEST_CASE("from a guess, good or bad, comes nothing that breaks the law", "[fric
   std::cout << exact << " of " << count << " exact from a bad guess, " << repeated << " of " << with_forces
             << " the same from their own forces\n";
   CHECK(exact >= 0.9 * count);
-  CHECK(repeated >= 0.9 * with_forces);
+  CHECK(repeated >= 0.99 * with_forces);
 }
 
 TEST_CASE("without friction the answer is that of the least distance, bit for bit", "[friction]") {
