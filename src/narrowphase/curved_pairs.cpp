@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.hpp"
+
 namespace tegotae {
 namespace {
+
+/// A piece of a thread that is thinner in profile than this part of the pitch is of one flank, however long it is.
+constexpr double kOneFlank = 0.1;
 
 /// Least extent of the bounds over the directions, m.
 float thickness(const ProfileBox& p) {
@@ -104,9 +109,13 @@ std::optional<CurvedPairs::Found> CurvedPairs::separate(std::uint32_t node_a, st
 std::optional<bool> CurvedPairs::thicker(std::uint32_t node_a, std::uint32_t node_b) const noexcept {
   for (std::uint32_t i = 0; i < used_; ++i) {
     const AxisPair& axes = (*axes_)[i];
-    if (!groups_[i].motion.usable || axes.b->frame().rise == 0) continue;
+    const double rise = axes.b->frame().rise;
+    if (!groups_[i].motion.usable || rise == 0) continue;
     const ProfileBox *a = axes.a->box(node_a), *b = axes.b->box(node_b);
-    if (a != nullptr && b != nullptr) return thickness(*a) > thickness(*b);
+    if (a == nullptr || b == nullptr) continue;
+    const float of_a = thickness(*a), of_b = thickness(*b);
+    if (std::max(of_a, of_b) < kOneFlank * 2 * kPi * std::abs(rise)) return std::nullopt;
+    return of_a > of_b;
   }
   return std::nullopt;
 }

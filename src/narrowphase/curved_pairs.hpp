@@ -40,7 +40,8 @@ class CurvedPairs {
   /// Whether the nodes stay more than `spare` (m) beyond the clearance apart about one of the axes.
   std::optional<Found> separate(std::uint32_t node_a, std::uint32_t node_b, double spare) const noexcept;
 
-  /// Where both nodes have boxes about an axis: whether A's is the thicker one, so that it should be taken apart.
+  /// Where both nodes have boxes about the axis of a thread, and one of them is more than a piece of one flank: whether
+  /// A's is the thicker one, so that it should be taken apart.
   std::optional<bool> thicker(std::uint32_t node_a, std::uint32_t node_b) const noexcept;
   bool full(std::uint32_t axis) const { return groups_[axis].count == capacity_; }
   /// Adds the pair `owner`, for which there must be room; its slot.

@@ -7,7 +7,7 @@
 namespace tegotae {
 
 /// To be raised whenever PatchTree builds another tree over the same mesh.
-inline constexpr std::uint32_t kPatchBuild = 1;
+inline constexpr std::uint32_t kPatchBuild = 2;
 
 /// The hierarchy over `mesh`: the one in use by others, read from the folder of set_hierarchy_cache, or built and kept
 /// there.

@@ -10,6 +10,10 @@ namespace {
 
 /// A round of merging that joins less than one cluster in so many goes on with pairs that are best for one side only.
 constexpr std::size_t kSlowRound = 12;
+/// An edge is sharp where its faces turn by more than 14°, less than a chamfer against a thread's flank and more than
+/// the facets of most curved walls. Joining over nothing but sharp edges costs so many times as much: a patch stays on
+/// one flank of a thread for longer, and then is a curve without a thickness about the thread's axis.
+constexpr float kSharpCosine = 0.9703f, kSharpWorth = 3;
 
 /// Thickness + kDiameterWeight · diameter of the two sets together. A uniform slab of thickness t has the variance
 /// t²/12 across. The least eigenvalue is taken as det / (sum of the principal minors), exact for a thin set and a
@@ -33,7 +37,7 @@ class Clustering {
     for (const PatchItem& t : items) moments_.push_back(PatchMoments::of(t));
     active_.resize(items.size());
     std::iota(active_.begin(), active_.end(), 0u);
-    link_faces(mesh);
+    link_faces(mesh, items);
     while (!links_.empty()) round();
     std::vector<std::uint32_t> roots = active_;
     root_ = join_apart(roots.data(), roots.data() + roots.size());
@@ -42,14 +46,17 @@ class Clustering {
   PatchClusters take() { return {std::move(joins_), std::move(moments_), root_}; }
 
  private:
-  /// Neighbors, as places in active_; a negative cost is not known yet.
+  /// Neighbors, as places in active_, and whether all edges between them are sharp.
   struct Link {
-    std::uint32_t u, v;
+    std::uint32_t u, v : 31, sharp : 1;
     float cost;
   };
+  static constexpr float kUnknown = -1;
+  /// The bits of a place in active_, and the one that marks that of a new round whose cluster is unchanged.
+  static constexpr std::uint32_t kPlace = 0x7fffffffu, kKept = ~kPlace;
 
   /// Faces that share an edge: half-edges sorted by their lesser vertex, matched by the other one.
-  void link_faces(const TriangleMesh& mesh) {
+  void link_faces(const TriangleMesh& mesh, const std::vector<PatchItem>& items) {
     std::vector<std::uint32_t> begin(mesh.vertices.size() + 1, 0);
     auto each = [&](auto f) {
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -73,9 +80,17 @@ class Clustering {
       std::sort(from, to,
                 [](const Half& x, const Half& y) { return x.other != y.other ? x.other < y.other : x.face < y.face; });
       for (auto h = from; h != to && h + 1 != to; ++h) {
-        if (h[0].other == h[1].other && h[0].face != h[1].face) links_.push_back({h[0].face, h[1].face, -1});
+        if (h[0].other != h[1].other || h[0].face == h[1].face) continue;
+        // Whatever the way that the faces are wound.
+        const float cosine = std::abs(items[h[0].face].normal.dot(items[h[1].face].normal));
+        links_.push_back({h[0].face, h[1].face & kPlace, cosine < kSharpCosine, kUnknown});
       }
     }
+  }
+
+  float cost(const Link& l) const {
+    const float joint = joint_cost(moments_[active_[l.u]], moments_[active_[l.v]]);
+    return l.sharp ? kSharpWorth * joint : joint;
   }
 
   void round() {
@@ -84,7 +99,7 @@ class Clustering {
     best_cost_.assign(n, std::numeric_limits<float>::infinity());
     best_key_.assign(n, 0);
     for (Link& l : links_) {
-      if (l.cost < 0) l.cost = joint_cost(moments_[active_[l.u]], moments_[active_[l.v]]);
+      if (l.cost < 0) l.cost = cost(l);
       // Regular meshes are full of ties; a scattered order breaks them in many places at once.
       const std::uint32_t key = (std::min(l.u, l.v) * 2654435761u) ^ (std::max(l.u, l.v) * 2246822519u);
       auto offer = [&](std::uint32_t u, std::uint32_t v) {
@@ -118,9 +133,6 @@ class Clustering {
     relink();
   }
 
-  /// Marks a place of the new round whose cluster is unchanged.
-  static constexpr std::uint32_t kKept = 0x80000000u;
-
   void join(std::uint32_t u, std::uint32_t v) {
     renamed_[u] = renamed_[v] = static_cast<std::uint32_t>(next_.size());
     next_.push_back(add(active_[u], active_[v]));
@@ -133,26 +145,31 @@ class Clustering {
     return static_cast<std::uint32_t>(joins_.size() - 1);
   }
 
-  /// Renames the ends of the links, drops those inside a cluster and all but one between two clusters.
+  /// Renames the ends of the links, drops those inside a cluster and all but one between two clusters, which is sharp
+  /// where all of them are.
   void relink() {
     std::size_t kept = 0;
     first_.assign(active_.size() + 1, 0);
     for (const Link& l : links_) {
       const std::uint32_t u = renamed_[l.u], v = renamed_[l.v];
-      const std::uint32_t pu = u & ~kKept, pv = v & ~kKept;
+      const std::uint32_t pu = u & kPlace, pv = v & kPlace;
       if (pu == pv) continue;
-      links_[kept++] = {std::min(pu, pv), std::max(pu, pv), (u & v & kKept) ? l.cost : -1.0f};
+      links_[kept++] = {std::min(pu, pv), std::max(pu, pv) & kPlace, l.sharp, (u & v & kKept) ? l.cost : kUnknown};
       ++first_[std::min(pu, pv) + 1];
     }
     links_.resize(kept);
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     sorted_.resize(kept);
     for (const Link& l : links_) sorted_[first_[l.u]++] = l;
-    seen_.assign(active_.size(), kNoCluster);
+    // Where in links_ the link of a cluster with the last one of lesser number is.
+    place_.assign(active_.size(), kNoCluster);
     kept = 0;
     for (const Link& l : sorted_) {
-      if (seen_[l.v] == l.u) continue;
-      seen_[l.v] = l.u;
+      if (const std::uint32_t place = place_[l.v]; place < kept && links_[place].u == l.u) {
+        links_[place].sharp &= l.sharp;
+        continue;
+      }
+      place_[l.v] = static_cast<std::uint32_t>(kept);
       links_[kept++] = l;
     }
     links_.resize(kept);
@@ -184,7 +201,7 @@ class Clustering {
 
   std::vector<PatchJoin> joins_;
   std::vector<PatchMoments> moments_;
-  std::vector<std::uint32_t> active_, next_, renamed_, best_, best_key_, first_, seen_;
+  std::vector<std::uint32_t> active_, next_, renamed_, best_, best_key_, first_, place_;
   std::vector<float> best_cost_;
   std::vector<Link> links_, sorted_;
   std::uint32_t root_ = 0;

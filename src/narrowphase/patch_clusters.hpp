@@ -72,8 +72,9 @@ struct PatchClusters {
 };
 
 /// Clusters the faces of `mesh`: neighbors over an edge that are each other's best partner are joined, round after
-/// round, by the thickness + kDiameterWeight · diameter of the two together; what has no common edge is joined by
-/// place. Time is nearly linear in the number of faces. `items` are the faces in order.
+/// round, by the thickness + kDiameterWeight · diameter of the two together, more where they meet in sharp edges only;
+/// what has no common edge is joined by place. Time is nearly linear in the number of faces. `items` are the faces in
+/// order.
 PatchClusters cluster_patches(const TriangleMesh& mesh, const std::vector<PatchItem>& items);
 
 }  // namespace tegotae
