@@ -66,13 +66,22 @@ std::string order_csv(const Scene& scene, const Disassembly& order) {
   return text;
 }
 
+/// What each part of a graph says, by its index: the step in which it came out, first as one of a group; none of what
+/// is left.
+std::map<std::size_t, std::string> labels(const Scene& scene, const Disassembly& order) {
+  std::map<std::size_t, std::string> out;
+  for (std::size_t i = 0; i < order.order.size(); ++i)
+    for (const std::size_t part : order.order[i].parts)
+      out.emplace(part, format("%zu. ", i + 1) + scene.parts[part].name);
+  for (const std::size_t part : order.left) out.emplace(part, scene.parts[part].name);
+  return out;
+}
+
 /// An arrow from each part to those that stopped it.
 std::string order_dot(const Scene& scene, const Disassembly& order) {
   std::string text = "digraph disassembly {\n  rankdir=LR;\n";
-  for (std::size_t i = 0; i < order.order.size(); ++i)
-    for (const std::size_t p : order.order[i].parts)
-      text +=
-          "  " + node(scene.parts[p].name) + " [label=" + node(format("%zu. ", i + 1) + scene.parts[p].name) + "];\n";
+  for (const auto& [part, label] : labels(scene, order))
+    text += "  " + node(scene.parts[part].name) + " [label=" + node(label) + "];\n";
   for (const Blocked& b : order.blocked)
     for (const std::size_t by : b.by)
       text += "  " + node(scene.parts[b.part].name) + " -> " + node(scene.parts[by].name) + ";\n";
@@ -135,10 +144,11 @@ Json blocked_graph(const Scene& scene, const Disassembly& order) {
   std::map<std::size_t, std::size_t> layer;
   Json nodes = Json::array(), arrows = Json::array();
   std::map<std::size_t, std::size_t> place;
-  const auto add = [&](std::size_t part, const std::string& text, std::size_t column) {
+  std::map<std::size_t, std::string> label = labels(scene, order);
+  const auto add = [&](std::size_t part, std::size_t column) {
     layer[part] = column;
     place[part] = nodes.size();
-    nodes.push_back({{"text", text}, {"layer", column}});
+    nodes.push_back({{"text", label[part]}, {"layer", column}});
   };
   std::size_t columns = 0;
   for (std::size_t i = 0; i < order.order.size(); ++i) {
@@ -146,10 +156,10 @@ Json blocked_graph(const Scene& scene, const Disassembly& order) {
     for (const std::size_t by : waited_for(order, order.order[i]))
       if (layer.count(by) > 0) column = std::max(column, layer[by] + 1);
     for (const std::size_t part : order.order[i].parts)
-      if (place.count(part) == 0) add(part, format("%zu. ", i + 1) + scene.parts[part].name, column);
+      if (place.count(part) == 0) add(part, column);
     columns = std::max(columns, column + 1);
   }
-  for (const std::size_t part : order.left) add(part, scene.parts[part].name, columns);
+  for (const std::size_t part : order.left) add(part, columns);
   for (const Blocked& b : order.blocked)
     for (const std::size_t by : b.by)
       if (place.count(b.part) > 0 && place.count(by) > 0) arrows.push_back({place[b.part], place[by]});
@@ -181,40 +191,58 @@ std::string order_html(const SceneFile& file, const Disassembly& order) {
 
 /// The path of a step, among the parts that are there then.
 void write_step(const SceneFile& file, const Removal& step, const std::optional<review::ClearanceBand>& band,
-                const std::string& path) {
+                const std::string& path, const review::Progress& progress) {
   Scene then = removal_scene(file.scene, step.there, step.parts);
   Part& held = held_part(then);
   const std::vector<RecordFrame> rows = path_rows(step.plan.path, step.plan.center, bounding_sphere(*held.mesh).radius);
   held.pose = rows.front().x;
-  const review::Scan scan = review::scan_path(then, path, rows, {}, band ? band->high : 0);
+  const review::Scan scan = review::scan_path(then, path, rows, progress, band ? band->high : 0);
   std::optional<review::BandFindings> zones;
   if (band) zones = review::find_band(*band, rows, scan);
   write_file(path + ".glb", review::path_gltf(then, file.up, rows, scan, zones, true));
   write_file(path + ".csv", review::path_csv(then, rows, scan, zones));
 }
 
-/// Steps of an earlier order that had more than this one.
-void remove_steps_from(std::size_t step, const std::string& folder) {
+/// Of a step, in `folder`.
+std::vector<std::string> step_files(std::size_t step, const std::string& folder) {
+  const std::string path = folder + "/" + step_file(step);
+  return {path + ".glb", path + ".csv"};
+}
+
+/// Those of steps that an earlier order had, from one on.
+std::vector<std::string> steps_from(std::size_t step, const std::string& folder) {
+  std::vector<std::string> out;
   for (bool any = true; any; ++step) {
     any = false;
-    for (const char* kind : {".glb", ".csv"}) any |= std::filesystem::remove(folder + "/" + step_file(step) + kind);
+    for (const std::string& file : step_files(step, folder)) {
+      if (!std::filesystem::exists(file)) continue;
+      out.push_back(file);
+      any = true;
+    }
   }
+  return out;
 }
 
 }  // namespace
 
-std::vector<std::string> order_files(const std::string& folder) {
-  return {folder + "/order.csv", folder + "/order.dot", folder + "/order.html"};
+std::vector<std::string> order_files(const std::string& folder, std::size_t parts) {
+  std::vector<std::string> out = {folder + "/order.csv", folder + "/order.dot", folder + "/order.html"};
+  // Each step leaves one piece more, until each part is one.
+  for (std::size_t step = 0; step + 1 < parts; ++step)
+    for (const std::string& file : step_files(step, folder)) out.push_back(file);
+  const std::vector<std::string> more = steps_from(parts - 1, folder);
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
 }
 
 void write_order(const SceneFile& file, const Disassembly& order, const std::optional<review::ClearanceBand>& band,
-                 const std::string& folder) {
+                 const std::string& folder, const review::Progress& progress) {
   write_file(folder + "/order.csv", order_csv(file.scene, order));
   write_file(folder + "/order.dot", order_dot(file.scene, order));
   write_file(folder + "/order.html", order_html(file, order));
   for (std::size_t i = 0; i < order.order.size(); ++i)
-    write_step(file, order.order[i], band, folder + "/" + step_file(i));
-  remove_steps_from(order.order.size(), folder);
+    write_step(file, order.order[i], band, folder + "/" + step_file(i), progress);
+  for (const std::string& earlier : steps_from(order.order.size(), folder)) std::filesystem::remove(earlier);
 }
 
 std::string order_text(const Scene& scene, const Disassembly& order) {

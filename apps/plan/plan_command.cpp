@@ -22,21 +22,21 @@
 namespace tegotae::plan {
 namespace {
 
-constexpr std::int64_t kIterations = 20000;  // default of a search without a time limit
-constexpr double kSeconds = 60;              // default of a search with one
+constexpr std::int64_t kIterations = 20000;  // default of a plan without a time limit
+constexpr double kSeconds = 60;              // default of a plan with one
 
 PlanOptions plan_options(const PlanCommand& o, const Scene& scene, apps::StatusLine& status) {
   PlanOptions options;
   if (!o.goal.empty()) options.goal = apps::parse_pose(o.goal, scene);
   options.clearance = o.clearance;
   options.seed = o.seed.value_or(1);
-  // A seed or a number of iterations asks for a repeatable search: no time limit ends it.
+  // A seed or a number of iterations asks for a repeatable plan: no time limit ends it.
   const bool counted = o.seed || o.iterations;
   options.iterations =
       o.iterations.value_or(counted && !o.seconds ? kIterations : std::numeric_limits<std::int64_t>::max());
   if (o.seconds || !counted) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(o.seconds.value_or(kSeconds));
-    options.search_ends = [end] { return std::chrono::steady_clock::now() > end; };
+    options.ends = [end] { return std::chrono::steady_clock::now() > end; };
   }
   options.stop = &apps::catch_interrupts();
   options.progress = [&status](const PlanProgress& p) {
@@ -53,7 +53,7 @@ int run_all(const PlanCommand& o) {
   how.load = o.load;
   const SceneFile file = apps::load_with_progress(o.scene, how);
   apps::print_notes(file.scene);
-  refuse_to_replace(order_files(o.folder), file.files);
+  refuse_to_replace(order_files(o.folder, file.scene.parts.size()), file.files);
   make_folder(o.folder);
   DisassemblyOptions options;
   options.clearance = o.clearance;
@@ -68,7 +68,8 @@ int run_all(const PlanCommand& o) {
     };
     status.say("building hierarchies");
     order = take_apart(file.scene, options);
-    write_order(file, order, o.band, o.folder);
+    write_order(file, order, o.band, o.folder,
+                [&](const char* what, std::size_t done, std::size_t total) { status.show(what, done, total); });
   }
   std::cout << order_text(file.scene, order) << "order: " << o.folder << "/order.html" << std::endl;
   return order.left.size() == 1 && order.together.empty() && !order.interrupted ? apps::kDone : apps::kRunFailed;
@@ -86,12 +87,14 @@ CLI::App* add_plan(CLI::App& app, PlanCommand& o) {
   CLI::Option* all = plan->add_flag("--all", o.all, "Take the whole assembly apart, whatever part is held");
   apps::add_length_option(*plan, "--clearance", o.clearance, "Clearance that the path keeps at least");
   review::add_band_option(*plan, o.band);
-  plan->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same path")->type_name("N");
+  plan->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same path")
+      ->check(apps::at_least(std::int64_t{0}))
+      ->type_name("N");
   plan->add_option("--iterations", o.iterations, "Most iterations of the search")
       ->check(apps::between(std::int64_t{1}, std::int64_t{1000000000}))
       ->type_name("N");
   CLI::Option* seconds =
-      plan->add_option("--seconds", o.seconds, "Longest search (60; unbounded with --seed or --iterations)")
+      plan->add_option("--seconds", o.seconds, "Time that the plan has (60; unbounded with --seed or --iterations)")
           ->check(apps::between(0.1, 1e6))
           ->type_name("S");
   plan->add_option("--to", o.folder, "Folder for the results")->capture_default_str()->type_name("DIR");

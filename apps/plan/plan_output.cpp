@@ -9,6 +9,7 @@
 #include "loop/scene_parts.hpp"
 #include "review/path_exports.hpp"
 #include "review/review.hpp"
+#include "session/run_goal.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/record/recorder.hpp"
 
@@ -89,6 +90,7 @@ void write_plan(const PlanReport& r, const std::string& folder, const review::Pr
   RecordingInfo info;
   info.scene = file.path;
   info.held = held_part(file.scene).name;
+  if (r.plan.found) info.goal = goal_text(r.rows.back().x);
   info.program = "tegotae " TEGOTAE_VERSION_STRING;
   Recorder recorder(folder + "/recording.csv", RecordMode::synchronous, info);
   for (const RecordFrame& row : r.rows) recorder.push(row);

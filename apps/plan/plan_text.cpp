@@ -41,8 +41,9 @@ std::string found_text(const PlanReport& r) {
              r.to_goal ? "goes to its goal" : "comes out", number_text(1e3 * r.way, 4).c_str(),
              number_text(kDegrees * r.turn, 3).c_str(), r.plan.path.size() - 1, r.plan.path.size() == 2 ? "" : "s") +
       certificate(r) + "\n";
-  if (r.plan.interrupted)
-    text += "  interrupted: a shorter or wider way was not looked for to the end, and it may leave more than that\n";
+  if (r.plan.interrupted || r.plan.out_of_time)
+    text += std::string(r.plan.interrupted ? "  interrupted" : "  the time is up") +
+            ": a shorter or wider way was not looked for to the end, and it may leave more than that\n";
   for (std::size_t i = 0; i < std::min(kMaxListed, r.tightest.size()); ++i) {
     const review::PartClearance& c = r.tightest[i];
     text += format("  nearest to \"%s\": %s mm at %.2f s, at", r.file.scene.parts[c.part].name.c_str(),
@@ -117,6 +118,7 @@ std::string plan_json(const PlanReport& r) {
   j["task"] = r.to_goal ? "goal" : "out";
   j["found"] = r.plan.found;
   j["interrupted"] = r.plan.interrupted;
+  j["out_of_time"] = r.plan.out_of_time;
   j["clearance_m"] = r.plan.clearance;
   j["motions"] = r.plan.path.size() - 1;
   j["way_m"] = r.way;

@@ -47,7 +47,18 @@ struct Sum {
 struct Profile {
   std::vector<Sum> in = std::vector<Sum>(kSegments), out = in, stands = in;
   ForcePeak insertion, seating, pull_out;
-  double deepest = 0;
+  double deepest = 0, shallowest = kInfinity;
+
+  /// What the way takes, and how far the part came on it.
+  const std::vector<Sum>& way(bool pulled) const { return pulled ? out : in; }
+  double end(bool pulled) const { return pulled ? shallowest : deepest; }
+};
+
+/// How deep the held part is: along a line inwards.
+struct DepthAxis {
+  Vec3 inwards;       // of length one
+  double offset = 0;  // of the depth, m
+  double depth(const Pose& X, const Vec3& center) const { return inwards.dot(X * center) + offset; }
 };
 
 void take_peak(const Tick& tick, double force, const Scene& scene, ForcePeak& peak) {
@@ -65,7 +76,10 @@ void take_peak(const Tick& tick, double force, const Scene& scene, ForcePeak& pe
 
 Profile profile(const std::vector<Tick>& ticks, const Vec3& direction, double way, const Scene& scene) {
   Profile p;
-  for (const Tick& tick : ticks) p.deepest = std::max(p.deepest, tick.depth);
+  for (const Tick& tick : ticks) {
+    p.deepest = std::max(p.deepest, tick.depth);
+    p.shallowest = std::min(p.shallowest, tick.depth);
+  }
   for (std::size_t i = 1; i < ticks.size(); ++i) {
     const Tick& tick = ticks[i];
     const double moved = tick.depth - ticks[i - 1].depth;
@@ -116,42 +130,79 @@ Vec3 direction_of(const Review& r) {
   return way.norm() > kMinWay ? Vec3(way.normalized()) : Vec3::Zero();
 }
 
-/// The last row of each tick.
-std::vector<Tick> recorded(const Review& r, const Vec3& direction) {
+/// Depth is 0 where the way begins; of a way out where the part came farthest out.
+DepthAxis axis_of(const Review& r, const Vec3& direction, bool pulled) {
+  DepthAxis axis{pulled ? Vec3(-direction) : direction};
   const auto& rows = r.recording.frames;
-  const Vec3 from = rows.front().x * r.center;
+  if (!pulled) {
+    axis.offset = -axis.depth(rows.front().x, r.center);
+    return axis;
+  }
+  double least = kInfinity;
+  for (const RecordFrame& row : rows) least = std::min(least, axis.depth(row.x, r.center));
+  axis.offset = -least;
+  return axis;
+}
+
+/// The last row of each tick.
+std::vector<Tick> recorded(const Review& r, const DepthAxis& axis) {
+  const auto& rows = r.recording.frames;
   std::vector<Tick> out;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (i + 1 == rows.size() || rows[i + 1].tick != rows[i].tick)
-      out.push_back({rows[i].t, direction.dot(rows[i].x * r.center - from), rows[i].forces});
+      out.push_back({rows[i].t, axis.depth(rows[i].x, r.center), rows[i].forces});
   return out;
 }
 
 /// The pen of the recording, with another coefficient of friction.
-std::vector<Tick> rerun(const Review& r, const Vec3& direction, double mu, const Progress& progress) {
+std::vector<Tick> rerun(const Review& r, const DepthAxis& axis, double mu, const Progress& progress) {
   const auto& rows = r.recording.frames;
   Scene scene = r.file.scene;
   scene.contact.tick_budget = std::numeric_limits<double>::infinity();
   scene.friction = {mu, {}};
   HapticLoop loop(scene);
-  const Vec3 from = rows.front().x * r.center;
   std::vector<Tick> out;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (progress && i % kTellEvery == 0) progress("with other friction, row", i, rows.size());
     if (i > 0 && rows[i].tick == rows[i - 1].tick) continue;
     const TickReport& report = loop.step(rows[i].y, kPeriod);
-    out.push_back({rows[i].t, direction.dot(report.proxy.X * r.center - from), report.forces});
+    out.push_back({rows[i].t, axis.depth(report.proxy.X, r.center), report.forces});
   }
   return out;
 }
 
+/// The forces by depth, and what of the way's work is friction.
+void fill_depths(const Profile& nominal, const Profile& low, const Profile& high, AssemblyForce& out) {
+  double work = 0, rubbed = 0;
+  for (std::size_t k = 0; k < kSegments; ++k) {
+    const Sum &in = nominal.in[k], &way = nominal.way(out.pulled)[k];
+    DepthForce d;
+    d.depth = (static_cast<double>(k) + 0.5) / kSegments * out.way;
+    d.insertion = in.mean();
+    d.insertion_peak = in.count > 0 ? in.most : kNan;
+    d.friction = way.count > 0 ? way.friction / way.count : kNan;
+    d.seating = nominal.stands[k].mean();
+    d.pull_out = nominal.out[k].mean();
+    d.pull_out_peak = nominal.out[k].count > 0 ? nominal.out[k].most : kNan;
+    d.low = low.way(out.pulled)[k].mean();
+    d.high = high.way(out.pulled)[k].mean();
+    out.over_depth.push_back(d);
+    if (way.count == 0) continue;
+    work += way.mean();
+    rubbed += d.friction;
+  }
+  out.friction_share = work > 0 ? rubbed / work : 0;
+}
+
 }  // namespace
 
-AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progress& progress) {
+AssemblyForce assembly_force(const Review& r, const ForceBand& band, bool pulled, const Progress& progress) {
   AssemblyForce out;
+  out.pulled = pulled;
   const Vec3 direction = direction_of(r);
   if (direction.isZero()) return out;
-  const std::vector<Tick> ticks = recorded(r, direction);
+  const DepthAxis axis = axis_of(r, direction, pulled);
+  const std::vector<Tick> ticks = recorded(r, axis);
   for (const Tick& tick : ticks) {
     out.way = std::max(out.way, tick.depth);
     out.known |= tick.forces.count > 0;
@@ -159,41 +210,23 @@ AssemblyForce assembly_force(const Review& r, const ForceBand& band, const Progr
   }
   out.known &= out.way > kMinWay;
   if (!out.known) return out;
-  const Profile nominal = profile(ticks, direction, out.way, r.file.scene);
+  const Profile nominal = profile(ticks, axis.inwards, out.way, r.file.scene);
   Profile low, high;
   if (band.high > 0) {
     out.band = band;
-    low = profile(rerun(r, direction, band.low, progress), direction, out.way, r.file.scene);
-    high = profile(rerun(r, direction, band.high, progress), direction, out.way, r.file.scene);
-    out.low_mean = mean_of(low.in);
-    out.high_mean = mean_of(high.in);
-    out.low_depth = low.deepest;
-    out.high_depth = high.deepest;
+    low = profile(rerun(r, axis, band.low, progress), axis.inwards, out.way, r.file.scene);
+    high = profile(rerun(r, axis, band.high, progress), axis.inwards, out.way, r.file.scene);
+    out.low_mean = mean_of(low.way(pulled));
+    out.high_mean = mean_of(high.way(pulled));
+    out.low_depth = low.end(pulled);
+    out.high_depth = high.end(pulled);
   }
   out.insertion = nominal.insertion;
   out.seating = nominal.seating;
   out.pull_out = nominal.pull_out;
   out.insertion_mean = mean_of(nominal.in);
   out.pull_out_mean = mean_of(nominal.out);
-  double work = 0, rubbed = 0;
-  for (std::size_t k = 0; k < kSegments; ++k) {
-    const Sum& in = nominal.in[k];
-    DepthForce d;
-    d.depth = (static_cast<double>(k) + 0.5) / kSegments * out.way;
-    d.insertion = in.mean();
-    d.insertion_peak = in.count > 0 ? in.most : kNan;
-    d.friction = in.count > 0 ? in.friction / in.count : kNan;
-    d.seating = nominal.stands[k].mean();
-    d.pull_out = nominal.out[k].mean();
-    d.pull_out_peak = nominal.out[k].count > 0 ? nominal.out[k].most : kNan;
-    d.low = low.in[k].mean();
-    d.high = high.in[k].mean();
-    out.over_depth.push_back(d);
-    if (in.count == 0) continue;
-    work += in.mean();
-    rubbed += d.friction;
-  }
-  out.friction_share = work > 0 ? rubbed / work : 0;
+  fill_depths(nominal, low, high, out);
   return out;
 }
 
@@ -207,16 +240,17 @@ std::vector<std::string> assembly_force_text(const AssemblyForce& f) {
     return what + ": at most " + newtons(p.force) + " at " + mm(p.depth) + " mm" +
            (p.part.empty() ? "" : ", against " + p.part);
   };
-  const auto mean = [&](double force) { return "; " + newtons(force) + " in the mean over the way"; };
-  out.push_back(f.insertion.force > 0
-                    ? peak("insertion", f.insertion) + mean(f.insertion_mean) +
-                          (f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string())
-                    : "insertion: no force seen");
+  const auto mean = [&](double force, bool of_way) {
+    return "; " + newtons(force) + " in the mean over the way" +
+           (of_way && f.rubs ? format(", %.0f %% of it friction", 100 * f.friction_share) : std::string());
+  };
+  out.push_back(f.insertion.force > 0 ? peak("insertion", f.insertion) + mean(f.insertion_mean, !f.pulled)
+                                      : "insertion: no force seen");
   out.push_back(f.seating.force > 0 ? peak("seating (final)", f.seating) : "seating (final): no force seen");
-  out.push_back(f.pull_out.force > 0 ? peak("pull-out", f.pull_out) + mean(f.pull_out_mean)
+  out.push_back(f.pull_out.force > 0 ? peak("pull-out", f.pull_out) + mean(f.pull_out_mean, f.pulled)
                                      : "pull-out: no force seen");
   if (f.band.high > 0)
-    out.push_back(format("insertion with friction of %.2g to %.2g: ", f.band.low, f.band.high) +
+    out.push_back(way_force_name(f) + format(" with friction of %.2g to %.2g: ", f.band.low, f.band.high) +
                   fixed_text(f.low_mean, 2) + " to " + newtons(f.high_mean) + " in the mean, to " + mm(f.low_depth) +
                   " and " + mm(f.high_depth) + " mm");
   return out;

@@ -32,6 +32,8 @@ ExitFindings find_exit(const Scene& scene, const Vec3& center, const Pose& first
   const double radius = radius_about(*held_part(scene).mesh, center);
   const Exit exit(scene, center, radius);
   ExitFindings out{exit.is_out(first), exit.is_out(goal), exit.is_out(end), {}};
+  // A goal may be no farther out than Exit asks for, and a part that stops within the tolerance of it a little less.
+  out.at_end |= out.at_goal && exit.is_beside(end);
   if (!out.at_end) out.inside = inside_of(scene, center, radius, end);
   return out;
 }

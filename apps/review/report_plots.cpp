@@ -158,7 +158,7 @@ json depth_plot(const AssemblyForce& f) {
   }
   add("pull-out", &DepthForce::pull_out, false);
   add("seating (final)", &DepthForce::seating, false);
-  if (f.rubs) add("of the insertion, friction", &DepthForce::friction, false);
+  if (f.rubs) add(std::string("of the ") + way_force_name(f) + ", friction", &DepthForce::friction, false);
   add("insertion, largest", &DepthForce::insertion_peak, false);
   add("insertion", &DepthForce::insertion, false);
   json out = plot("Force of the assembly over depth", "force (N)", std::move(series));

@@ -166,13 +166,13 @@ json assembly(const AssemblyForce& f) {
       t["rows"].push_back(
           {what, newtons(p.force) + " N", length_text(p.depth), seconds(p.t), p.part, place_text(p.place_W), mean});
   };
-  row("insertion", f.insertion,
-      newtons(f.insertion_mean) + " N" + (f.rubs ? format(", %.0f %% friction", 100 * f.friction_share) : ""));
+  const std::string rubs = f.rubs ? format(", %.0f %% friction", 100 * f.friction_share) : "";
+  row("insertion", f.insertion, newtons(f.insertion_mean) + " N" + (f.pulled ? "" : rubs));
   row("seating (final)", f.seating, "");
-  row("pull-out", f.pull_out, newtons(f.pull_out_mean) + " N");
+  row("pull-out", f.pull_out, newtons(f.pull_out_mean) + " N" + (f.pulled ? rubs : ""));
   const auto end = [&](double mu, double mean, double depth) {
-    t["rows"].push_back(
-        {format("insertion, mu %.2g", mu), "", "to " + length_text(depth), "", "", "", newtons(mean) + " N"});
+    t["rows"].push_back({format("%s, mu %.2g", way_force_name(f), mu), "", "to " + length_text(depth), "", "", "",
+                         newtons(mean) + " N"});
   };
   if (f.band.high > 0) {
     end(f.band.low, f.low_mean, f.low_depth);

@@ -106,7 +106,9 @@ Review review_recording(const std::string& path, Recording recording, SceneFile 
   const bool inwards = leads_inwards(r.file.scene, rows.front().x, end);
   r.verdict = judge(r.findings, r.file.scene, inwards, r.scan, r.recording.damage);
   tell_scene_changes(r.recording.info, r);
-  r.assembly = assembly_force(r, questions.friction, progress);
+  const ExitFindings& exit = r.findings.exit;
+  const bool pulled = r.findings.goal && !exit.at_first && (exit.at_goal || !inwards);
+  r.assembly = assembly_force(r, questions.friction, pulled, progress);
   if (questions.band) r.band = find_band(*questions.band, rows, r.scan);
   return r;
 }

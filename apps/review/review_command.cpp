@@ -100,7 +100,9 @@ int run_review(const ReviewOptions& o) {
   write_file(out, report_html(r, progress));
   if (!o.csv.empty()) write_file(o.csv, path_csv(r.file.scene, rows, r.scan, r.band));
   if (!o.forces.empty()) {
-    if (!r.assembly.known) throw Error("--forces: " + o.recording + " has no contact forces (MCAP has those of qp)");
+    if (!r.assembly.known)
+      throw Error("--forces: " + o.recording +
+                  " has no contact forces: nothing was touched on a way, or it is no MCAP recording of qp");
     write_file(o.forces, assembly_force_csv(r.assembly));
   }
   if (!o.script.empty()) write_file(o.script, path_script(r.file, rows, r.center));

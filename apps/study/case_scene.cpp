@@ -12,17 +12,30 @@
 
 namespace tegotae::study {
 
-std::string write_case_scene(const SceneFile& file, const Case& c, const std::string& folder) {
+namespace {
+
+/// The mesh of part `i` in a case that has changed it; empty: it has not.
+std::string changed_mesh(const SceneFile& file, const Case& c, std::size_t i) {
+  if (c.find("inward " + file.scene.parts[i].name) == nullptr) return "";
+  return "part-" + std::to_string(i + 1) + ".ply";
+}
+
+}  // namespace
+
+std::string write_case_scene(const SceneFile& file, const Case& c, const std::string& folder,
+                             const std::vector<std::string>& inputs) {
   const std::filesystem::path to = folder;
   make_folder(folder);
   const std::string path = (to / "scene.toml").string();
-  refuse_to_replace(path, file.files);
+  std::vector<std::string> outputs = {path};
+  for (std::size_t i = 0; i < file.scene.parts.size(); ++i)
+    if (const std::string mesh = changed_mesh(file, c, i); !mesh.empty()) outputs.push_back((to / mesh).string());
+  refuse_to_replace(outputs, inputs);
   toml::table top = parse_toml(scene_text(file, file.scene, folder), path);
   for (std::size_t i = 0; i < file.scene.parts.size(); ++i) {
-    const Part& part = file.scene.parts[i];
-    if (c.find("inward " + part.name) == nullptr) continue;
-    const std::string mesh = "part-" + std::to_string(i + 1) + ".ply";
-    write_ply(*part.mesh, (to / mesh).string(), 1);
+    const std::string mesh = changed_mesh(file, c, i);
+    if (mesh.empty()) continue;
+    write_ply(*file.scene.parts[i].mesh, (to / mesh).string(), 1);
     toml::table& t = *top["part"].as_array()->get(i)->as_table();
     t.insert_or_assign("mesh", mesh);
     t.insert_or_assign("unit", "m");

@@ -127,11 +127,14 @@ void CaseTable::read() {
   std::ifstream in(path_, std::ios::binary);
   std::string line;
   std::getline(in, line);
+  // Also of an empty file: what was cut off tells nothing of what it holds.
+  if (in.eof()) throw Error(path_ + ":1: ends before its first " + layout_.number + "; delete the file");
   if (line != "# " + layout_.task)
     throw Error(path_ + ":1: holds " + layout_.numbers +
                 " of another scene, settings, parameters, goal, seed, time or version; choose another "
                 "--out or delete it");
   std::getline(in, line);
+  if (in.eof()) throw Error(path_ + ":2: ends before its first " + layout_.number + "; delete the file");
   if (line != header(layout_)) throw Error(path_ + ":2: has other columns; choose another --out or delete it");
   for (int number = 3; std::getline(in, line); ++number) {
     Result r;

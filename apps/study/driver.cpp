@@ -28,6 +28,8 @@ namespace fs = std::filesystem;
 const char* const kRetries = "9";
 // What is asked to end has this long, s.
 constexpr double kPatience = 10;
+// Files in the driver's folder; beside a database stand others whose names begin with its own.
+const char *const kTasks = "tasks", *const kLog = "log", *const kDatabase = "tasks.db";
 
 /// The first of `names` on PATH; empty: none.
 std::string on_path(std::initializer_list<const char*> names) {
@@ -120,6 +122,15 @@ void wait_for_group(pid_t group) {
   ::kill(-group, SIGKILL);
 }
 
+/// Removes what an earlier call left in the driver's folder, and nothing else: it may have been there before.
+void remove_earlier(const fs::path& folder) {
+  std::error_code failed;  // what is done is in the shards
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kTasks || name == kLog || name.rfind(kDatabase, 0) == 0) fs::remove(entry.path(), failed);
+  }
+}
+
 }  // namespace
 
 std::string find_driver(const std::string& study) {
@@ -133,13 +144,12 @@ std::string find_driver(const std::string& study) {
 
 bool drive(const std::string& driver, const DriverJob& job) {
   const fs::path folder = fs::path(job.out) / "driver";
-  std::error_code failed;
-  fs::remove_all(folder, failed);  // of an earlier call; what is done is in the shards
+  remove_earlier(folder);
   make_folder(folder.string());
-  const std::string tasks = (folder / "tasks").string(), log = (folder / "log").string();
+  const std::string tasks = (folder / kTasks).string(), log = (folder / kLog).string();
   write_file(tasks, task_lines(job));
   const int processors = job.processors > 0 ? job.processors : static_cast<int>(std::thread::hardware_concurrency());
-  ::setenv("HYPERSHELL_DATABASE_FILE", fs::absolute(folder / "tasks.db").c_str(), 1);
+  ::setenv("HYPERSHELL_DATABASE_FILE", fs::absolute(folder / kDatabase).c_str(), 1);
   const std::vector<std::string> command = {
       driver, "cluster", tasks, "-N", std::to_string(processors), "-p", std::to_string(free_port()), "-r", kRetries,
       "-w",   "1",       "-Q",  "1"};

@@ -13,7 +13,7 @@ std::string shard_folder(const std::string& out) {
   return out + "/shards";
 }
 
-std::map<int, Result> read_shards(const std::string& out, const TableLayout& layout) {
+std::map<int, Result> read_shards(const Study& study, const std::string& out, const TableLayout& layout) {
   std::vector<std::string> paths;
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(shard_folder(out), failed))
@@ -24,6 +24,9 @@ std::map<int, Result> read_shards(const std::string& out, const TableLayout& lay
   for (const std::string& path : paths) {
     const CaseTable table(path, layout);
     for (const auto& [number, r] : table.rows()) {
+      if (r.parameters != parameter_cells(study, make_case(study, number)))
+        throw Error(path + ": case " + std::to_string(number) +
+                    " has other parameters than the study gives it; delete its line");
       const auto [there, added] = rows.emplace(number, r);
       if (added) {
         from[number] = path;

@@ -5,7 +5,6 @@
 #include <memory>
 #include <random>
 
-#include "broadphase/bounding_spheres.hpp"
 #include "core/numbers.hpp"
 #include "loop/inward_offset.hpp"
 #include "loop/lag.hpp"
@@ -33,8 +32,6 @@ constexpr double kPullOffset = 0.2e-3, kPullTilt = 0.5 * kDegree;
 constexpr double kLegEnd = 1e-3, kLegEndAngle = 0.1;
 // Of the held part's radius: the way between two looks at its clearance.
 constexpr double kLookStep = 0.01;
-// Of a part's radius: how far its faces may go.
-constexpr double kMaxInward = 0.05;
 constexpr std::uint64_t kStepSalt = 0x9e3779b9;  // so that the tasks of an order draw other numbers
 
 /// Does the tasks of a route one after the other.
@@ -182,10 +179,6 @@ bool change_scene(const Case& c, Scene& scene) {
   for (Part& part : scene.parts) {
     const Value* inward = c.find("inward " + part.name);
     if (inward == nullptr || inward->number == 0) continue;
-    const double radius = bounding_sphere(*part.mesh).radius;
-    if (std::abs(inward->number) > kMaxInward * radius)
-      throw Error(part.name + ": its faces cannot go inward by " + review::length_text(inward->number) +
-                  ": it is only " + review::length_text(2 * radius) + " large");
     part.mesh = std::make_shared<TriangleMesh>(inward_offset(Surface(part.mesh), inward->number));
     changed = true;
   }

@@ -45,7 +45,7 @@ void run_missing(const Study& study, Tasks& tasks, const std::vector<int>& numbe
   apps::StatusLine status;
   std::mutex mutex;
   std::size_t done = numbers.size() - missing.size(), reached = 0;
-  for (const auto& [number, r] : table.rows()) reached += r.reached ? 1 : 0;
+  for (const int i : numbers) reached += table.has(i) && table.rows().at(i).reached ? 1 : 0;
   const auto tell = [&] {
     status.say(apps::format("%s: %zu of %zu, %zu reached the goal", study.path.empty() ? "tries" : "cases", done,
                             numbers.size(), reached));

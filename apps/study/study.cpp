@@ -43,14 +43,10 @@ const Value* Case::find(const std::string& axis) const {
   return found == values.end() ? nullptr : &found->second;
 }
 
-std::size_t combinations(const Study& study) {
+int case_count(const Study& study) {
   std::size_t n = 1;
   for (const Axis& axis : study.axes) n *= axis.size();
-  return n;
-}
-
-int case_count(const Study& study) {
-  return static_cast<int>(combinations(study)) * study.repeats;
+  return static_cast<int>(n) * study.repeats;
 }
 
 Case make_case(const Study& study, int number) {

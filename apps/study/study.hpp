@@ -57,8 +57,7 @@ struct Case {
   const Value* find(const std::string& axis) const;
 };
 
-/// How many combinations the axes have, and how many cases the study.
-std::size_t combinations(const Study& study);
+/// How many cases the study has: each combination of the axes' values, `repeats` times.
 int case_count(const Study& study);
 
 /// The case with this number: the same for the same axes and seed, however many repeats there are.

@@ -96,7 +96,7 @@ std::vector<int> make_replays(const Opened& s, const std::vector<Result>& result
 
 int merge(const Opened& s, int replays) {
   const int cases = case_count(s.study);
-  std::map<int, Result> rows = read_shards(s.out, s.layout);
+  std::map<int, Result> rows = read_shards(s.study, s.out, s.layout);
   const std::vector<int> left = missing(rows, cases);
   if (!left.empty()) {
     std::string list;
@@ -129,7 +129,7 @@ int run_all(const StudyOptions& o) {
   const int cases = case_count(s.study);
   const int processors = o.processors > 0 ? o.processors : static_cast<int>(std::thread::hardware_concurrency());
   const int shards = std::min(cases, o.shards > 0 ? o.shards : processors * kShardsPerProcessor);
-  const std::map<int, Result> rows = read_shards(s.out, s.layout);
+  const std::map<int, Result> rows = read_shards(s.study, s.out, s.layout);
   DriverJob job{o.study, s.out, {}, processors, o.trusted};
   std::vector<bool> needed(static_cast<std::size_t>(shards), false);
   for (const int i : missing(rows, cases)) needed[static_cast<std::size_t>(i % shards)] = true;

@@ -1,5 +1,6 @@
 #include "study/study_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -39,7 +40,11 @@ Axis read_axis(const TomlTable& t, const char* key, const std::string& name, con
     t.fail(key, digits(x) + " is not from " + digits(range.least) + " to " + digits(range.most));
   };
   if (!t.is_table(key)) {
-    for (const double x : t.numbers(key, 1, 1000)) axis.numbers.push_back(check(x));
+    std::set<double> seen;
+    for (const double x : t.numbers(key, 1, 1000)) {
+      axis.numbers.push_back(check(x));
+      if (!seen.insert(x).second) t.fail(key, digits(x) + " is in it twice");
+    }
     return axis;
   }
   const TomlTable drawn = t.table(key, {"uniform", "tolerance"});
@@ -84,6 +89,8 @@ void read_orders(const TomlTable& t, const TomlTable& top, Study& study) {
     study.orders.push_back(names(order, "parts"));
     std::string text;
     for (const std::string& part : study.orders.back()) text += (text.empty() ? "" : ", ") + part;
+    if (std::find(study.orders.begin(), study.orders.end() - 1, study.orders.back()) != study.orders.end() - 1)
+      order.fail("parts", "another order has the same");
     axis.texts.push_back(text);
   }
   if (axis.texts.empty()) return;
@@ -133,8 +140,9 @@ Study read_study(const std::string& path) {
   study.seed = static_cast<std::uint64_t>(whole(top, "seed", 1, 0, 9007199254740992.0));
   study.repeats = static_cast<int>(whole(top, "repeats", 1, 1, kMaxCases));
   read_parameters(top, study);
-  if (static_cast<double>(combinations(study)) * study.repeats > kMaxCases)
-    top.fail("repeats", "makes more than ten million cases");
+  double cases = study.repeats;
+  for (const Axis& axis : study.axes) cases *= static_cast<double>(axis.size());
+  if (cases > kMaxCases) top.fail("repeats", "makes more than ten million cases, with all that the parameters list");
   return study;
 }
 

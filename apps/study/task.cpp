@@ -1,9 +1,12 @@
 #include "study/task.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "broadphase/bounding_spheres.hpp"
 #include "core/name_list.hpp"
 #include "loop/scene_parts.hpp"
+#include "review/verdict.hpp"
 #include "scene_file/scene_text.hpp"
 #include "shared/format.hpp"
 #include "shared/pose_option.hpp"
@@ -14,6 +17,10 @@
 
 namespace tegotae::study {
 namespace {
+
+const std::string kInward = "inward ";  // begins the name of an axis
+// Of a part's radius: how far its faces may go.
+constexpr double kMaxInward = 0.05;
 
 /// FNV-1a, 64 bits.
 class Hash {
@@ -62,14 +69,35 @@ void check_name(const std::string& name, const SceneFile& file) {
   throw Error(file.path + ": has no part " + name + ", which the study names (there are " + name_list(names) + ")");
 }
 
+/// Throws where the values of an axis are more than the faces of a part of that name can go.
+void check_inward(const Axis& axis, const std::string& name, const SceneFile& file) {
+  double most = std::max(std::abs(axis.low), std::abs(axis.high));
+  for (const double by : axis.numbers) most = std::max(most, std::abs(by));
+  for (const Part& part : file.scene.parts) {
+    const double radius = bounding_sphere(*part.mesh).radius;
+    if (part.name != name || most <= kMaxInward * radius) continue;
+    throw Error(file.path + ": the faces of " + name + " cannot go inward by " + review::length_text(most) +
+                ": it is only " + review::length_text(2 * radius) + " large");
+  }
+}
+
+void check_order(const std::vector<std::string>& order, const SceneFile& file) {
+  for (const std::string& part : order) check_name(part, file);
+  if (order.size() >= file.scene.parts.size())
+    throw Error(file.path + ": has no other parts than an order of the study takes out; leave one");
+}
+
 }  // namespace
 
 Tasks::Tasks(const Study& study, std::vector<SceneFile> files) : study_(study), files_(std::move(files)) {
   for (const SceneFile& file : files_) {
-    for (const std::vector<std::string>& order : study.orders)
-      for (const std::string& part : order) check_name(part, file);
-    for (const Axis& axis : study.axes)
-      if (axis.name.rfind("inward ", 0) == 0) check_name(axis.name.substr(7), file);
+    for (const std::vector<std::string>& order : study.orders) check_order(order, file);
+    for (const Axis& axis : study.axes) {
+      if (axis.name.rfind(kInward, 0) != 0) continue;
+      const std::string name = axis.name.substr(kInward.size());
+      check_name(name, file);
+      check_inward(axis, name, file);
+    }
     if (study.goal.empty() && !(file.script.end() > file.script.begin()))
       throw Error(file.path + ": its script does not move; give the part's goal with " +
                   (study.path.empty() ? "--goal" : "goal in " + study.path));

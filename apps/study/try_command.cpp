@@ -43,7 +43,10 @@ CLI::App* add_try(CLI::App& app, TryOptions& o) {
   tries->add_option("--jobs", o.jobs, "Tries at the same time (default: all processors); no result depends on it")
       ->check(apps::between(1, 1024))
       ->type_name("J");
-  tries->add_option("--seed", o.seed, "Seed of all random choices")->capture_default_str()->type_name("N");
+  tries->add_option("--seed", o.seed, "Seed of all random choices")
+      ->check(apps::at_least(std::int64_t{0}))
+      ->capture_default_str()
+      ->type_name("N");
   tries->add_option("--seconds", o.seconds, "Time that an operator has")
       ->check(apps::between(1.0, 3600.0))
       ->capture_default_str()

@@ -1,6 +1,9 @@
 #include "core/same_file.hpp"
 
+#include <sys/stat.h>
+
 #include <filesystem>
+#include <unordered_map>
 
 #include "tegotae/core/error.hpp"
 
@@ -10,12 +13,39 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Files that are there are compared by what they are, others by where they would be.
-bool same(const std::string& a, const std::string& b) {
-  std::error_code failed;
-  if (fs::equivalent(a, b, failed)) return true;
-  const fs::path x = fs::weakly_canonical(fs::absolute(a, failed), failed);
-  return !failed && !x.empty() && x == fs::weakly_canonical(fs::absolute(b, failed), failed) && !failed;
+/// Files by what they are, where they are there, and by where they are or would be. Of each the first one counts.
+class Files {
+ public:
+  void add(const std::string& path) {
+    for (const std::string& key : keys(path)) paths_.emplace(key, path);
+  }
+  /// The one that is the same file; null: none is.
+  const std::string* find(const std::string& path) const {
+    for (const std::string& key : keys(path))
+      if (const auto found = paths_.find(key); found != paths_.end()) return &found->second;
+    return nullptr;
+  }
+
+ private:
+  static std::vector<std::string> keys(const std::string& path) {
+    std::vector<std::string> out;
+    struct stat file = {};
+    if (::stat(path.c_str(), &file) == 0)
+      out.push_back(std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino));
+    std::error_code failed;
+    const fs::path place = fs::weakly_canonical(fs::absolute(path, failed), failed);
+    if (!failed && !place.empty()) out.push_back(place.string());
+    return out;
+  }
+
+  std::unordered_map<std::string, std::string> paths_;
+};
+
+Files files(const std::vector<std::string>& paths) {
+  Files out;
+  for (const std::string& path : paths)
+    if (!path.empty()) out.add(path);
+  return out;
 }
 
 /// Devices and pipes hold nothing that could be lost.
@@ -25,28 +55,30 @@ bool holds_nothing(const std::string& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-}  // namespace
-
-void refuse_to_replace(const std::string& path, const std::vector<std::string>& inputs) {
-  if (path.empty() || holds_nothing(path)) return;
-  for (const std::string& input : inputs) {
-    if (input.empty() || !same(path, input)) continue;
-    throw Error(ErrorKind::file,
-                path + ": would be replaced, but is read by the same command" + (input == path ? "" : " as " + input) +
-                    "; write to another file",
-                {path, 0, {}, {}});
+void refuse_to_replace(const std::vector<std::string>& outputs, const Files& inputs) {
+  Files before;
+  for (const std::string& path : outputs) {
+    if (path.empty() || holds_nothing(path)) continue;
+    if (const std::string* input = inputs.find(path))
+      throw Error(ErrorKind::file,
+                  path + ": would be replaced, but is read by the same command" +
+                      (*input == path ? "" : " as " + *input) + "; write to another file",
+                  {path, 0, {}, {}});
+    if (before.find(path) != nullptr)
+      throw Error(ErrorKind::file, path + ": the same command writes it twice; give each output its own file",
+                  {path, 0, {}, {}});
+    before.add(path);
   }
 }
 
+}  // namespace
+
+void refuse_to_replace(const std::string& path, const std::vector<std::string>& inputs) {
+  refuse_to_replace(std::vector<std::string>{path}, files(inputs));
+}
+
 void refuse_to_replace(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    refuse_to_replace(outputs[i], inputs);
-    if (outputs[i].empty() || holds_nothing(outputs[i])) continue;
-    for (std::size_t k = 0; k < i; ++k)
-      if (!outputs[k].empty() && same(outputs[i], outputs[k]))
-        throw Error(ErrorKind::file, outputs[i] + ": the same command writes it twice; give each output its own file",
-                    {outputs[i], 0, {}, {}});
-  }
+  refuse_to_replace(outputs, files(inputs));
 }
 
 }  // namespace tegotae

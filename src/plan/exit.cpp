@@ -44,10 +44,14 @@ double Exit::margin(double radius) {
 }
 
 bool Exit::is_out(const Pose& X) const {
+  return is_beside(X, margin_);
+}
+
+bool Exit::is_beside(const Pose& X, double margin) const {
   const Vec3 middle = X * box_.center;
   const Vec3 half = X.q.toRotationMatrix().cwiseAbs() * box_.half;
-  return ((middle - half - others_.high).array() > margin_).any() ||
-         ((others_.low - middle - half).array() > margin_).any();
+  return ((middle - half - others_.high).array() > margin).any() ||
+         ((others_.low - middle - half).array() > margin).any();
 }
 
 std::vector<Pose> Exit::straight_out(const Pose& from) const {

@@ -23,6 +23,8 @@ class Exit {
   static double margin(double radius);
   /// Whether the held part is out at `X`, by the margin.
   bool is_out(const Pose& X) const;
+  /// Whether it is beside the box around the others there, by whatever little.
+  bool is_beside(const Pose& X) const { return is_beside(X, 0); }
   /// Poses at which it is out, with the orientation of `from`: straight out along the axes of the world and of the
   /// part.
   std::vector<Pose> straight_out(const Pose& from) const;
@@ -30,6 +32,8 @@ class Exit {
   const WorldBox& room() const { return room_; }
 
  private:
+  bool is_beside(const Pose& X, double margin) const;
+
   Vec3 center_;
   double margin_;
   Box box_;          ///< of the held part

@@ -87,14 +87,16 @@ class Planning {
     plan.clearance = certified(plan.path);
     plan.found = plan.found && plan.clearance > 0;  // what is not proved is not found
     count(world_, plan);
-    plan.interrupted = stopped();
+    plan.interrupted = interrupted();
+    plan.out_of_time = !plan.interrupted && stopped();
     plan.seconds = seconds();
     plan.cpu = processor_seconds() - cpu_began_;
     return plan;
   }
 
  private:
-  bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  bool interrupted() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  bool stopped() const { return interrupted() || (options_.ends && options_.ends()); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool ended() const { return stopped() || (options_.search_ends && options_.search_ends()); }
 

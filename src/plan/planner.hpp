@@ -27,6 +27,7 @@ struct PlanOptions {
   std::uint64_t seed = 1;
   std::int64_t iterations = 20000;                         ///< of the search, at most
   std::function<bool()> search_ends = {};                  ///< asked in the search: whether to give it up; empty: no
+  std::function<bool()> ends = {};                         ///< asked all the time: whether to end with what there is
   const std::atomic<bool>* stop = nullptr;                 ///< set it to end with what there is; null: disabled
   std::function<void(const PlanProgress&)> progress = {};  ///< ten times a second or less, and where `what` is another
 };
@@ -41,6 +42,7 @@ struct PartInTheWay {
 struct Plan {
   bool found = false;
   bool interrupted = false;  ///< by PlanOptions::stop
+  bool out_of_time = false;  ///< ended by PlanOptions::ends
   /// Poses X_WF of the held part; between two of them its center of mass goes straight and it turns at a constant rate.
   /// It begins where the held part starts in a contact loop. Without a solution: the way to the farthest pose reached.
   std::vector<Pose> path;
@@ -65,9 +67,9 @@ bool has_planner();
 std::string missing_planner();
 
 /// Looks for a path of the held part to a goal, or out. The same scene, options and build give the same plan as long as
-/// neither `search_ends` nor `stop` ends it. Throws Error as HapticLoop's constructor, when the goal is not free, when
-/// the held part starts nearer to another one than `clearance`, and where has_planner() is false. One at a time in a
-/// process: OMPL's random numbers are the process's.
+/// neither `search_ends` nor `ends` nor `stop` ends it. Throws Error as HapticLoop's constructor, when the goal is not
+/// free, when the held part starts nearer to another one than `clearance`, and where has_planner() is false. One at a
+/// time in a process: OMPL's random numbers are the process's.
 Plan plan_path(const Scene& scene, const PlanOptions& options);
 
 }  // namespace tegotae

@@ -56,7 +56,7 @@ void make(plan::PlanReport& report, PlanOptions options, std::optional<double> s
   const Turn turn(ending);
   if (seconds) {
     const auto end = Clock::now() + std::chrono::duration<double>(*seconds);
-    options.search_ends = [end] { return Clock::now() > end; };
+    options.ends = [end] { return Clock::now() > end; };
   }
   options.stop = ending.flag();
   report.plan = plan_path(report.file.scene, options);

@@ -1,5 +1,7 @@
 #include "session/run_goal.hpp"
 
+#include <charconv>
+
 #include "broadphase/bounding_spheres.hpp"
 #include "loop/scene_parts.hpp"
 
@@ -13,6 +15,18 @@ constexpr double kEndTolerance = 0.02;
 constexpr double kEndRotationTolerance = 0.1;  // rad
 
 }  // namespace
+
+std::string exact_text(double x) {
+  char number[32];
+  return {number, std::to_chars(number, number + sizeof number, x).ptr};
+}
+
+std::string goal_text(const Pose& X) {
+  std::string text;
+  for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()})
+    text += (text.empty() ? "" : ",") + exact_text(x);
+  return text;
+}
 
 RunGoal::RunGoal(const SceneFile& file, const Vec3& center)
     : center_(center),

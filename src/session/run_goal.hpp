@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "tegotae/scene_file/scene_file.hpp"
 #include "tegotae/session/session.hpp"
 
@@ -12,6 +14,11 @@ inline double script_length(const SceneFile& file) {
 inline bool follows_script(const RunSettings& settings) {
   return settings.device.empty() && settings.hand == nullptr;
 }
+
+/// The fewest digits that read back as `x`.
+std::string exact_text(double x);
+/// As RecordingInfo::goal.
+std::string goal_text(const Pose& X);
 
 /// Where a scene's script takes the held part, and how far that has come.
 class RunGoal {

@@ -1,7 +1,6 @@
 #include "session/run_segments.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -27,20 +26,6 @@ std::string names_of_filtered(const InitialContactReport& start, const Scene& sc
   for (const InitialContact& pair : start.pairs)
     if (pair.state == InitialContactState::filtered) names += (names.empty() ? "" : ", ") + scene.parts[pair.part].name;
   return names;
-}
-
-/// The fewest digits that read back as `x`.
-std::string exact_text(double x) {
-  char number[32];
-  return {number, std::to_chars(number, number + sizeof number, x).ptr};
-}
-
-/// As RecordingInfo::goal.
-std::string goal_text(const Pose& X) {
-  std::string text;
-  for (const double x : {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()})
-    text += (text.empty() ? "" : ",") + exact_text(x);
-  return text;
 }
 
 /// `path` with a number before its extension, and perhaps with another one.

@@ -125,6 +125,25 @@ TEST_CASE("a plan is written, and a hand that follows it takes the part out") {
   CHECK(review.code != 2);
 }
 
+TEST_CASE("the review of a planned way, and of a run along it, says what the plan said") {
+  const TempFolder folder;
+  // The hand of the run stays behind the end of the way a little, and that is no farther out than it has to be.
+  for (const char* name : {"straight", "bent-bar"}) {
+    CAPTURE(name);
+    const std::string to = folder / name, run = to + "/run.mcap";
+    REQUIRE(run_program("tegotae", "plan " + scene(name) + " --seed 1 --to " + to).code == 0);
+    REQUIRE(
+        run_program("tegotae", "run " + scene(name) + " --fast --script " + to + "/script.csv --record " + run).code ==
+        0);
+    for (const std::string& recording : {to + "/recording.csv", run}) {
+      const Output o = run_program("tegotae", "review " + recording);
+      INFO(recording << "\n" << o.out << o.err);
+      CHECK(o.code == 0);
+      CHECK(o.out.rfind("It comes out\n", 0) == 0);
+    }
+  }
+}
+
 TEST_CASE("a planned path guides the hand of a run, and no recording replaces it") {
   const TempFolder folder;
   const std::string to = folder / "out", path = to + "/path.csv";
@@ -177,7 +196,8 @@ TEST_CASE("an assembly is taken apart") {
   CHECK(o.code == 0);
   CHECK_THAT(o.out, Contains("1. key: ") && Contains("Left: lock"));
   CHECK(read_text(to + "/order.csv").find("1,\"key\",") != std::string::npos);
-  CHECK_THAT(read_text(to + "/order.dot"), Contains("digraph") && Contains("1. key"));
+  CHECK_THAT(read_text(to + "/order.dot"),
+             Contains("digraph") && Contains("\"key\" [label=\"1. key\"]") && Contains("\"lock\" [label=\"lock\"]"));
   CHECK_THAT(read_text(to + "/order.html"), Contains("Order of disassembly"));
   CHECK(read_text(to + "/step-01.glb").substr(0, 4) == "glTF");
   CHECK(read_text(to + "/step-01.csv").substr(0, 5) == "t,px,");
@@ -263,6 +283,43 @@ TEST_CASE("a plan with a band tells and shows where its path is to it") {
   CHECK(read_text(folder / "all/step-2.csv") == "old\n");
 }
 
+TEST_CASE("a time limit ends the whole plan, also where a way was found") {
+  const TempFolder folder;
+  // To shorten and widen the way of a screw takes several times as long.
+  const Output o = run_program("tegotae", "plan " + scene("screw") + " --seconds 1 --json --to " + (folder / "out"));
+  INFO(o.out << o.err);
+  const json plan = json::parse(o.out);
+  CHECK(plan.at("out_of_time") == true);
+  CHECK(plan.at("interrupted") == false);
+  CHECK(o.code == (plan.at("found") == true ? 0 : 1));
+  const Output whole = run_program("tegotae", "plan " + scene("straight") + " --json --to " + (folder / "out"));
+  CHECK(json::parse(whole.out).at("out_of_time") == false);
+}
+
+TEST_CASE("an order of disassembly neither replaces nor removes what it reads") {
+  const TempFolder folder;
+  const std::string first = folder / "first";
+  REQUIRE(run_program("tegotae", "plan " + scene("straight") + " --seed 1 --to " + first).code == 0);
+  // An order of two parts writes one step, and removes those that an earlier one had more.
+  for (const char* name : {"step-01.glb", "step-02.glb"}) {
+    CAPTURE(name);
+    const std::string to = folder / ("of " + std::string(name)), mesh = to + "/" + name;
+    std::filesystem::create_directories(to);
+    std::filesystem::copy_file(first + "/path.glb", mesh);
+    folder.write("assembly.toml", "[[part]]\nname = \"a\"\nmesh = \"of " + std::string(name) + "/" + name +
+                                      "\"\n[[part]]\nname = \"b\"\nmesh = \"first/path.glb\"\n"
+                                      "position = [1, 0, 0]\n");
+    const std::string before = read_text(mesh);
+    const Output o = run_program("tegotae", "plan " + (folder / "assembly.toml") + " --all --to '" + to + "'");
+    INFO(o.out << o.err);
+    CHECK(o.code == 2);
+    CHECK_THAT(o.err, Contains(name) && Contains("would be replaced, but is read by the same command"));
+    REQUIRE(std::filesystem::exists(mesh));
+    CHECK(read_text(mesh) == before);
+    CHECK(!std::filesystem::exists(to + "/order.csv"));
+  }
+}
+
 TEST_CASE("what cannot be planned is an error of one line") {
   const TempFolder folder;
   const std::string to = " --to " + (folder / "out");
@@ -279,5 +336,6 @@ TEST_CASE("what cannot be planned is an error of one line") {
   refused(scene("straight") + " --clearance 5", "not a length with a unit");
   refused(scene("straight") + " --goal 0,0,0 --out", "--out");
   refused(scene("straight") + " --hold nobody", "nobody");
+  refused(scene("straight") + " --seed -1", "--seed: -1 is no whole number at least 0");
   refused("nothing.toml", "nothing.toml");
 }

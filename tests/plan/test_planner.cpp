@@ -171,12 +171,17 @@ TEST_CASE("a plan is ended from outside with what there is") {
 
 TEST_CASE("a plan that is stopped after its way was found keeps it, proved as far as it had come") {
   const shapes::Puzzle p = shapes::puzzle("l-shaped");
+  const bool in_time = GENERATE(true, false);  // ended by who watches it, or because its time is up
+  CAPTURE(in_time);
   const std::string at =
       GENERATE(std::string("shortening"), std::string("certifying"), std::string("searching for a wider way"));
   CAPTURE(at);
   std::atomic<bool> stop{false};
   PlanOptions options;
-  options.stop = &stop;
+  if (in_time)
+    options.stop = &stop;
+  else
+    options.ends = [&stop] { return stop.load(); };
   std::string last;
   int told = 0, told_after = 0;
   options.progress = [&](const PlanProgress& now) {
@@ -187,7 +192,8 @@ TEST_CASE("a plan that is stopped after its way was found keeps it, proved as fa
   const Plan plan = plan_path(p.scene(), options);
   CHECK(told == 1);
   CHECK(plan.found);
-  CHECK(plan.interrupted);
+  CHECK(plan.interrupted == in_time);
+  CHECK(plan.out_of_time == !in_time);
   // What is left to do is to prove what there is.
   CHECK(told_after <= 1);
   CHECK((last == "certifying" || last == at));

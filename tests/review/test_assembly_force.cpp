@@ -10,6 +10,7 @@
 using namespace tegotae;
 using namespace tegotae::review;
 using namespace tegotae::test;
+using Catch::EndsWith;
 using Catch::StartsWith;
 
 namespace {
@@ -57,7 +58,7 @@ TEST_CASE("insertion, seating and pull-out are told apart, with friction's share
   for (int i = 0; i <= 4000; ++i) rows.push_back(row(tick++, top, 1e-5 * i, 4, 2.0 * i / 4000));
   for (int i = 0; i < 100; ++i) rows.push_back(row(tick++, top, 0.04, 10, 6));
   for (int i = 0; i <= 4000; ++i) rows.push_back(row(tick++, top, 0.04 - 1e-5 * i, 4, -1.5));
-  const AssemblyForce f = assembly_force(r, {}, {});
+  const AssemblyForce f = assembly_force(r, {}, false, {});
   REQUIRE(f.known);
   CHECK(f.rubs);
   CHECK(f.way == Approx(0.04));
@@ -92,6 +93,38 @@ TEST_CASE("insertion, seating and pull-out are told apart, with friction's share
   CHECK_THAT(text[2], StartsWith("pull-out: at most 0.50 N at "));
 }
 
+TEST_CASE("what a way out takes is told as the pull-out, over the depth that the part had", "[review]") {
+  const double top = 0.05;
+  Review r = review_of({Quat::Identity(), {0, 0, 0.01}}, {Quat::Identity(), {0, 0, top}});
+  auto& rows = r.recording.frames;
+  std::uint64_t tick = 0;
+  // Stands 40 mm deep against 7 N; up against 0.5 N and, from half way on, 1.5 N; once back a little against 1 N and 1
+  // N more.
+  for (int i = 0; i < 100; ++i) rows.push_back(row(tick++, top, 0.04, 10, 6));
+  for (int i = 0; i <= 2000; ++i) rows.push_back(row(tick++, top, 0.04 - 1e-5 * i, 4, -1.5));
+  for (int i = 0; i <= 200; ++i) rows.push_back(row(tick++, top, 0.02 + 1e-5 * i, 4, 1));
+  for (int i = 0; i <= 2200; ++i) rows.push_back(row(tick++, top, 0.022 - 1e-5 * i, 4, -2.5));
+  const AssemblyForce f = assembly_force(r, {}, true, {});
+  REQUIRE(f.known);
+  CHECK(f.way == Approx(0.04));
+  CHECK(f.pull_out.force == Approx(1.5));
+  CHECK(f.pull_out.depth < 0.0221);
+  CHECK(f.pull_out_mean == Approx(1).epsilon(0.05));
+  CHECK(f.insertion.force == Approx(2));
+  CHECK(f.seating.force == Approx(7));
+  CHECK(f.seating.depth == Approx(0.04));
+  for (const DepthForce& d : f.over_depth) {
+    if (d.depth > 0.019 && d.depth < 0.023) continue;  // where it went back
+    CHECK(d.pull_out == Approx(d.depth > 0.02 ? 0.5 : 1.5).epsilon(0.02));
+    CHECK(d.friction == Approx(d.depth > 0.02 ? 1.5 : 2.5).epsilon(0.02));
+    CHECK(std::isnan(d.insertion));
+  }
+  const std::vector<std::string> text = assembly_force_text(f);
+  REQUIRE(text.size() == 3);
+  CHECK(text[0].find("friction") == std::string::npos);
+  CHECK_THAT(text[2], StartsWith("pull-out: at most 1.50 N at ") && EndsWith(" of it friction"));
+}
+
 TEST_CASE("a recording without contact forces, or of a part that goes nowhere, has no force of an assembly",
           "[review]") {
   const double top = 0.05;
@@ -100,10 +133,10 @@ TEST_CASE("a recording without contact forces, or of a part that goes nowhere, h
     r.recording.frames.push_back(row(static_cast<std::uint64_t>(i), top, 1e-4 * i, 1, 1));
     r.recording.frames.back().forces = {};
   }
-  CHECK_FALSE(assembly_force(r, {}, {}).known);
+  CHECK_FALSE(assembly_force(r, {}, false, {}).known);
   Review still = review_of({Quat::Identity(), {0, 0, top}}, {Quat::Identity(), {0, 0, top}});
   for (int i = 0; i <= 400; ++i) still.recording.frames.push_back(row(static_cast<std::uint64_t>(i), top, 0, 1, 1));
-  const AssemblyForce f = assembly_force(still, {}, {});
+  const AssemblyForce f = assembly_force(still, {}, false, {});
   CHECK_FALSE(f.known);
   CHECK(assembly_force_text(f).empty());
 }
@@ -126,7 +159,7 @@ TEST_CASE("a band of friction leads the recorded pen once more", "[review]") {
     r.recording.frames.push_back(f);
   }
   r.file.script = StylusScript({{0, from}, {1, {Quat::Identity(), {0.03, 0, 0.01}}}});
-  const AssemblyForce f = assembly_force(r, {0.1, 0.4}, {});
+  const AssemblyForce f = assembly_force(r, {0.1, 0.4}, false, {});
   REQUIRE(f.known);
   CHECK(f.insertion_mean == Approx(0.2 * 1.6).epsilon(0.02));
   CHECK(f.friction_share == Approx(1).epsilon(0.02));

@@ -114,6 +114,48 @@ TEST_CASE("the force of a peg over its depth is the recorded contacts', and fric
     for (const std::string& cell : cells) REQUIRE(cell != "-0");
 }
 
+TEST_CASE("what it takes to pull a peg out is the recorded contacts' force, as the pull-out") {
+  const TempFolder folder;
+  REQUIRE(run_program("tegotae-models", "--puzzles --out " + (folder / "p")).code == 0);
+  folder.write("p/rubs.toml", read_text(folder / "p/straight.toml") + "\n[friction]\nmu = 0.3\n");
+  // Pressed against a wall of its hole, and up.
+  folder.write("script.csv",
+               "t,px,py,pz,qw,qx,qy,qz\n0,0,0,-0.0049,1,0,0,0\n0.3,0.003,0,-0.0049,1,0,0,0\n2,0.003,0,0.02,1,0,0,0\n");
+  const std::string recording = folder / "r.mcap", table = folder / "f.csv";
+  REQUIRE(run_program("tegotae", "run --fast " + (folder / "p/rubs.toml") + " --script " + (folder / "script.csv") +
+                                     " --record " + recording)
+              .code == 0);
+  const Output o = run_program("tegotae", "review " + recording + " --forces " + table + " --mu 0:0.6");
+  INFO(o.out << o.err);
+  REQUIRE(o.code == 0);
+  CHECK_THAT(o.out, Contains("It comes out\n") && Contains("pull-out: at most ") && Contains("% of it friction") &&
+                        Contains("pull-out with friction of 0 to 0.6: ") && !Contains("insertion with"));
+  // Against the way from start to goal, while the part goes on along it.
+  const Recording rows = read_recording(recording);
+  const Vec3 way = Vec3(0.003, 0, 0.0249).normalized();
+  double peak = 0, before = 0;
+  for (std::size_t i = 0; i < rows.frames.size(); ++i) {
+    const RecordFrame& f = rows.frames[i];
+    if (i + 1 < rows.frames.size() && rows.frames[i + 1].tick == f.tick) continue;
+    double against = 0;
+    for (int k = 0; k < f.forces.count; ++k) {
+      const ContactForce& c = f.forces.items[static_cast<std::size_t>(k)];
+      against -= way.dot(c.force * c.n + c.friction);
+    }
+    const double gone = way.dot(f.x.p);
+    if (i > 0 && gone - before > 1e-7) peak = std::max(peak, against);
+    before = gone;
+  }
+  REQUIRE(peak > 0.1);
+  auto columns = columns_of(read_text(table));
+  const std::vector<double> peaks = numbers(columns["pull_out_peak_n"]);
+  REQUIRE(peaks.size() > 100);
+  // Its center goes a little differently from its file frame where it tilts.
+  CHECK(*std::max_element(peaks.begin(), peaks.end()) == Approx(peak).epsilon(0.03));
+  const std::vector<double> low = numbers(columns["low_n"]), high = numbers(columns["high_n"]);
+  CHECK(sum(high) / static_cast<double>(high.size()) > sum(low) / static_cast<double>(low.size()) + 0.05);
+}
+
 TEST_CASE("forces that a recording does not have, and bands that are none, are one line") {
   const TempFolder folder;
   write_small_scene(folder);

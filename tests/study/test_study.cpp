@@ -164,8 +164,17 @@ TEST_CASE("what is wrong in a study file is told with line and key") {
   refused(good + "[parameters]\nmu = {}\n", ":3: parameters.mu: give either");
   refused(good + "[parameters]\noperator = [\"clumsy\"]\n", ":3: parameters.operator: ");
   refused(good + "[parameters]\noperator = [\"hasty\", \"hasty\"]\n", "is in it twice");
+  refused(good + "[parameters]\nmu = [0.1, 0.2, 0.10]\n", ":3: parameters.mu: 0.1 is in it twice");
+  const std::string order = "[[parameters.order]]\nparts = [\"block\", \"floor\"]\n";
+  refused(good + "goal = \"out\"\n" + order + order, ":6: parameters.order.parts: another order has the same");
   refused(good + "[[parameters.inward]]\npart = \"block\"\n", "parameters.inward.by: missing");
   refused(good + "[[parameters.order]]\nparts = [\"block\"]\n", "goal: must be \"out\" where there are orders");
   refused(good + "repeats = 1000000\n[parameters]\nmu = [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]\n",
           "more than ten million");
+  // 2 to the power of 64 cases: as many as none to who counts in whole numbers of this machine.
+  std::string many = good, values;
+  for (int i = 1; i <= 256; ++i) values += (i == 1 ? "" : ", ") + std::to_string(i) + "e-6";
+  for (int i = 0; i < 8; ++i)
+    many += "[[parameters.inward]]\npart = \"p" + std::to_string(i) + "\"\nby = [" + values + "]\n";
+  refused(many, "more than ten million");
 }

@@ -170,9 +170,18 @@ TEST_CASE("parts of a study that do not belong together are refused, with file a
   const std::string shard = out + "/shards/1-of-4.csv", rows = read_text(shard);
   folder.write("study/shards/1-of-4.csv", rows.substr(0, rows.size() - 3));
   refused("1-of-4.csv:4: is not a case; delete the line");
+  // Cut off before that it tells nothing of what study it is.
+  for (const std::size_t size : {std::size_t{0}, std::size_t{9}}) {
+    folder.write("study/shards/1-of-4.csv", rows.substr(0, size));
+    refused("1-of-4.csv:1: ends before its first case; delete the file");
+  }
+  folder.write("study/shards/1-of-4.csv", rows.substr(0, rows.find('\n') + 9));
+  refused("1-of-4.csv:2: ends before its first case; delete the file");
   folder.write("study/shards/1-of-4.csv", rows);
   folder.write("study/shards/1-of-9.csv", replaced(rows, "careful", "Careful"));
   refused("has another result in ");
+  folder.write("study/shards/1-of-9.csv", replaced(rows, "scene.toml", "other.toml"));
+  refused("1-of-9.csv: case 0 has other parameters than the study gives it");
   std::filesystem::remove(out + "/shards/1-of-9.csv");
   std::string changed = read_text(folder / "scene.toml");
   folder.write("scene.toml", replaced(changed, "0.02]", "0.0201]"));
@@ -199,6 +208,19 @@ TEST_CASE("bad commands of study are one line") {
   folder.write("study.toml",
                "scenes = [\"scene.toml\"]\ngoal = \"out\"\n[[parameters.inward]]\npart = \"lid\"\nby = [0]\n");
   refused(file, "has no part lid, which the study names (there are floor, block)");
+  // A cube of 10 mm; whatever a case would draw.
+  for (const char* by : {"[1e-6, 1e-3]", "[-1e-3]", "{ uniform = [0, 1e-3] }"}) {
+    folder.write("study.toml",
+                 "scenes = [\"scene.toml\"]\ngoal = \"out\"\n[[parameters.inward]]\npart = \"block\"\nby = " +
+                     std::string(by) + "\n");
+    refused(file, "scene.toml: the faces of block cannot go inward by 1 mm: it is only 17.3 mm large");
+  }
+  folder.write("study.toml",
+               "scenes = [\"scene.toml\"]\ngoal = \"out\"\n[[parameters.order]]\nparts = [\"block\", \"floor\"]\n");
+  refused(file, "scene.toml: has no other parts than an order of the study takes out");
+  const Output seed = run_program("tegotae", "try " + (folder / "scene.toml") + " --seed -1");
+  CHECK(seed.code == 2);
+  CHECK_THAT(seed.err, Contains("--seed: -1 is no whole number at least 0"));
   // Without HyperShell.
   folder.write("study.toml", "scenes = [\"scene.toml\"]\ngoal = \"out\"\n");
   const std::string path = std::getenv("PATH");
@@ -207,4 +229,31 @@ TEST_CASE("bad commands of study are one line") {
   ::setenv("PATH", path.c_str(), 1);
   CHECK(o.code == 2);
   CHECK_THAT(o.err, Contains("pip install hypershell") && Contains("tegotae study " + file));
+}
+
+TEST_CASE("a case that is made again replaces nothing that its study reads") {
+  const TempFolder folder;
+  write_blocks(folder);
+  folder.write(
+      "part-2.ply",
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 12\nproperty list uchar int vertex_indices\nend_header\n"
+      "-5 -5 -5\n5 -5 -5\n5 5 -5\n-5 5 -5\n-5 -5 5\n5 -5 5\n5 5 5\n-5 5 5\n3 0 3 2\n3 0 2 1\n3 4 5 6\n3 4 6 7\n"
+      "3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
+  // The changed part's mesh has the name that a case gives it, and so has one of the two studies that of its scene.
+  folder.write("blocks.toml", replaced(read_text(folder / "scene.toml"), "name = \"block\"\nmesh = \"cube.obj\"",
+                                       "name = \"block\"\nmesh = \"part-2.ply\""));
+  const std::string study = "scenes = [\"blocks.toml\"]\ngoal = \"0,0,0.0195\"\nseconds = 0.2\n";
+  folder.write("changed.toml", study + "[[parameters.inward]]\npart = \"block\"\nby = [1e-6]\n");
+  folder.write("scene.toml", study);
+  for (const auto& [file, name] : {std::pair("changed.toml", "part-2.ply"), std::pair("scene.toml", "scene.toml")}) {
+    CAPTURE(file);
+    const std::string before = read_text(folder / name);
+    const Output o = run_study("case " + (folder / file) + " 0 --to " + (folder / "."), 2);
+    CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    CHECK_THAT(o.err, Contains(name) && Contains("would be replaced, but is read by the same command"));
+    CHECK(read_text(folder / name) == before);
+    CHECK(!std::filesystem::exists(folder / "recording.mcap"));
+    if (name != std::string(file)) folder.write("scene.toml", study);  // what the first one may have written
+  }
 }

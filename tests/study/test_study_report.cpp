@@ -114,6 +114,8 @@ TEST_CASE("Ctrl-C ends study run and what its driver started; the same command c
                              folder / "worker" + "'\nkill -INT $PPID\nwait\n");
   fs::permissions(folder / "bin/hs", fs::perms::owner_all);
   ::setenv("PATH", ((folder / "bin") + ":" + restored.path).c_str(), 1);
+  fs::create_directories(folder / "a/study/driver");
+  folder.write("a/study/driver/screw.stl", "somebody's\n");
   const std::string command = "run " + folder / "a/study.toml" + " --shards 3 --replays 0";
   const Output o = run_study(command, 1);
   CHECK_THAT(o.out, Contains("interrupted; the same command continues"));
@@ -127,5 +129,6 @@ TEST_CASE("Ctrl-C ends study run and what its driver started; the same command c
   CHECK_THAT(run_study(command).out, Contains(" of 6 cases reached the goal"));
   const std::string tasks = read_text(folder / "a/study/driver/tasks");
   CHECK(std::count(tasks.begin(), tasks.end(), '\n') == 2);  // what was done is not asked again
+  CHECK(read_text(folder / "a/study/driver/screw.stl") == "somebody's\n");
   CHECK(cases_in(folder / "a/study").at("tables").front().at("rows").size() == 6);
 }

@@ -78,11 +78,11 @@ def plan(
     clearance : float
         Smallest clearance that the path must leave, m; 0: what the contact loop leaves, 1.1 um.
     seed : int
-        The same seed, scene and build give the same path, unless `seconds` ends the search.
+        The same seed, scene and build give the same path, unless `seconds` ends the plan.
     iterations : int, optional
         Largest number of iterations of the search; None: 20 000, or unbounded when `seconds` is given.
     seconds : float, optional
-        Time that the search may take, s; None: only `iterations` ends it.
+        Time that the plan may take, s; None: only `iterations` ends its search.
     to : str or os.PathLike, optional
         Folder for the files that `tegotae plan` writes: path.csv, path.glb, script.csv, recording.csv, plan.json. The
         scene must then come from a file, because the recording names it.

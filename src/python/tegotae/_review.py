@@ -46,8 +46,8 @@ class Review:
         in that way. None: the part did not move, or the recording has no contact forces (MCAP has those of "qp").
         Fields, float64: `depth` (m along the path, at the middle of the segment); and in N, positive against the
         motion: `insertion` and `insertion_peak` (mean and largest as the part went in), `friction` (the part of
-        `insertion` that is friction), `seating` (mean as it stood at the deepest place), `pull_out` and `pull_out_peak`
-        (mean and largest as it came back).
+        `insertion`, or of `pull_out` if the path leads out, that is friction), `seating` (mean as it stood at the
+        deepest place), `pull_out` and `pull_out_peak` (mean and largest as it came out).
     report : str or None
         Path of the HTML report; None: none was requested.
     """
