@@ -60,7 +60,7 @@ CLI::App* add_run(CLI::App& app, RunCommand& options) {
       ->check([](const std::string& text) -> std::string {
         double value = 0;  // CLI::PositiveNumber lets nan pass
         if (CLI::detail::lexical_cast(text, value) && value > 0 && value <= kMaxRunSeconds) return "";
-        return text + " is no positive number up to " + number_text(kMaxRunSeconds, 9);
+        return text + " is not a positive number up to " + number_text(kMaxRunSeconds, 9);
       })
       ->type_name("S");
   return run;

@@ -8,6 +8,7 @@
 #include "core/number_text.hpp"
 #include "models/shapes.hpp"
 #include "peg_in_hole/peg_script.hpp"
+#include "shared/process.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/core/version.hpp"
 #include "tegotae/device/simulated_device.hpp"
@@ -73,21 +74,27 @@ bool run(double ratio) {
   return in;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
-  if (argc > 1) {
-    const std::string option = argv[1];
-    const bool asked = option == "--help" || option == "--version";
-    std::fputs(option == "--version"
-                   ? "tegotae " TEGOTAE_VERSION_STRING "\n"
-                   : "demo: carries a peg into its hole twice, in real time; it takes --help and --version only\n",
-               asked ? stdout : stderr);
-    return asked && std::fflush(stdout) == 0 ? 0 : 2;
+int answer(const std::string& option) {
+  if (option == "--version") {
+    std::puts("tegotae " TEGOTAE_VERSION_STRING);
+    return 0;
   }
+  std::fputs("demo: carries a peg into its hole twice, in real time; it takes --help and --version only\n",
+             option == "--help" ? stdout : stderr);
+  return option == "--help" ? 0 : 2;
+}
+
+int run_all() {
   bool in = true;
   for (const double ratio : {0.94, 0.99}) in = run(ratio) && in;
   return in ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  apps::prepare_process();
+  return apps::finish_output("demo", argc > 1 ? answer(argv[1]) : run_all());
 } catch (const Error& e) {
   std::fprintf(stderr, "demo: %s\n", e.what());
   return 2;

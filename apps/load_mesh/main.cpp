@@ -3,19 +3,30 @@
 #include <string>
 
 #include "import/mesh_pipe.hpp"
+#include "shared/process.hpp"
 #include "tegotae/core/version.hpp"
+
+namespace {
+
+constexpr const char* kName = "tegotae-load-mesh";
+
+int print(const char* text) {
+  std::puts(text);
+  return tegotae::apps::finish_output(kName, 0);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   const std::string only = argc == 2 ? argv[1] : "";
-  if (only == "--version" || only == "--help" || only == "-h") {
-    std::puts(only == "--version" ? "tegotae " TEGOTAE_VERSION_STRING
-                                  : "Reads a mesh file for another program of tegotae, bounded in time and memory. Not "
-                                    "for people: `tegotae check FILE` reports on a mesh.");
-    return std::fflush(stdout) == 0 ? 0 : 2;
-  }
-  if (argc != 5) {
-    std::fputs("tegotae-load-mesh: not for people, see --help; `tegotae check FILE` reports on a mesh\n", stderr);
+  if (only == "--version") return print("tegotae " TEGOTAE_VERSION_STRING);
+  if (only == "--help" || only == "-h")
+    return print(
+        "Reads a mesh file for another program of tegotae, bounded in time and memory. Not for people: `tegotae check "
+        "FILE` reports on a mesh.");
+  if (argc != tegotae::kMeshHelperArguments) {
+    std::fprintf(stderr, "%s: only other programs of tegotae call it; `tegotae check FILE` reports on a mesh\n", kName);
     return 2;
   }
-  return tegotae::run_mesh_helper(argc, argv);
+  return tegotae::run_mesh_helper(argv);
 }

@@ -81,7 +81,7 @@ std::string ratio_text(double ratio) {
 
 std::string write_peg_scene(double ratio, const std::string& folder) {
   if (!(ratio >= kLoosestRatio && ratio <= kTightestRatio))
-    throw Error("--ratio: " + ratio_text(ratio) + " is no number from " + ratio_text(kLoosestRatio) + " to " +
+    throw Error("--ratio: " + ratio_text(ratio) + " is not a number from " + ratio_text(kLoosestRatio) + " to " +
                 ratio_text(kTightestRatio));
   make_folder(folder);
 

@@ -19,10 +19,10 @@ CLI::Validator between(T low, T high) {
   const bool open = high == std::numeric_limits<T>::max();
   const std::string from = number_text(static_cast<double>(low), 9), to = number_text(static_cast<double>(high), 9);
   const std::string range = open ? "at least " + from : "from " + from + " to " + to;
-  const auto check = [low, high, range](const std::string& text) {
+  const auto check = [low, high, open, range](const std::string& text) {
     T value{};
     if (CLI::detail::lexical_cast(text, value) && low <= value && value <= high) return std::string();
-    return text + " is no " + (std::is_integral_v<T> ? "whole " : "") + "number " + range;
+    return text + " is not a " + (std::is_integral_v<T> ? "whole " : "") + "number " + (open ? "of " : "") + range;
   };
   return CLI::Validator(check, range);
 }

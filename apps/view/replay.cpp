@@ -68,6 +68,47 @@ class ReplaySource final : public ViewSource {
   std::string review_;
 };
 
+/// Called with what is done now, and how far it is.
+using Progress = std::function<void(const char* what, std::size_t done, std::size_t total)>;
+
+/// The pictures of a recording, one after the other, as the page reads them.
+struct Frames {
+  std::vector<float> frames, pairs, forces;
+  std::vector<std::uint32_t> pair_begin, force_begin;
+};
+
+/// A frame of each row that is a multiple of `every`, and of the last one.
+Frames frames_of(const std::vector<RecordFrame>& rows, std::size_t every, Follower& follower, const Progress& tell) {
+  Frames out;
+  const FrameMaker maker;
+  Frame frame;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    tell("finding contacts, row", i, rows.size());
+    follower.step(rows[i]);
+    if (i % every != 0 && i + 1 < rows.size()) continue;
+    fill(rows[i], follower, maker, frame);
+    append_frame(frame, out.frames);
+    out.pair_begin.push_back(static_cast<std::uint32_t>(out.pairs.size() / kPairFloats));
+    append_pairs(frame, out.pairs);
+    out.force_begin.push_back(static_cast<std::uint32_t>(out.forces.size() / kForceFloats));
+    append_forces(frame, out.forces);
+  }
+  return out;
+}
+
+/// What whoever looks at a replay should know about it.
+nlohmann::json notes_of(const Recording& recording, std::size_t every, bool has_forces) {
+  const std::vector<RecordFrame>& rows = recording.frames;
+  nlohmann::json notes = nlohmann::json::array({"Contacts recomputed from the recorded poses"});
+  const bool felt = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.contacts > 0; });
+  if (felt && !has_forces) notes.push_back("Contact forces are not in this recording (MCAP has those of qp)");
+  if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
+  if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
+  for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);
+  if (!recording.info.filtered.empty()) notes.push_back("Suspended at the start: " + recording.info.filtered);
+  return notes;
+}
+
 std::string named_scene(const std::string& path, const RecordingInfo& info) {
   const std::string& scene = info.scene;
   if (scene.empty()) throw Error(path + ": does not name its scene; add the scene file to the command");
@@ -116,22 +157,8 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   const MeshStructures made(file.scene.parts, file.scene.contact.narrowphase,
                             [&](std::size_t done, std::size_t total) { tell("building hierarchies", done, total); });
   Follower follower(file.scene, path, rows.front().x);
-  const FrameMaker maker;
   const std::size_t every = (rows.size() + max_frames - 1) / max_frames;
-  std::vector<float> frames, pairs, forces;
-  std::vector<std::uint32_t> pair_begin, force_begin;
-  Frame frame;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    tell("finding contacts, row", i, rows.size());
-    follower.step(rows[i]);
-    if (i % every != 0 && i + 1 < rows.size()) continue;
-    fill(rows[i], follower, maker, frame);
-    append_frame(frame, frames);
-    pair_begin.push_back(static_cast<std::uint32_t>(pairs.size() / kPairFloats));
-    append_pairs(frame, pairs);
-    force_begin.push_back(static_cast<std::uint32_t>(forces.size() / kForceFloats));
-    append_forces(frame, forces);
-  }
+  const Frames pictures = frames_of(rows, every, follower, tell);
   if (2 * follower.strayed() > rows.size())
     throw Error(path + ": does not fit this scene: the part would intersect another one for " +
                 std::to_string(follower.strayed()) + " of " + std::to_string(rows.size()) + " rows");
@@ -146,19 +173,12 @@ std::string replay_bundle(const std::string& path, const std::string& scene, con
   bundle.about["virtual_time"] =
       std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.tick_us == 0; });
   bundle.about["title"] = path.substr(path.find_last_of('/') + 1);
-  bundle.about["frames"] = bundle.add(frames);
-  bundle.about["pairs"] = bundle.add(pairs);
-  bundle.about["pair_begin"] = bundle.add(pair_begin);
-  bundle.about["forces"] = bundle.add(forces);
-  bundle.about["force_begin"] = bundle.add(force_begin);
-  nlohmann::json notes = nlohmann::json::array({"Contacts recomputed from the recorded poses"});
-  const bool felt = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.contacts > 0; });
-  if (felt && forces.empty()) notes.push_back("Contact forces are not in this recording (MCAP has those of qp)");
-  if (every > 1) notes.push_back("Every " + std::to_string(every) + "th of " + std::to_string(rows.size()) + " rows");
-  if (!recording.damage.empty()) notes.push_back("The end is missing: " + recording.damage);
-  for (const std::string& note : scene_changes(recording.info)) notes.push_back(note);
-  if (!recording.info.filtered.empty()) notes.push_back("Suspended at the start: " + recording.info.filtered);
-  bundle.about["notes"] = notes;
+  bundle.about["frames"] = bundle.add(pictures.frames);
+  bundle.about["pairs"] = bundle.add(pictures.pairs);
+  bundle.about["pair_begin"] = bundle.add(pictures.pair_begin);
+  bundle.about["forces"] = bundle.add(pictures.forces);
+  bundle.about["force_begin"] = bundle.add(pictures.force_begin);
+  bundle.about["notes"] = notes_of(recording, every, !pictures.forces.empty());
   return bundle.bytes();
 }
 

@@ -78,8 +78,7 @@ int send_mesh(const TriangleMesh& mesh) {
 
 }  // namespace
 
-int run_mesh_helper(int argc, char** argv) {
-  if (argc != 5) return 2;
+int run_mesh_helper(char** argv) {
   try {
     confine(std::strtod(argv[2], nullptr), std::strtod(argv[3], nullptr));
     return send_mesh(load_mesh(argv[4], std::strtod(argv[1], nullptr)));

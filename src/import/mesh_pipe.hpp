@@ -23,7 +23,10 @@ struct MeshPipeHead {
 /// The descriptor that a helper writes to.
 inline constexpr int kMeshPipe = 3;
 
-/// main() of the helper: `NAME UNIT_IN_M MEGABYTES SECONDS PATH`. Bounds itself, loads PATH and writes it to kMeshPipe.
-int run_mesh_helper(int argc, char** argv);
+/// Number of the helper's arguments: `NAME UNIT_IN_M MEGABYTES SECONDS PATH`.
+inline constexpr int kMeshHelperArguments = 5;
+
+/// main() of the helper, called with kMeshHelperArguments. Bounds itself, loads PATH and writes it to kMeshPipe.
+int run_mesh_helper(char** argv);
 
 }  // namespace tegotae

@@ -50,54 +50,63 @@ const QpResult& LeastDistanceSolver::solve(const LowRankMatrix& g, const double*
       finish(b, z0);
       return result_;
     }
-    // Raise this row's multiplier; active rows whose multiplier runs out on the way are dropped, at most all six.
-    const Vec6 row = rows_.unit_row(violated.row);
-    const double target = rows_.d(violated.row) * rows_.inverse_norm(violated.row);
-    for (;;) {
-      if (++result_.iterations > kMaxChanges) {
-        return result_;
-      }
-      Vec6 outside;
-      double along[6];
-      span_.split(row, outside, along);
-      span_.solve_upper(along);
-      const double square = outside.squaredNorm();
-      const bool independent = size_ < 6 && square > kDependent * kDependent;
-      double step = std::numeric_limits<double>::infinity();
-      int blocking = -1;
-      for (int i = 0; i < size_; ++i) {
-        if (along[i] > 0 && lambda_[i] < step * along[i]) {
-          step = lambda_[i] / along[i];
-          blocking = i;
-        }
-      }
-      const double full = independent ? std::max(target - row.dot(x_), 0.0) / square : step;
-      if (!independent && blocking < 0) {
-        if (certify_infeasible(violated.row, along)) {
-          result_.status = LpStatus::infeasible;
-          return result_;
-        }
-        if (violated.value > kAccepted * (rows_.largest_violation() + x_.norm())) {
-          return result_;
-        }
-        // The row depends on the active ones but for rounding, and so does what it is short by: leave it at that.
-        rows_.set_row_priced(violated.row, false);
-        break;
-      }
-      if (independent && full <= step) {
-        append(violated.row);
-        solve_active();
-        break;
-      }
-      if (independent) {
-        x_ += step * outside;
-      }
-      for (int i = 0; i < size_; ++i) {
-        lambda_[i] = std::max(lambda_[i] - step * along[i], 0.0);
-      }
-      drop(blocking);
+    if (!raise(violated)) {
+      return result_;
     }
   }
+}
+
+bool LeastDistanceSolver::raise(const RowChoice& violated) noexcept {
+  const Vec6 row = rows_.unit_row(violated.row);
+  const double target = rows_.d(violated.row) * rows_.inverse_norm(violated.row);
+  for (;;) {
+    if (++result_.iterations > kMaxChanges) {
+      return false;
+    }
+    Vec6 outside;
+    double along[6];
+    span_.split(row, outside, along);
+    span_.solve_upper(along);
+    const double square = outside.squaredNorm();
+    const bool independent = size_ < 6 && square > kDependent * kDependent;
+    double step = std::numeric_limits<double>::infinity();
+    int blocking = -1;
+    for (int i = 0; i < size_; ++i) {
+      if (along[i] > 0 && lambda_[i] < step * along[i]) {
+        step = lambda_[i] / along[i];
+        blocking = i;
+      }
+    }
+    const double full = independent ? std::max(target - row.dot(x_), 0.0) / square : step;
+    if (!independent && blocking < 0) {
+      return leave_dependent(violated, along);
+    }
+    if (independent && full <= step) {
+      append(violated.row);
+      solve_active();
+      return true;
+    }
+    if (independent) {
+      x_ += step * outside;
+    }
+    for (int i = 0; i < size_; ++i) {
+      lambda_[i] = std::max(lambda_[i] - step * along[i], 0.0);
+    }
+    drop(blocking);
+  }
+}
+
+bool LeastDistanceSolver::leave_dependent(const RowChoice& violated, const double* along) noexcept {
+  if (certify_infeasible(violated.row, along)) {
+    result_.status = LpStatus::infeasible;
+    return false;
+  }
+  if (violated.value > kAccepted * (rows_.largest_violation() + x_.norm())) {
+    return false;
+  }
+  // The row depends on the active ones but for rounding, and so does what it is short by: leave it at that.
+  rows_.set_row_priced(violated.row, false);
+  return true;
 }
 
 bool LeastDistanceSolver::append(int row) noexcept {

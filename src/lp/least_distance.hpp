@@ -42,6 +42,11 @@ class LeastDistanceSolver {
   bool append(int row) noexcept;
   void drop(int position) noexcept;
   void solve_active() noexcept;
+  /// Raises the multiplier of a violated row until the row is satisfied. Drops active rows, at most six, whose
+  /// multiplier runs out on the way. False: the solve ends with result_ as it is.
+  bool raise(const RowChoice& violated) noexcept;
+  /// The same for a row that depends on the active ones with the factors `along`, none of which can be dropped.
+  bool leave_dependent(const RowChoice& violated, const double* along) noexcept;
   void start_from(const int* warm, int warm_count) noexcept;
   bool certify_infeasible(int row, const double* along) noexcept;
   void finish(const double* b, const Vec6& z0) noexcept;

@@ -257,7 +257,8 @@ TEST_CASE("help and version are not errors", "[bad_input]") {
 TEST_CASE("no program ends in a crash for an argument that it does not know", "[bad_input]") {
   const TempFolder folder;  // where none of the files is that examples look for
   const InFolder in(folder / "");
-  for (const std::string program : {"first_touch", "example_driver", "demo", "families", "stress", "tegotae-models"})
+  for (const std::string program :
+       {"first_touch", "example_driver", "demo", "families", "stress", "tegotae-models", "tegotae-load-mesh"})
     for (const std::string argument : {"--help", "--version", "--frobnicate", "a.step"}) {
       INFO(program << " " << argument);
       const Output o = run_program(program, argument);

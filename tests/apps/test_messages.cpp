@@ -199,28 +199,29 @@ TEST_CASE("what takes long with a large mesh is said, into a pipe too", "[messag
 TEST_CASE("a value that is not allowed is told with its option and with what is", "[messages]") {
   // The ranges and names are those of programs.md and --help.
   const std::vector<std::tuple<std::string, std::string, std::string>> lines = {
-      {"tegotae", "try s.toml --tries 0", "tegotae: --tries: 0 is no whole number from 1 to 100000 (see --help)\n"},
-      {"tegotae", "try s.toml --tries 1.5", "tegotae: --tries: 1.5 is no whole number from 1 to 100000 (see --help)\n"},
-      {"tegotae", "try s.toml --seconds nan", "tegotae: --seconds: nan is no number from 1 to 3600 (see --help)\n"},
+      {"tegotae", "try s.toml --tries 0", "tegotae: --tries: 0 is not a whole number from 1 to 100000 (see --help)\n"},
+      {"tegotae", "try s.toml --tries 1.5",
+       "tegotae: --tries: 1.5 is not a whole number from 1 to 100000 (see --help)\n"},
+      {"tegotae", "try s.toml --seconds nan", "tegotae: --seconds: nan is not a number from 1 to 3600 (see --help)\n"},
       {"tegotae", "run s.toml --seconds -1",
-       "tegotae: --seconds: -1 is no positive number up to 1000000 (see --help)\n"},
+       "tegotae: --seconds: -1 is not a positive number up to 1000000 (see --help)\n"},
       {"tegotae", "plan s.toml --seconds 1e9",
-       "tegotae: --seconds: 1e9 is no number from 0.1 to 1000000 (see --help)\n"},
-      {"tegotae", "study case s.toml x", "tegotae: NUMBER: x is no whole number at least 0 (see --help)\n"},
+       "tegotae: --seconds: 1e9 is not a number from 0.1 to 1000000 (see --help)\n"},
+      {"tegotae", "study case s.toml x", "tegotae: NUMBER: x is not a whole number of at least 0 (see --help)\n"},
       {"tegotae", "import a.step -o b --unit km", "tegotae: --unit: km is none of m, cm, mm, um, in (see --help)\n"},
       {"tegotae", "review r.csv --band 5um", "tegotae: --band needs 2 values (see --help)\n"},
       {"tegotae", "run s.toml --script", "tegotae: --script needs FILE (see --help)\n"},
       {"tegotae", "run s.toml --seconds 1 --seconds 2", "tegotae: --seconds is given more than once (see --help)\n"},
       {"tegotae", "run a.toml b.toml c", "tegotae: run has no use for b.toml, c (see --help)\n"},
-      {"tegotae-device", "--cpu -2", "tegotae-device: --cpu: -2 is no whole number at least 0 (see --help)\n"},
+      {"tegotae-device", "--cpu -2", "tegotae-device: --cpu: -2 is not a whole number of at least 0 (see --help)\n"},
       {"tegotae-device", "--type simulated --rate 5",
-       "tegotae-device: --rate: 5 is no number from 10 to 4000 (see --help)\n"},
+       "tegotae-device: --rate: 5 is not a number from 10 to 4000 (see --help)\n"},
       {"tegotae-device", "--type gampad",
        "tegotae-device: --type: gampad is none of simulated, openhaptics, spacemouse, gamepad; did you mean gamepad? "
        "(see --help)\n"},
-      {"peg_in_hole", "--ratio 2", "peg_in_hole: --ratio: 2 is no number from 0.5 to 0.9995\n"},
+      {"peg_in_hole", "--ratio 2", "peg_in_hole: --ratio: 2 is not a number from 0.5 to 0.9995\n"},
       {"tegotae-models", "--out x --rings 0",
-       "tegotae-models: --rings: 0 is no whole number from 1 to 8192 (see --help)\n"}};
+       "tegotae-models: --rings: 0 is not a whole number from 1 to 8192 (see --help)\n"}};
   for (const auto& [program, arguments, told] : lines) {
     CAPTURE(program, arguments);
     const Output o = run_program(program, arguments);

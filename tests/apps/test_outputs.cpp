@@ -154,7 +154,8 @@ TEST_CASE("standard output that cannot be written is told by every program", "[o
   for (const std::string command :
        {"tegotae run scene.toml --fast --seconds 0.1", "tegotae run scene.toml --fast --seconds 0.1 --json",
         "tegotae check tet.obj", "tegotae --help", "tegotae import tet.obj -o made", "peg_in_hole --help",
-        "tegotae-device --help", "tegotae-models --help"}) {
+        "tegotae-device --help", "tegotae-models --help", "tegotae-load-mesh --help", "tegotae-load-mesh --version",
+        "demo --help", "demo --version", "families --help", "stress --help"}) {
     CAPTURE(command);
     check_named(shell(folder, "$B/" + command + " >/dev/full"), {"standard output could not be written"});
   }

@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "families/selection.hpp"
+#include "shared/guarded_main.hpp"
 #include "tegotae/core/error.hpp"
-#include "tegotae/core/version.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -39,7 +39,7 @@ int run(const std::vector<SelectedCase>& cases, bool quiet, const char* program)
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Families of parts that mate, judged without the loop's own word."};
+  CLI::App app{"Families of parts that mate, judged without the loop's own word.", "families"};
   SelectedCase one;
   FamilyParameters& p = one.parameters;
   bool daily = false, quiet = false;
@@ -55,25 +55,13 @@ int main(int argc, char** argv) {
   app.add_flag("--daily", daily, "The selection of every day");
   app.add_option("--seeds", seeds, "All families at so many seeds")->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "Only what fails, and the sum");
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  setlinebuf(stdout);
-  if (p.family.empty() == (!daily && seeds == 0)) {
-    std::fprintf(stderr, "families: say one of --family, --daily and --seeds\n");
-    return 2;
-  }
-  try {
+  return apps::guarded_main(app, argc, argv, [&] {
+    setlinebuf(stdout);
+    if (p.family.empty() == (!daily && seeds == 0)) throw Error("one of --family, --daily and --seeds is needed");
     std::vector<SelectedCase> cases;
     if (!p.family.empty()) cases = {one};
     if (daily) cases = daily_cases();
     if (seeds > 0) cases = all_cases(seeds, one.options.real_time);
     return run(cases, quiet, argv[0]);
-  } catch (const Error& e) {
-    std::fprintf(stderr, "families: %s\n", e.what());
-    return 2;
-  }
+  });
 }

@@ -1,15 +1,16 @@
 // Random pens over many scenes; every committed piece and poses inside it are asked of FCL. Exit code 0: none
 // intersects, no tick hid that it was late, and none was held back without a contact; 1: some; 2: wrong use. See
 // `stress --help`.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "shared/guarded_main.hpp"
 #include "stress_run.hpp"
-#include "tegotae/core/error.hpp"
-#include "tegotae/core/version.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -55,7 +56,6 @@ void add_options(CLI::App& app, StressRun& run) {
       ->capture_default_str();
   app.add_option("--budget", run.options.budget, "Tick budget, s; 0: bounded by work alone")->capture_default_str();
   app.add_option("--record", run.options.record, "Folder for a scene file and a recording of each script");
-  app.set_version_flag("--version", "tegotae " TEGOTAE_VERSION_STRING);
 }
 
 /// Runs script `i` and adds it to the sums of its scene.
@@ -95,19 +95,11 @@ int run_all(StressRun run) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Random pens over many scenes; every committed piece and poses inside it are asked of FCL."};
+  CLI::App app{"Random pens over many scenes; every committed piece and poses inside it are asked of FCL.", "stress"};
   StressRun run;
   add_options(app, run);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  setlinebuf(stdout);
-  try {
+  return apps::guarded_main(app, argc, argv, [&] {
+    setlinebuf(stdout);
     return run_all(run);
-  } catch (const Error& e) {
-    std::fprintf(stderr, "stress: %s\n", e.what());
-    return 2;
-  }
+  });
 }

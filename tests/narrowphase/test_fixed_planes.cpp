@@ -83,6 +83,41 @@ struct Count {
   double closest = 1e9;  ///< of the claims: what was left, in parts of what was taken off for the motion
 };
 
+/// The corners of a box about `center` of up to 0.3 of `size`, put into lane `i`.
+Piece put_box(std::mt19937& rng, const Vec3& center, double size, std::size_t i, LaneBlocks& lanes) {
+  Piece piece;
+  const Quat q = rotation(random_in_ball(rng, 3));
+  std::array<Real3, 3> edge;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 e = q * Vec3::Unit(k) * (0.3 * size * std::pow(10.0, uniform(rng, -3, 0)));
+    for (int j = 0; j < 3; ++j) edge[k][j] = lanes.at(i, kBoxEdges + 3 * k + j) = static_cast<float>(e[j]);
+    lanes.at(i, kBoxCenter + k) = static_cast<float>(center[k]);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    Real3 x = center.cast<long double>();
+    for (int k = 0; k < 3; ++k) x += (corner >> k & 1 ? 1 : -1) * edge[k];
+    piece.push_back(x);
+  }
+  return piece;
+}
+
+/// The same of a triangle.
+Piece put_triangle(std::mt19937& rng, const Vec3& center, double size, std::size_t i, LaneBlocks& lanes) {
+  Piece piece;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 x = center + random_in_ball(rng, 0.3 * size);
+    for (int j = 0; j < 3; ++j) lanes.at(i, kTriCorners + 3 * k + j) = static_cast<float>(x[j]);
+    piece.push_back(x.cast<long double>());
+  }
+  return piece;
+}
+
+double reach_of(const Piece& piece) {
+  double far = 0;
+  for (const Real3& x : piece) far = std::max(far, static_cast<double>(x.norm()));
+  return far;
+}
+
 /// kLanes pieces that go past planes at distances where the bulge decides.
 void ask(std::mt19937& rng, const PatchTree& tree_b, bool on_a, bool boxes, Count& count) {
   const Motion m(rng, tree_b);
@@ -106,31 +141,9 @@ void ask(std::mt19937& rng, const PatchTree& tree_b, bool on_a, bool boxes, Coun
       lanes.at(i, kBoxNormal + k) = static_cast<float>(n[k]);
       normals[i][k] = lanes.at(i, kBoxNormal + k);
     }
-    double far = 0;
-    if (boxes) {
-      const Quat q = rotation(random_in_ball(rng, 3));
-      std::array<Real3, 3> edge;
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 e = q * Vec3::Unit(k) * (0.3 * m.size * std::pow(10.0, uniform(rng, -3, 0)));
-        for (int j = 0; j < 3; ++j) edge[k][j] = lanes.at(i, kBoxEdges + 3 * k + j) = static_cast<float>(e[j]);
-        lanes.at(i, kBoxCenter + k) = static_cast<float>(center[k]);
-      }
-      for (int corner = 0; corner < 8; ++corner) {
-        Real3 x = center.cast<long double>();
-        for (int k = 0; k < 3; ++k) x += (corner >> k & 1 ? 1 : -1) * edge[k];
-        pieces[i].push_back(x);
-        far = std::max(far, static_cast<double>(x.norm()));
-      }
-      lanes.at(i, kBoxReach) = round_up<float>(far);
-    } else {
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 x = center + random_in_ball(rng, 0.3 * m.size);
-        for (int j = 0; j < 3; ++j) lanes.at(i, kTriCorners + 3 * k + j) = static_cast<float>(x[j]);
-        pieces[i].push_back(x.cast<long double>());
-        far = std::max(far, x.norm());
-      }
-      lanes.at(i, kTriReach) = round_up<float>(far);
-    }
+    pieces[i] = (boxes ? put_box : put_triangle)(rng, center, m.size, i, lanes);
+    const double far = reach_of(pieces[i]);
+    (boxes ? lanes.at(i, kBoxReach) : lanes.at(i, kTriReach)) = round_up<float>(far);
     // Its corner at the ends of the motion, and the plane below it by about what is taken off.
     const double taken = far * seen.fine.bulge + seen.fine.bulge_offset + seen.fine.error;
     const long double low = least(m, on_a, normals[i], pieces[i], 1);
