@@ -336,6 +336,6 @@ TEST_CASE("what cannot be planned is an error of one line") {
   refused(scene("straight") + " --clearance 5", "not a length with a unit");
   refused(scene("straight") + " --goal 0,0,0 --out", "--out");
   refused(scene("straight") + " --hold nobody", "nobody");
-  refused(scene("straight") + " --seed -1", "--seed: -1 is no whole number at least 0");
+  refused(scene("straight") + " --seed -1", "--seed: -1 is not a whole number of at least 0");
   refused("nothing.toml", "nothing.toml");
 }

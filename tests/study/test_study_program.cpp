@@ -220,7 +220,7 @@ TEST_CASE("bad commands of study are one line") {
   refused(file, "scene.toml: has no other parts than an order of the study takes out");
   const Output seed = run_program("tegotae", "try " + (folder / "scene.toml") + " --seed -1");
   CHECK(seed.code == 2);
-  CHECK_THAT(seed.err, Contains("--seed: -1 is no whole number at least 0"));
+  CHECK_THAT(seed.err, Contains("--seed: -1 is not a whole number of at least 0"));
   // Without HyperShell.
   folder.write("study.toml", "scenes = [\"scene.toml\"]\ngoal = \"out\"\n");
   const std::string path = std::getenv("PATH");
