@@ -254,4 +254,18 @@ bool CellFront::out_of_work(bool read_clock) {
   return read_clock && past(limit_.deadline_ns);
 }
 
+double CellFront::one_sidedness(std::uint32_t part) const noexcept {
+  Vec3 to_a = Vec3::Zero();
+  int planes = 0;
+  for (const Slot& slot : slots_) {
+    if (nodes_[slot.node].part != part) continue;
+    for (int k = 0; k < kCellPlanes; ++k) {
+      if (slot.cell.offset[k] == std::numeric_limits<float>::lowest()) continue;
+      to_a += slot.cell.normal(k);
+      ++planes;
+    }
+  }
+  return planes > 0 ? to_a.norm() / planes : 0;
+}
+
 }  // namespace tegotae

@@ -62,6 +62,9 @@ class CellFront {
     }
   }
 
+  /// How far the surfaces of the held part and `part` face each other from one side: the length of the mean of the
+  /// planes' normals, 1 on a flat seat, 0 in a hole. 0 where there are no cells.
+  double one_sidedness(std::uint32_t part) const noexcept;
   /// So many cells that none should be spent on what may never come.
   bool crowded() const;
   int cells() const { return static_cast<int>(count()); }

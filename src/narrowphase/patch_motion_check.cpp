@@ -44,6 +44,11 @@ constexpr int kSomePairs = 500, kFacesPerPair = 5;
 // What is asked ahead of a front stops at so many pairs.
 constexpr int kEnoughPairs = 4000;
 constexpr double kOneSided = 0.35;
+// What went over to cells lying on its seat, and is surrounded since (a peg that came over the rim of its hole), goes
+// back: asked this often (ticks), of as few cells as a front has room for.
+constexpr double kSurrounded = 0.2;
+constexpr int kCellsOfAFront = static_cast<int>(kMaxPairs) / 20;
+constexpr std::uint64_t kTicksBetweenSides = 64;
 // A front that has proved so many motions with that many pairs stays.
 constexpr int kProvedWithMany = 20;
 // What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
@@ -309,6 +314,11 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
 }
 
 void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {
+  if (limit_.deadline_ns != kNoDeadline && now_ % kTicksBetweenSides == 0 && report.pairs <= kCellsOfAFront) {
+    for (const std::uint32_t part : near_cells_)
+      if (part < fixed_.size() && choice_[part] == Certificate::cells && cells_->one_sidedness(part) < kSurrounded)
+        choice_[part] = Certificate::front;
+  }
   if (report.status != CertifyStatus::out_of_budget || vain_.last == now_ || bundled_) return;
   const bool begins = vain_.last + kTicksBetween < now_ || report.pairs > 2 * vain_.cells;
   if (begins) vain_ = {report.pairs, 0, 0};

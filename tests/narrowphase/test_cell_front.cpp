@@ -96,6 +96,33 @@ TEST_CASE("a motion certified by cells has no intersecting pose, nor has the sha
   }
 }
 
+TEST_CASE("what lies on a seat meets it from one side, what is in a hole from all", "[patch]") {
+  // A cube 10 um from walls along some of the six directions. Where they are planes with the normals of the walls, as
+  // many along each, the length of the mean is known.
+  const double half = 0.01, gap = 1e-5, wall = 0.002;
+  const auto among = [&](const std::vector<Vec3>& walls) {
+    auto mesh = std::make_shared<TriangleMesh>();
+    mesh->name = "walls";
+    for (const Vec3& to : walls) {
+      const Vec3 size = Vec3::Constant(half) + (wall - half) * to.cwiseAbs();
+      const MeshPtr slab = box(size);
+      const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+      for (const Vec3& v : slab->vertices) mesh->vertices.push_back(v + (half + gap + wall) * to);
+      for (const auto& t : slab->triangles) mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    CellFront front = cells_of({"cube among walls", box(Vec3::Constant(half)), mesh, Vec3::Zero(), Pose{}, 0, 0});
+    CHECK(front.one_sidedness(0) == 0);
+    front.set_near({0});
+    REQUIRE(front.certify(Pose{}, {Vec3(0.5 * gap, 0, 0), Vec3::Zero()}).status == CertifyStatus::certified);
+    return front.one_sidedness(0);
+  };
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  CHECK(among({-z}) > 0.99);
+  CHECK(among({-z, x}) == Approx(std::sqrt(0.5)).margin(0.1));
+  CHECK(among({-z, x, -x, y, -y, z}) < 0.1);
+  CHECK(among({x, -x, y, -y}) < 0.1);
+}
+
 TEST_CASE("a motion with room around it is certified by cells", "[patch]") {
   for (const Scene& scene : all_scenes()) {
     CAPTURE(scene.name);
