@@ -62,7 +62,7 @@ struct Rig::State {
   WeightRamp carried;
   GuidePull pulled;
   Scene rules;          ///< of the scene in force when changes were last taken, without its parts
-  std::mutex changing;  ///< guards `changes`
+  std::mutex changing;  ///< guards `rules` and `changes`
   std::vector<std::pair<SceneChange, Scene>> changes;  ///< later than `rules`, each with its rules
   std::optional<LoopPriority> priority;                ///< in run()
   std::string missing;

@@ -52,22 +52,24 @@ double sum(const std::vector<double>& v) {
 }
 
 /// What a recording of a part that goes down says by itself.
-struct Down {
-  double way = 0, peak = 0;  ///< m; N, upwards on the part while it moves down
-  explicit Down(const Recording& r) {
-    const double top = r.frames.front().x.p.z();
-    double before = top;
+/// What a recording says of a motion along a direction.
+struct Along {
+  double way = 0, peak = 0;  ///< m; N, against the part while it goes on
+  Along(const Recording& r, const Vec3& direction) {
+    const double start = direction.dot(r.frames.front().x.p);
+    double before = start;
     for (std::size_t i = 0; i < r.frames.size(); ++i) {
       const RecordFrame& f = r.frames[i];
       if (i + 1 < r.frames.size() && r.frames[i + 1].tick == f.tick) continue;
-      double up = 0;
+      double against = 0;
       for (int k = 0; k < f.forces.count; ++k) {
         const ContactForce& c = f.forces.items[static_cast<std::size_t>(k)];
-        up += c.force * c.n.z() + c.friction.z();
+        against -= direction.dot(c.force * c.n + c.friction);
       }
-      if (before - f.x.p.z() > 1e-7) peak = std::max(peak, up);
-      before = f.x.p.z();
-      way = std::max(way, top - before);
+      const double gone = direction.dot(f.x.p);
+      if (gone - before > 1e-7) peak = std::max(peak, against);
+      before = gone;
+      way = std::max(way, gone - start);
     }
   }
 };
@@ -87,7 +89,7 @@ TEST_CASE("the force of a peg over its depth is the recorded contacts', and fric
   CHECK_THAT(o.out, Contains("insertion: at most ") && Contains("insertion with friction of 0 to 0.3: "));
 
   auto columns = columns_of(read_text(table));
-  const Down down(read_recording(recording));
+  const Along down(read_recording(recording), -Vec3::UnitZ());
   const std::vector<double> depth = numbers(columns["depth_mm"]);
   REQUIRE(depth.size() == 200);
   const double segment = depth[1] - depth[0];
@@ -131,27 +133,13 @@ TEST_CASE("what it takes to pull a peg out is the recorded contacts' force, as t
   CHECK_THAT(o.out, Contains("It comes out\n") && Contains("pull-out: at most ") && Contains("% of it friction") &&
                         Contains("pull-out with friction of 0 to 0.6: ") && !Contains("insertion with"));
   // Against the way from start to goal, while the part goes on along it.
-  const Recording rows = read_recording(recording);
-  const Vec3 way = Vec3(0.003, 0, 0.0249).normalized();
-  double peak = 0, before = 0;
-  for (std::size_t i = 0; i < rows.frames.size(); ++i) {
-    const RecordFrame& f = rows.frames[i];
-    if (i + 1 < rows.frames.size() && rows.frames[i + 1].tick == f.tick) continue;
-    double against = 0;
-    for (int k = 0; k < f.forces.count; ++k) {
-      const ContactForce& c = f.forces.items[static_cast<std::size_t>(k)];
-      against -= way.dot(c.force * c.n + c.friction);
-    }
-    const double gone = way.dot(f.x.p);
-    if (i > 0 && gone - before > 1e-7) peak = std::max(peak, against);
-    before = gone;
-  }
-  REQUIRE(peak > 0.1);
+  const Along out(read_recording(recording), Vec3(0.003, 0, 0.0249).normalized());
+  REQUIRE(out.peak > 0.1);
   auto columns = columns_of(read_text(table));
   const std::vector<double> peaks = numbers(columns["pull_out_peak_n"]);
   REQUIRE(peaks.size() > 100);
   // Its center goes a little differently from its file frame where it tilts.
-  CHECK(*std::max_element(peaks.begin(), peaks.end()) == Approx(peak).epsilon(0.03));
+  CHECK(*std::max_element(peaks.begin(), peaks.end()) == Approx(out.peak).epsilon(0.03));
   const std::vector<double> low = numbers(columns["low_n"]), high = numbers(columns["high_n"]);
   CHECK(sum(high) / static_cast<double>(high.size()) > sum(low) / static_cast<double>(low.size()) + 0.05);
 }
