@@ -51,7 +51,6 @@ double sum(const std::vector<double>& v) {
   return out;
 }
 
-/// What a recording of a part that goes down says by itself.
 /// What a recording says of a motion along a direction.
 struct Along {
   double way = 0, peak = 0;  ///< m; N, against the part while it goes on
