@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "narrowphase/patch_separate.hpp"
+#include "narrowphase/wide.hpp"
 
 namespace tegotae {
 
@@ -37,8 +38,8 @@ struct Bulge {
 
 /// Whether the plane that goes from n0 to n1 keeps the pair apart all along, with `spare` (m) at both ends.
 template <typename Pair>
-bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge, const Sweep& sweep,
-                 double spare) {
+TEGOTAE_INLINE bool stays_apart(const Pair& pair, const Vec3& n0, const Vec3& n1, const Bulge& bulge,
+                                const Sweep& sweep, double spare) {
   const double share = bulge.share(n0, n1);
   const double alpha = pair.start(n0) - share * bulge.at_start - spare - sweep.start_floor;
   if (!(alpha >= 0)) return false;

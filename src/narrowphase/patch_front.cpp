@@ -28,8 +28,9 @@ constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8
 /// The same of parts that slide along each other about a common axis: their fronts grow larger, and what cannot be
 /// raised waits, so that tries go where something has changed. On parts that roll over each other it gains nothing.
 constexpr int kSlidingRaises = 24, kSlidingTries = 768;
-/// Pairs looked at in one call then, and this part of the front.
+/// Pairs looked at in one call then, and this part of the front; their memory is asked for so many ahead.
 constexpr int kMinVisits = 512, kVisitShare = 16;
+constexpr std::uint32_t kFetchAhead = 8;
 /// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
 constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks. And those
@@ -193,8 +194,8 @@ PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
     if (p.curved > 0 && bend(id, 0)) continue;
     PatchNode scratch_a, scratch_b;
     const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-    const BoxPair boxes(a, node_center(a), b, sweep_);
-    if (separate_boxes(boxes, sweep_, node_reach(a), 0, worth_of_a(), known)) {
+    const Vec3 center = node_center(a);
+    if (separate_boxes(a, center, b, sweep_, reach_from(center, a), 0, worth_of_a(), known)) {
       flatten(id);
       set_plane(id, last(known));
       continue;
@@ -266,6 +267,7 @@ void PatchFront::raise() {
   for (int visits = std::min(pairs(), std::max(kMinVisits, pairs() / kVisitShare));
        visits > 0 && report_.merges < wanted && tries < most; --visits) {
     if (++cursor_ >= count) cursor_ = 0;
+    fetch_ahead(count);
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !may_raise(parent)) continue;
@@ -277,6 +279,14 @@ void PatchFront::raise() {
   if (kPoorShare * report_.merges < tries) effort_ /= 2;
   if (kGoodShare * report_.merges > tries) effort_ = std::min(2 * effort_, slides_ ? kSlidingTries : kMaxTries);
   debt_ -= report_.merges;
+}
+
+/// Pairs and their parents are spread over megabytes, and most are only looked at in passing.
+void PatchFront::fetch_ahead(std::uint32_t count) const {
+  if (cursor_ + 2 * kFetchAhead >= count) return;
+  __builtin_prefetch(&pool_[in_front(cursor_ + 2 * kFetchAhead)]);
+  const std::uint32_t parent = pool_[in_front(cursor_ + kFetchAhead)].parent;
+  if (parent != kNoPair) __builtin_prefetch(&pool_[parent]);
 }
 
 bool PatchFront::may_raise(std::uint32_t id) const {
@@ -298,11 +308,11 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const PairNode& p = pool_[id];
   PatchNode scratch_a, scratch_b;
   const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-  const double reach = node_reach(a);
+  const Vec3 center = node_center(a);
   // With some gap to spare, or the next motion splits it again.
   const double spare = std::min(kRaiseSpare * motion_, kMaxSpare);
   MovingPlane known = moving(plane(p.child));
-  if (separate_boxes(BoxPair(a, node_center(a), b, sweep_), sweep_, reach, spare, worth_of_a(), known)) {
+  if (separate_boxes(a, center, b, sweep_, reach_from(center, a), spare, worth_of_a(), known)) {
     collapse(id);
     set_plane(id, last(known));
     return true;

@@ -124,6 +124,7 @@ class PatchFront {
   void collapse(std::uint32_t id);
   void roll_back();
   void raise();
+  void fetch_ahead(std::uint32_t count) const;
   bool bend(std::uint32_t id, double spare);
   bool curves_pay();
   bool try_to_bend(std::uint32_t id);

@@ -42,22 +42,6 @@ struct MovingPlane {
   bool with_a = false;  ///< it turned with A, and a plane that goes on to do so will last longest
 };
 
-/// A box of A at the two ends of a motion and a box of B, ready for separation.
-struct BoxPair {
-  Vec3 d0, d1;                   ///< from B's center to A's
-  std::array<Vec3, 3> a0, a1;    ///< A's axes
-  std::array<Vec3, 3> b;         ///< B's axes
-  std::array<double, 3> ha, hb;  ///< half extents
-
-  /// `center_a` is A's box center relative to the center of mass.
-  BoxPair(const PatchNode& a, const Vec3& center_a, const PatchNode& b_node, const Sweep& sweep);
-
-  double start(const Vec3& n) const;
-  double end(const Vec3& n) const;
-  /// Twice the mixed term of the gap: least of n0·x1 + n1·x0 over A less both supports of B.
-  double mixed(const Vec3& n0, const Vec3& n1) const;
-};
-
 /// A triangle of A at the two ends of a motion and a triangle of B.
 struct TrianglePair {
   std::array<Vec3, 3> p0, p1;  ///< A's corners
@@ -70,12 +54,13 @@ struct TrianglePair {
   double mixed(const Vec3& n0, const Vec3& n1) const;
 };
 
-/// Looks for a plane that keeps the boxes apart all along the motion. `reach` is the largest distance of a point of A's
-/// node from the center of mass (m). `spare` (m) asks for that much more at both ends. A gap along a face of A counts
-/// `worth_of_a` times what one along a face of B does, where there is a choice. `plane` comes in as the last known one
-/// and, where the boxes are apart, goes out as the one that keeps them so.
-bool separate_boxes(const BoxPair& pair, const Sweep& sweep, double reach, double spare, double worth_of_a,
-                    MovingPlane& plane);
+/// Looks for a plane that keeps the box `a` of A, whose center is at `center_a` from A's center of mass, apart from the
+/// box `b` of B all along the motion. `reach` is the largest distance of a point of A's box from the center of mass
+/// (m). `spare` (m) asks for that much more at both ends. A gap along a face of A counts `worth_of_a` times what one
+/// along a face of B does, where there is a choice. `plane` comes in as the last known one and, where the boxes are
+/// apart, goes out as the one that keeps them so.
+bool separate_boxes(const PatchNode& a, const Vec3& center_a, const PatchNode& b, const Sweep& sweep, double reach,
+                    double spare, double worth_of_a, MovingPlane& plane);
 
 /// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
 /// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between. `beside`
