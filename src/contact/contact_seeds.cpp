@@ -92,9 +92,10 @@ class Surrounded {
 }  // namespace
 
 int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near, std::int64_t deadline_ns) {
+  deadline_ns_ = deadline_ns;
   int fresh = 0;
   for (const FacePair& t : triangles) {
-    if (past(deadline_ns) || fresh >= kMaxFresh) break;
+    if (out_of_time() || fresh >= kMaxFresh) break;
     if (static_cast<int>(next_.size()) >= capacity_) {
       ++overflow_;
       break;
@@ -106,6 +107,10 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near,
   }
   if (fresh > 0) pairs_.assign(next_.begin(), next_.end());
   return fresh;
+}
+
+bool ContactSet::out_of_time() const {
+  return past(deadline_ns_);
 }
 
 int ContactSet::seed_pair(const FacePair& t, const Pose& X_near) {
@@ -120,7 +125,7 @@ int ContactSet::seed_pair(const FacePair& t, const Pose& X_near) {
   int fresh = take(t.part, at, false);
   if (fresh > 0) fresh += seed_regions_at(t.part, at);
   if (try_first_time(t)) fresh += seed_regions(t) + seed_crossings(t);
-  if (fresh == 0) fresh = seed_corners(t) + seed_rims(t);
+  if (fresh == 0 && !out_of_time()) fresh = seed_corners(t) + seed_rims(t);
   return fresh > 0 ? fresh : take(t.part, at, true);
 }
 
@@ -145,7 +150,7 @@ int ContactSet::seed_regions_at(std::uint32_t part, const FeaturePair& at) {
   const Mat3 R = pose_in(part).q.toRotationMatrix();
   int fresh = 0;
   for (std::size_t i = 0; i < a.size; ++i)
-    for (std::size_t j = 0; j < b.size; ++j) {
+    for (std::size_t j = 0; j < b.size && !out_of_time(); ++j) {
       const FacePair t{part, a.faces[i], b.faces[j]};
       const double cosine = (R * held_->topology.face_normals[t.a]).dot(B.topology.face_normals[t.b]);
       if (std::abs(cosine) > kParallel && try_first_time(t)) fresh += seed_regions(t) + seed_crossings(t);
@@ -158,25 +163,29 @@ int ContactSet::seed_regions(const FacePair& t) {
   int fresh = 0;
   const std::uint32_t a = ra.of_face[t.a], b = rb.of_face[t.b];
   if (a != kNone)
-    for (std::uint32_t i = ra.corner_begin[a]; i < ra.corner_begin[a + 1]; ++i)
-      fresh += seed_vertex_of_a(t.part, ra.corners[i], t.b) + seed_parallel(t, ra.corners[i]);
+    for (std::uint32_t i = ra.corner_begin[a]; i < ra.corner_begin[a + 1] && !out_of_time(); ++i)
+      fresh += seed_corner_of_a(t, ra.corners[i]);
   if (b != kNone)
-    for (std::uint32_t i = rb.corner_begin[b]; i < rb.corner_begin[b + 1]; ++i)
+    for (std::uint32_t i = rb.corner_begin[b]; i < rb.corner_begin[b + 1] && !out_of_time(); ++i)
       fresh += seed_vertex_of_b(t.part, t.a, rb.corners[i]);
   return fresh;
 }
 
-int ContactSet::seed_parallel(const FacePair& t, std::uint32_t vertex) {
-  // A plane may be several regions (T-junctions, islands): the corner stands on the one that is under it.
+int ContactSet::seed_corner_of_a(const FacePair& t, std::uint32_t vertex) {
   const Surface& B = *fixed_[t.part].surface;
-  const Vec3& n = B.topology.face_normals[t.b];
+  const NearestFace& around = near_fixed_[t.part];
+  const Vec3 p = pose_in(t.part) * held_->mesh->vertices[vertex];
   NearFace near;
   near.squared = reach_ * reach_;
-  near_fixed_[t.part].find(pose_in(t.part) * held_->mesh->vertices[vertex], near, [&B, &n](std::uint32_t face) {
-    return std::abs(n.dot(B.topology.face_normals[face])) > kParallel;
-  });
-  if (near.face == kNone) return 0;
-  return start(t.part, {FeatureKind::vertex, vertex}, subfeature(B, {FeatureKind::face, near.face}, near.mask));
+  around.find_in_region(p, t.b, near);
+  int fresh = near.face == kNone ? 0 : start_on_b(t.part, vertex, near);
+  // A plane may be several regions (T-junctions, islands): the corner stands on the one that is under it.
+  const std::uint32_t in_region = near.face;
+  const Vec3& n = B.topology.face_normals[t.b];
+  around.find(p, near,
+              [&B, &n](std::uint32_t face) { return std::abs(n.dot(B.topology.face_normals[face])) > kParallel; });
+  if (near.face != in_region) fresh += start_on_b(t.part, vertex, near);
+  return fresh;
 }
 
 int ContactSet::seed_crossings(const FacePair& t) {
@@ -185,7 +194,7 @@ int ContactSet::seed_crossings(const FacePair& t) {
   const Pose X_BA = pose_in(t.part);
   for (std::size_t i = 0; i < a.size; ++i) a.p[i] = X_BA * a.p[i];
   int fresh = 0;
-  for (std::size_t i = 0; i < a.size; ++i)
+  for (std::size_t i = 0; i < a.size && !out_of_time(); ++i)
     for (std::size_t j = 0; j < b.size; ++j) {
       const ClosestPoints c =
           closest_points({2, {a.p[i], a.p[(i + 1) % a.size]}}, {2, {b.p[j], b.p[(j + 1) % b.size]}});
@@ -212,9 +221,12 @@ int ContactSet::seed_vertex_of_a(std::uint32_t part, std::uint32_t vertex, std::
   NearFace near;
   near.squared = reach_ * reach_;
   near_fixed_[part].find_in_region(pose_in(part) * held_->mesh->vertices[vertex], face_b, near);
-  if (near.face == kNone) return 0;
-  const Feature a{FeatureKind::vertex, vertex};
-  return start(part, a, subfeature(*fixed_[part].surface, {FeatureKind::face, near.face}, near.mask));
+  return near.face == kNone ? 0 : start_on_b(part, vertex, near);
+}
+
+int ContactSet::start_on_b(std::uint32_t part, std::uint32_t vertex, const NearFace& near) {
+  const Surface& B = *fixed_[part].surface;
+  return start(part, {FeatureKind::vertex, vertex}, subfeature(B, {FeatureKind::face, near.face}, near.mask));
 }
 
 int ContactSet::seed_vertex_of_b(std::uint32_t part, std::uint32_t face_a, std::uint32_t vertex) {

@@ -1,6 +1,7 @@
 #include "contact/contact_set.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "narrowphase/patch_cache.hpp"
 #include "tegotae/core/clock.hpp"
@@ -13,7 +14,14 @@ constexpr std::size_t kClockStride = 8;
 
 std::vector<NearestFace> nearest_faces(const std::vector<FixedSurface>& fixed) {
   std::vector<NearestFace> out;
-  for (const FixedSurface& f : fixed) out.emplace_back(f.surface, cached_patch_tree(f.surface->mesh));
+  std::map<const Surface*, std::size_t> first;
+  for (const FixedSurface& f : fixed) {
+    const auto [known, fresh] = first.emplace(f.surface.get(), out.size());
+    if (fresh)
+      out.emplace_back(f.surface, cached_patch_tree(f.surface->mesh));
+    else
+      out.push_back(NearestFace(out[known->second]));
+  }
   return out;
 }
 

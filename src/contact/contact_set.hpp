@@ -91,16 +91,19 @@ class ContactSet {
   bool spoken_for(const Contact& constraint, std::uint32_t part, const std::vector<Contact>& constraints,
                   const std::vector<std::uint32_t>& owners) const;
 
-  // Seeds; each returns how many fresh pairs it found.
+  // Seeds; each returns how many fresh pairs it found. One pair of triangles may ask for hundreds of nearest faces, so
+  // all look at the clock; what is left comes with the next tick.
+  bool out_of_time() const;
   int seed_pair(const FacePair& t, const Pose& X_near);
   int seed_regions_at(std::uint32_t part, const FeaturePair& at);
   int seed_regions(const FacePair& t);
   int seed_crossings(const FacePair& t);
-  int seed_parallel(const FacePair& t, std::uint32_t vertex);
+  int seed_corner_of_a(const FacePair& t, std::uint32_t vertex);
   int seed_corners(const FacePair& t);
   int seed_rims(const FacePair& t);
   int seed_vertex_of_a(std::uint32_t part, std::uint32_t vertex, std::uint32_t face_b);
   int seed_vertex_of_b(std::uint32_t part, std::uint32_t face_a, std::uint32_t vertex);
+  int start_on_b(std::uint32_t part, std::uint32_t vertex, const NearFace& near);
   int start(std::uint32_t part, Feature a, Feature b);
   int take(std::uint32_t part, const FeaturePair& at, bool support);
   bool try_first_time(const FacePair& t);
@@ -135,6 +138,7 @@ class ContactSet {
   std::vector<std::uint32_t> owners_;       ///< of each constraint: its pair, kNone for a cutting plane
   std::vector<Contact> next_constraints_;   ///< of this track, until it is finished
   std::vector<std::uint32_t> next_owners_;  ///< likewise
+  std::int64_t deadline_ns_ = 0;            ///< of the call of seed()
   std::array<TriedRegions, 64> tried_;
   std::size_t tried_count_ = 0;
   int overflow_ = 0;

@@ -25,8 +25,8 @@ struct NearFace {
 /// Nearest faces of a surface to points, by its hierarchy. Immutable.
 class NearestFace {
  public:
-  NearestFace(std::shared_ptr<const Surface> surface, std::shared_ptr<const PatchTree> tree)
-      : surface_(std::move(surface)), tree_(std::move(tree)) {}
+  /// Takes O(triangles); copies share what it makes.
+  NearestFace(std::shared_ptr<const Surface> surface, std::shared_ptr<const PatchTree> tree);
 
   const Surface& surface() const { return *surface_; }
   /// Whether find() looks at all of the hierarchy; of a deeper one it leaves out what lies deepest.
@@ -36,13 +36,26 @@ class NearestFace {
   /// surface is near; never allocates.
   template <typename Wanted>
   void find(const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
+    find_under(0, p, best, wanted);
+  }
+  /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
+  void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
+  /// Replaces `best` by the nearest point of one face if that is nearer.
+  void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
+
+ private:
+  static constexpr std::size_t kDeepest = 500;
+
+  /// The same for the faces under a node.
+  template <typename Wanted>
+  void find_under(std::uint32_t root, const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
     struct Entry {
       std::uint32_t node;
       double bound;
     };
     std::array<Entry, kDeepest + 2> stack;
     std::size_t top = 0;
-    stack[top++] = {0, 0};
+    stack[top++] = {root, 0};
     while (top > 0) {
       const Entry e = stack[--top];
       if (e.bound >= best.squared) continue;
@@ -60,18 +73,12 @@ class NearestFace {
       stack[top++] = near;
     }
   }
-  /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
-  void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
-  /// Replaces `best` by the nearest point of one face if that is nearer.
-  void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
-
- private:
-  static constexpr std::size_t kDeepest = 500;
-
   double squared_bound(const Vec3& p, const PatchNode& node) const noexcept;
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const PatchTree> tree_;
+  /// Of each flat region: the lowest node that all of its faces are under.
+  std::shared_ptr<const std::vector<std::uint32_t>> region_roots_;
 };
 
 }  // namespace tegotae
