@@ -37,6 +37,9 @@ constexpr double kAtSurface = 0.3e-3;
 constexpr double kShortestPiece = 0.25;
 // Progress (m) below which it is stuck, and what is left at the end that needs no wiggling.
 constexpr double kProgress = 0.3e-3, kNearEnd = 1e-3;
+// A part that is wedged between two sides comes free only when it is drawn back (Whitney, J. Dyn. Syst. Meas. Control
+// 104, 1982): after so long without progress (s) the hand pulls for so long, as hard as it pushed, and tries again.
+constexpr double kDrawBackAfter = 2, kDrawBackFor = 0.4;
 // A wiggle grows by this factor at each look without progress, to so many times the first; it fades by the last.
 constexpr double kWiggleGrowth = 1.25, kMaxWiggle = 4, kWiggleFade = 0.6;
 // Circles of the tip (m) for a tilt of 1 rad; turns of the circles against those of the tilt.
@@ -142,11 +145,12 @@ struct Operator::Impl {
     const double lead = profile.press / profile.hand.stiffness;
     const bool held_back = now.x[0] - felt.depth > lead;
     notice_progress(t, felt.depth, held_back);
-    const double target = held_back ? felt.depth + lead : task.depth;
+    const bool back = draws_back(t, felt.depth);
+    const double target = back ? felt.depth - lead : held_back ? felt.depth + lead : task.depth;
     // A way down that goes on is let be: planned again and again it would never speed up.
-    if (!held_back && depth_plan.target()[0] == task.depth) return;
+    if (!back && !held_back && depth_plan.target()[0] == task.depth) return;
     const double way = std::abs(target - now.x[0]);
-    const double time = held_back ? kShortestPiece : std::max(kShortestPiece, way / profile.insertion_speed);
+    const double time = back || held_back ? kShortestPiece : std::max(kShortestPiece, way / profile.insertion_speed);
     depth_plan = Depth(now, one(target), t, time);
   }
 
@@ -189,6 +193,11 @@ struct Operator::Impl {
       progress_at = t;
     }
     stuck = held_back && t - progress_at > profile.patience && depth < task.depth - kNearEnd;
+  }
+
+  bool draws_back(double t, double depth) const {
+    // What it pulls out goes in again as deep as it was without being progress.
+    return depth < task.depth - kNearEnd && std::fmod(t - progress_at, kDrawBackAfter + kDrawBackFor) > kDrawBackAfter;
   }
 
   HandTarget target(double t, const Pose& pen) {

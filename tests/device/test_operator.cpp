@@ -231,6 +231,39 @@ TEST_CASE("blocked, it presses no harder than it means to, wiggles more and more
   CHECK(tip_depth(pen) == Approx(0.04).margin(1e-3));
 }
 
+TEST_CASE("held fast, it draws back after each two seconds and tries again", "[operator]") {
+  const OperatorProfile p = steady("average");
+  Operator op(p, task(), 4);
+  Pose pen = op.start();
+  // The part sticks where it first gets to 2 mm, in both directions, as a wedged one does.
+  double first = -1, push = 0, pull = 0;
+  std::vector<double> begins;
+  bool pulls = false;
+  for (int tick = 0; tick < 12000; ++tick) {
+    const double t = 1e-3 * tick;
+    op.see(t, pen);
+    pen = op.target(t + 5e-4, pen).pose;
+    const double ahead = tip_depth(pen) - 0.002;
+    if (first < 0 && ahead < 0) continue;
+    if (first < 0) first = t;
+    pen.p.z() += ahead;
+    push = std::max(push, p.hand.stiffness * ahead);
+    pull = std::max(pull, -p.hand.stiffness * ahead);
+    const bool now = p.hand.stiffness * ahead < -0.5 * p.press;
+    if (now && !pulls) begins.push_back(t - first);
+    pulls = now;
+  }
+  REQUIRE(first > 0);
+  REQUIRE(begins.size() >= 3);
+  CHECK(begins[0] > 2);
+  for (std::size_t i = 1; i < begins.size(); ++i) CHECK(begins[i] - begins[i - 1] == Approx(2.4).margin(0.1));
+  // As hard as it pushes, and what it runs on.
+  const double runs_on = p.hand.stiffness * 2 * p.insertion_speed * 0.05;
+  CHECK(pull > 0.8 * p.press);
+  CHECK(pull < 1.5 * p.press + runs_on);
+  CHECK(push < 1.5 * p.press + runs_on);
+}
+
 TEST_CASE("the same seed gives the same bits, another seed another hand", "[operator]") {
   const auto run = [](std::uint64_t seed) {
     Operator op(operator_profile("hasty"), task(), seed);

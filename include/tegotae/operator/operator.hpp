@@ -54,8 +54,8 @@ struct InsertionTask {
 /// A model of a person at a simulated pen. The model carries the part over the hole on a minimum-jerk path and brings
 /// it down. It sees offset and tilt late and inexactly, and aims again about five times a second. It feels how far the
 /// pen lags and pushes no harder than it intends. When it makes no progress it wiggles: it moves in small circles and
-/// tilts that grow, while it straightens the part. Its hand trembles throughout. The same profile, task, seed and calls
-/// give the same bits.
+/// tilts that grow, while it straightens the part. Every two seconds without progress it draws the part back for a
+/// moment and tries again. Its hand trembles throughout. The same profile, task, seed and calls give the same bits.
 class Operator final : public InputSource {
  public:
   /// Throws Error (kind setting) for an impossible task or profile.
