@@ -17,6 +17,8 @@ constexpr int kMaxFresh = 64;
 constexpr double kSameNormal = 0.9998, kSlope = 0.02, kSameGap = 1e-6;
 // Flat regions that lie on each other are parallel up to this (as a cosine: 0.03 rad, as far as walks go along).
 constexpr double kParallel = 0.99955;
+// What is nearer by less than this share of a squared distance is as near: rounding of boxes is a tenth of it.
+constexpr double kSameDistance = 1 - 1e-4;
 // Points that are nearer to a line through the middle than this share of their distance lie on it.
 constexpr double kOnLine = 1e-6;
 
@@ -180,11 +182,12 @@ int ContactSet::seed_corner_of_a(const FacePair& t, std::uint32_t vertex) {
   around.find_in_region(p, t.b, near);
   int fresh = near.face == kNone ? 0 : start_on_b(t.part, vertex, near);
   // A plane may be several regions (T-junctions, islands): the corner stands on the one that is under it.
-  const std::uint32_t in_region = near.face;
+  near.face = kNone;
+  near.squared *= kSameDistance;
   const Vec3& n = B.topology.face_normals[t.b];
   around.find(p, near,
               [&B, &n](std::uint32_t face) { return std::abs(n.dot(B.topology.face_normals[face])) > kParallel; });
-  if (near.face != in_region) fresh += start_on_b(t.part, vertex, near);
+  if (near.face != kNone) fresh += start_on_b(t.part, vertex, near);
   return fresh;
 }
 

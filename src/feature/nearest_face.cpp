@@ -6,6 +6,9 @@
 namespace tegotae {
 namespace {
 
+/// Corners of a triangle that carry a point inside it.
+constexpr unsigned kInside = 7;
+
 struct Ancestry {
   std::vector<std::uint32_t> parent, depth;  ///< of each node
   std::vector<std::uint32_t> leaf;           ///< of each place in PatchTree::order()
@@ -75,10 +78,10 @@ void NearestFace::try_face(const Vec3& p, std::uint32_t face, NearFace& best) co
 void NearestFace::find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept {
   const std::vector<std::uint32_t>& of_face = surface_->regions.of_face;
   const std::uint32_t region = of_face[face];
-  if (region == kNone)
-    try_face(p, face, best);
-  else
-    find_under((*region_roots_)[region], p, best, [&of_face, region](std::uint32_t f) { return of_face[f] == region; });
+  if (region == kNone) return try_face(p, face, best);
+  const auto wanted = [&of_face, region](std::uint32_t f) { return of_face[f] == region; };
+  // Nothing in a plane is nearer than what is straight below.
+  find_under((*region_roots_)[region], p, best, wanted, [](const NearFace& at) { return at.mask == kInside; });
 }
 
 double NearestFace::squared_bound(const Vec3& p, const PatchNode& node) const noexcept {

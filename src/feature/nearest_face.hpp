@@ -36,9 +36,10 @@ class NearestFace {
   /// surface is near; never allocates.
   template <typename Wanted>
   void find(const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
-    find_under(0, p, best, wanted);
+    find_under(0, p, best, wanted, [](const NearFace&) { return false; });
   }
-  /// Replaces `best` by what is nearer to `p` in the flat region of `face`.
+  /// Replaces `best` by what is nearer to `p` in the flat region of `face`. Where the region is not quite flat and `p`
+  /// is over several of its faces, one of them.
   void find_in_region(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
   /// Replaces `best` by the nearest point of one face if that is nearer.
   void try_face(const Vec3& p, std::uint32_t face, NearFace& best) const noexcept;
@@ -46,9 +47,9 @@ class NearestFace {
  private:
   static constexpr std::size_t kDeepest = 500;
 
-  /// The same for the faces under a node.
-  template <typename Wanted>
-  void find_under(std::uint32_t root, const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
+  /// The same for the faces under a node; ends with the first that is near enough.
+  template <typename Wanted, typename Enough>
+  void find_under(std::uint32_t root, const Vec3& p, NearFace& best, Wanted wanted, Enough enough) const noexcept {
     struct Entry {
       std::uint32_t node;
       double bound;
@@ -63,6 +64,7 @@ class NearestFace {
       if (node.leaf()) {
         for (std::uint32_t i = 0; i < node.count; ++i)
           if (const std::uint32_t face = tree_->order()[node.first + i]; wanted(face)) try_face(p, face, best);
+        if (enough(best)) return;
         continue;
       }
       Entry near{node.first, squared_bound(p, tree_->nodes()[node.first])};
