@@ -9,51 +9,29 @@ namespace {
 /// Corners of a triangle that carry a point inside it.
 constexpr unsigned kInside = 7;
 
-struct Ancestry {
-  std::vector<std::uint32_t> parent, depth;  ///< of each node
-  std::vector<std::uint32_t> leaf;           ///< of each place in PatchTree::order()
-
-  explicit Ancestry(const PatchTree& tree)
-      : parent(tree.nodes().size(), 0), depth(tree.nodes().size(), 0), leaf(tree.order().size()) {
-    for (std::uint32_t i = 0; i < tree.nodes().size(); ++i) {
-      const PatchNode& node = tree.nodes()[i];
-      for (std::uint32_t k = 0; k < node.count; ++k) leaf[node.first + k] = i;
-      if (node.leaf()) continue;
-      for (const std::uint32_t child : {node.first, node.first + 1}) parent[child] = i, depth[child] = depth[i] + 1;
-    }
-  }
-
-  std::uint32_t common(std::uint32_t a, std::uint32_t b) const {
-    while (a != b) (depth[a] < depth[b] ? b : a) = parent[depth[a] < depth[b] ? b : a];
-    return a;
-  }
-};
-
-/// Faces under a node are a range of PatchTree::order(), so a region's first and last places say what they are under.
-std::vector<std::uint32_t> region_roots(const Surface& surface, const PatchTree& tree) {
-  struct Places {
-    std::uint32_t first = kNone, last = 0;
-  };
-  std::vector<Places> places(surface.regions.corner_begin.size() - 1);
-  for (std::uint32_t i = 0; i < tree.order().size(); ++i) {
-    const std::uint32_t region = surface.regions.of_face[tree.order()[i]];
-    if (region == kNone) continue;
-    places[region].first = std::min(places[region].first, i);
-    places[region].last = i;
-  }
-  const Ancestry ancestry(tree);
-  std::vector<std::uint32_t> roots;
-  for (const Places& p : places)
-    roots.push_back(p.first == kNone ? 0 : ancestry.common(ancestry.leaf[p.first], ancestry.leaf[p.last]));
-  return roots;
-}
-
 }  // namespace
 
 NearestFace::NearestFace(std::shared_ptr<const Surface> surface, std::shared_ptr<const PatchTree> tree)
     : surface_(std::move(surface)),
       tree_(std::move(tree)),
-      region_roots_(std::make_shared<const std::vector<std::uint32_t>>(region_roots(*surface_, *tree_))) {}
+      regions_(std::make_shared<const std::vector<RegionRange>>(regions_under(*surface_, *tree_))) {}
+
+std::vector<NearestFace::RegionRange> NearestFace::regions_under(const Surface& surface, const PatchTree& tree) {
+  std::vector<RegionRange> out(tree.nodes().size());
+  // Children come after their parents.
+  for (std::size_t i = out.size(); i-- > 0;) {
+    const PatchNode& node = tree.nodes()[i];
+    RegionRange& range = out[i];
+    const auto add = [&range](std::uint32_t first, std::uint32_t last) {
+      range = {std::min(range.first, first), std::max(range.last, last)};
+    };
+    for (std::uint32_t k = 0; k < node.count; ++k)
+      if (const std::uint32_t r = surface.regions.of_face[tree.order()[node.first + k]]; r != kNone) add(r, r);
+    if (node.leaf()) continue;
+    for (const std::uint32_t child : {node.first, node.first + 1}) add(out[child].first, out[child].last);
+  }
+  return out;
+}
 
 bool NearestFace::complete() const {
   std::vector<std::pair<std::uint32_t, std::size_t>> stack{{0, 1}};
@@ -81,7 +59,10 @@ void NearestFace::find_in_region(const Vec3& p, std::uint32_t face, NearFace& be
   if (region == kNone) return try_face(p, face, best);
   const auto wanted = [&of_face, region](std::uint32_t f) { return of_face[f] == region; };
   // Nothing in a plane is nearer than what is straight below.
-  find_under((*region_roots_)[region], p, best, wanted, [](const NearFace& at) { return at.mask == kInside; });
+  const auto enters = [this, region](std::uint32_t node) {
+    return (*regions_)[node].first <= region && region <= (*regions_)[node].last;
+  };
+  find(p, best, wanted, enters, [](const NearFace& at) { return at.mask == kInside; });
 }
 
 double NearestFace::squared_bound(const Vec3& p, const PatchNode& node) const noexcept {

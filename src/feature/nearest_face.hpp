@@ -36,7 +36,8 @@ class NearestFace {
   /// surface is near; never allocates.
   template <typename Wanted>
   void find(const Vec3& p, NearFace& best, Wanted wanted) const noexcept {
-    find_under(0, p, best, wanted, [](const NearFace&) { return false; });
+    find(
+        p, best, wanted, [](std::uint32_t) { return true; }, [](const NearFace&) { return false; });
   }
   /// Replaces `best` by what is nearer to `p` in the flat region of `face`. Where the region is not quite flat and `p`
   /// is over several of its faces, one of them.
@@ -46,17 +47,21 @@ class NearestFace {
 
  private:
   static constexpr std::size_t kDeepest = 500;
+  struct RegionRange {
+    std::uint32_t first = kNone, last = 0;
+  };
+  static std::vector<RegionRange> regions_under(const Surface& surface, const PatchTree& tree);
 
-  /// The same for the faces under a node; ends with the first that is near enough.
-  template <typename Wanted, typename Enough>
-  void find_under(std::uint32_t root, const Vec3& p, NearFace& best, Wanted wanted, Enough enough) const noexcept {
+  /// The same under the nodes that `enters(node)` accepts; ends with the first face that is near enough.
+  template <typename Wanted, typename Enters, typename Enough>
+  void find(const Vec3& p, NearFace& best, Wanted wanted, Enters enters, Enough enough) const noexcept {
     struct Entry {
       std::uint32_t node;
       double bound;
     };
     std::array<Entry, kDeepest + 2> stack;
     std::size_t top = 0;
-    stack[top++] = {root, 0};
+    stack[top++] = {0, 0};
     while (top > 0) {
       const Entry e = stack[--top];
       if (e.bound >= best.squared) continue;
@@ -67,20 +72,21 @@ class NearestFace {
         if (enough(best)) return;
         continue;
       }
-      Entry near{node.first, squared_bound(p, tree_->nodes()[node.first])};
-      Entry far{node.first + 1, squared_bound(p, tree_->nodes()[node.first + 1])};
-      if (near.bound > far.bound) std::swap(near, far);
       if (top + 2 > stack.size()) continue;
-      stack[top++] = far;
-      stack[top++] = near;
+      const std::size_t before = top;
+      for (const std::uint32_t child : {node.first, node.first + 1})
+        if (enters(child)) stack[top++] = {child, squared_bound(p, tree_->nodes()[child])};
+      // The nearer one on top.
+      if (top - before == 2 && stack[before].bound <= stack[before + 1].bound)
+        std::swap(stack[before], stack[before + 1]);
     }
   }
   double squared_bound(const Vec3& p, const PatchNode& node) const noexcept;
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const PatchTree> tree_;
-  /// Of each flat region: the lowest node that all of its faces are under.
-  std::shared_ptr<const std::vector<std::uint32_t>> region_roots_;
+  /// The flat regions under each node: from the first to the last number.
+  std::shared_ptr<const std::vector<RegionRange>> regions_;
 };
 
 }  // namespace tegotae
