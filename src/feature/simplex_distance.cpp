@@ -75,6 +75,14 @@ ClosestPoints closest_points(const Simplex& a, const Simplex& b) {
     if (d2 < best.squared_distance) best = {pa, pb, d2, ma, mb};
   };
   const Inside of_a(a), of_b(b);
+  if (a.size == 1) {
+    const OnSimplex s = closest_on(a.p[0], b, of_b);
+    return {a.p[0], s.p, (a.p[0] - s.p).squaredNorm(), 1, s.mask};
+  }
+  if (b.size == 1) {
+    const OnSimplex s = closest_on(b.p[0], a, of_a);
+    return {s.p, b.p[0], (s.p - b.p[0]).squaredNorm(), s.mask, 1};
+  }
   for (unsigned i = 0; i < static_cast<unsigned>(a.size); ++i) {
     const OnSimplex s = closest_on(a.p[i], b, of_b);
     take(a.p[i], s.p, 1u << i, s.mask);

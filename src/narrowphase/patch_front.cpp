@@ -29,7 +29,7 @@ constexpr int kMinTries = 8, kPairsPerTry = 256, kMaxTries = 256, kPoorShare = 8
 /// raised waits, so that tries go where something has changed. On parts that roll over each other it gains nothing.
 constexpr int kSlidingRaises = 24, kSlidingTries = 768;
 /// Pairs looked at in one call then, and this part of the front; their memory is asked for so many ahead.
-constexpr int kMinVisits = 512, kVisitShare = 16;
+constexpr int kMinVisits = 128, kVisitShare = 16;
 constexpr std::uint32_t kFetchAhead = 8;
 /// A pair that could not be raised waits for so many motions at first, and for so many of its own widths at last.
 constexpr double kFirstWait = 4, kLastWait = 4;
