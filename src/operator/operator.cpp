@@ -38,8 +38,9 @@ constexpr double kShortestPiece = 0.25;
 // Progress (m) below which it is stuck, and what is left at the end that needs no wiggling.
 constexpr double kProgress = 0.3e-3, kNearEnd = 1e-3;
 // A part that is wedged between two sides comes free only when it is drawn back (Whitney, J. Dyn. Syst. Meas. Control
-// 104, 1982): after so long without progress (s) the hand pulls for so long, as hard as it pushed, and tries again.
-constexpr double kDrawBackAfter = 2, kDrawBackFor = 0.4;
+// 104, 1982): after so long without progress (s) the hand pulls for so long, as hard as it pushed, but not farther than
+// so much (m), and tries again.
+constexpr double kDrawBackAfter = 2, kDrawBackFor = 0.4, kDrawBackWay = 1e-3;
 // A wiggle grows by this factor at each look without progress, to so many times the first; it fades by the last.
 constexpr double kWiggleGrowth = 1.25, kMaxWiggle = 4, kWiggleFade = 0.6;
 // Circles of the tip (m) for a tilt of 1 rad; turns of the circles against those of the tilt.
@@ -146,7 +147,8 @@ struct Operator::Impl {
     const bool held_back = now.x[0] - felt.depth > lead;
     notice_progress(t, felt.depth, held_back);
     const bool back = draws_back(t, felt.depth);
-    const double target = back ? felt.depth - lead : held_back ? felt.depth + lead : task.depth;
+    const double out = deepest - kDrawBackWay, pulled = felt.depth > out ? felt.depth - lead : out;
+    const double target = back ? pulled : held_back ? felt.depth + lead : task.depth;
     // A way down that goes on is let be: planned again and again it would never speed up.
     if (!back && !held_back && depth_plan.target()[0] == task.depth) return;
     const double way = std::abs(target - now.x[0]);
