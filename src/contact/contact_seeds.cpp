@@ -105,7 +105,10 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near,
     // A collapsed face has no features of its own; its corners and edges are those of the faces around.
     if (held_->topology.face_edges[t.a][0] == kNone || fixed_[t.part].surface->topology.face_edges[t.b][0] == kNone)
       continue;
+    const std::size_t tried = tried_count_;
     fresh += seed_pair(t, X_near);
+    // What there was no time for is asked again in the next tick, which need not have moved the part.
+    if (out_of_time()) tried_count_ = tried;
   }
   if (fresh > 0) pairs_.assign(next_.begin(), next_.end());
   return fresh;
