@@ -107,6 +107,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
                             std::int64_t deadline_ns) {
   if (!at_.is_path_free(X_, last.proxy.X, center_, fresh, deadline_ns, near_, blocking_)) return false;
   X_ = last.proxy.X;
+  at_.check->jumped();
   last_Y_ = Y;
   tracked_ = false;
   owed_.reset();
@@ -117,6 +118,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 
 void ContactLoop::stand_at(const Pose& X) {
   X_ = last_Y_ = X;
+  at_.check->jumped();
   at_.contacts->clear();
   near_.clear();
   // Nothing is near: what the check knew of parts that were goes.
@@ -190,6 +192,7 @@ void ContactLoop::move_in_air(const Pose& Y, double wanted, double travel, TickR
 
 void ContactLoop::move_near_parts(const Pose& Y, double travel, double pen, TickReport& report) {
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
+  at_.check->trust_start();
   if (track()) adapt_margin(Y);
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));

@@ -29,6 +29,11 @@ class MotionCheck {
 
   /// Fixed parts that matter until the next call; `deadline_ns` of monotonic_ns() bounds the work of the checks.
   virtual void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept = 0;
+  /// Until the next begin(), checks of motions start where A meets no near part that may not be left out: at the start
+  /// of the scene, or where motions that were checked have brought it since, without a gap since the last jumped().
+  virtual void trust_start() noexcept {}
+  /// A is where no motion that was checked has brought it.
+  virtual void jumped() noexcept {}
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;

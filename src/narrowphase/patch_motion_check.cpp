@@ -56,6 +56,9 @@ constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
 // for contact have too many others in reach.
 constexpr double kHeadwayEdges = 1.0;
+// Where A has left by this part of it, cells from before are too small: with a whole edge, what comes back renews them
+// all.
+constexpr double kLeftEdges = 0.3;
 // Cells (about 1160 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kMinCells = 1u << 13;
@@ -107,7 +110,8 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       held_(cached_patch_tree(held)),
       effort_(effort),
       poses_(std::move(poses)),
-      headway_(center, radius, kHeadwayEdges * mean_edge(*held)) {
+      headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
+      edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
   if (effort_ == ProofEffort::full) pairing_.emplace(held_);
   std::map<const TriangleMesh*, std::shared_ptr<const PatchTree>> trees = {{held.get(), held_}};
@@ -122,6 +126,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
     parts.push_back({tree, poses_[i]});
   }
   make_bundle(fixed, left_out);
+  make_bodies(held, fixed, left_out);
   if (bundle_) parts.push_back({bundle_->tree(), Pose{}});
   const std::size_t fronts = std::min(kMaxFronts, std::max<std::size_t>(1, fixed.size()));
   FrontCapacity capacity;
@@ -163,6 +168,29 @@ void PatchMotionCheck::make_bundle(const std::vector<std::shared_ptr<const Trian
   if (members.size() > kMaxFronts && faces <= kMaxBundleFaces) bundle_.emplace(fixed, poses_, members);
 }
 
+void PatchMotionCheck::make_bodies(const std::shared_ptr<const TriangleMesh>& held,
+                                   const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
+                                   const std::vector<std::uint32_t>& left_out) {
+  bodies_.resize(fixed.size());
+  sides_.resize(fixed.size());
+  if (effort_ == ProofEffort::quick) return;
+  const auto body = [](const std::shared_ptr<const TriangleMesh>& mesh, const std::shared_ptr<const PatchTree>& tree) {
+    return Body{Facing::of(mesh, tree), Facing::points_of(mesh)};
+  };
+  held_body_ = body(held, held_);
+  std::map<const TriangleMesh*, Body> known = {{held.get(), held_body_}};
+  for (std::uint32_t part = 0; part < fixed.size(); ++part) {
+    if (std::find(left_out.begin(), left_out.end(), part) != left_out.end()) continue;
+    const auto found = known.find(fixed[part].get());
+    if (found == known.end()) known.emplace(fixed[part].get(), body(fixed[part], fixed_[part]));
+    bodies_[part] = known.at(fixed[part].get());
+  }
+  if (!bundle_) return;
+  for (std::uint32_t part = 0; part < fixed.size(); ++part)
+    if (bundle_->has(part) && !bodies_[part].facing) return;
+  bundle_facing_ = std::make_shared<const Facing>(bundle_->tree());
+}
+
 bool PatchMotionCheck::bundles() noexcept {
   if (!bundle_ || others_ == OtherParts::ignored) return false;
   return near_.size() > (bundled_ ? kMaxFronts / 2 : kMaxFronts);
@@ -197,6 +225,7 @@ void PatchMotionCheck::begin(const std::vector<std::uint32_t>& near, std::int64_
                              OtherParts others) noexcept {
   limit_.deadline_ns = deadline_ns;
   others_ = others;
+  trusted_ = false;
   near_.assign(near.begin(), near.end());
   take_up_near();
 }
@@ -258,7 +287,10 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
   ask_fronts(X, d, clearance, blocking);
   if (!near_cells_.empty() && effort_ == ProofEffort::quick) {
     share_ = 0;
+  } else if (!near_cells_.empty() && only_leaves(X, d, clearance)) {
+    forget_small_cells(d);
   } else if (!near_cells_.empty()) {
+    left_ = 0;
     limit_.searches = kCellSearches;
     limit_.blocking = kMaxBlocking;
     const CertifyReport report =
@@ -273,6 +305,59 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
+}
+
+void PatchMotionCheck::jumped() noexcept {
+  sides_.assign(sides_.size(), Sides{});
+}
+
+const PatchMotionCheck::Sides& PatchMotionCheck::sides_of(std::uint32_t part, const Pose& X) noexcept {
+  Sides& sides = sides_[part];
+  if (sides.known) return sides;
+  const Body &A = held_body_, &B = bodies_[part];
+  const Pose X_BA = poses_[part].inverse() * X, X_AB = X_BA.inverse();
+  sides = {true, B.facing && !A.points.empty(), A.facing && !B.points.empty()};
+  for (const Vec3& p : A.points) sides.a_outside = sides.a_outside && B.facing->outside(X_BA * p);
+  for (const Vec3& p : B.points) sides.b_outside = sides.b_outside && A.facing->outside(X_AB * p);
+  return sides;
+}
+
+bool PatchMotionCheck::only_leaves(const Pose& X, const Displacement& d, double clearance) noexcept {
+  if (!trusted_ || (d.dp.isZero(0) && d.dr.isZero(0))) return false;
+  // Of many parts as one, all that are near.
+  bool a_outside = true, b_outside = true;
+  for (const std::uint32_t part : near_) {
+    if (!bundled_ || !bundle_->has(part)) continue;
+    if (!sides_[part].known && past(limit_.deadline_ns)) return false;
+    const Sides& sides = sides_of(part, X);
+    a_outside = a_outside && sides.a_outside;
+    b_outside = b_outside && sides.b_outside;
+  }
+  for (const std::uint32_t part : near_cells_) {
+    if (past(limit_.deadline_ns)) return false;
+    const bool single = part < fixed_.size();
+    const Sides sides = single ? sides_of(part, X) : Sides{true, a_outside && bundle_facing_, b_outside};
+    const PatchTree& tree = single ? *fixed_[part] : *bundle_->tree();
+    const Facing* facing = single ? bodies_[part].facing.get() : bundle_facing_.get();
+    const Pose pose = single ? poses_[part] : Pose{};
+    const Quat q = pose.q.conjugate();
+    const Sweep sweep(pose.inverse() * X, {q * d.dp, q * d.dr}, center_, tree,
+                      held_->radius() + (held_->origin() - center_).norm(), clearance);
+    if (!leaving_.leaves({held_.get(), sides.b_outside ? held_body_.facing.get() : nullptr}, center_,
+                         {&tree, sides.a_outside ? facing : nullptr}, sweep))
+      return false;
+  }
+  return true;
+}
+
+void PatchMotionCheck::forget_small_cells(const Displacement& d) noexcept {
+  const double before = left_;
+  left_ += d.dp.norm() + radius_ * d.dr.norm();
+  const double far = kLeftEdges * edge_;
+  if (before > far || left_ <= far) return;
+  cells_->clear();
+  cells_->set_near(near_cells_);
+  headway_.restart();
 }
 
 /// Parts whose fronts are too small or too slow go over to the cells.

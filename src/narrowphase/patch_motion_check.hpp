@@ -6,7 +6,9 @@
 
 #include "narrowphase/axis_pairs.hpp"
 #include "narrowphase/cell_front.hpp"
+#include "narrowphase/facing.hpp"
 #include "narrowphase/headway.hpp"
+#include "narrowphase/leaving.hpp"
 #include "narrowphase/motion_check.hpp"
 #include "narrowphase/part_bundle.hpp"
 #include "narrowphase/patch_front.hpp"
@@ -35,6 +37,8 @@ class PatchMotionCheck final : public MotionCheck {
                    const std::vector<std::uint32_t>& left_out, ProofEffort effort = ProofEffort::full);
 
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
+  void trust_start() noexcept override { trusted_ = true; }
+  void jumped() noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
@@ -61,6 +65,18 @@ class PatchMotionCheck final : public MotionCheck {
     std::uint64_t last = 0;       ///< the begin() of the last of them
   };
 
+  /// What leaving motions need to know of A and of each part: which way it faces, if it bounds a solid, and a point of
+  /// each of its pieces.
+  struct Body {
+    std::shared_ptr<const Facing> facing;
+    std::vector<Vec3> points;
+  };
+  /// Which of A and a part is outside the other, where the other bounds a solid; the same until A jumps.
+  struct Sides {
+    bool known = false;
+    bool a_outside = false, b_outside = false;
+  };
+
   /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
@@ -70,6 +86,9 @@ class PatchMotionCheck final : public MotionCheck {
   };
 
   void make_bundle(const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
+                   const std::vector<std::uint32_t>& left_out);
+  void make_bodies(const std::shared_ptr<const TriangleMesh>& held,
+                   const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                    const std::vector<std::uint32_t>& left_out);
   bool bundles() noexcept;
   void take_up_near() noexcept;
@@ -84,6 +103,11 @@ class PatchMotionCheck final : public MotionCheck {
                           const WorkLimit& limit) noexcept;
   bool many(int pairs) const noexcept;
   bool lies_on(const CertifyReport& report, std::uint32_t part) const noexcept;
+  /// Whether the motion only leads away from the parts that are certified by cells: they need not be asked.
+  bool only_leaves(const Pose& X, const Displacement& d, double clearance) noexcept;
+  const Sides& sides_of(std::uint32_t part, const Pose& X) noexcept;
+  /// Cells that are not asked while A leaves are too small where it has come to.
+  void forget_small_cells(const Displacement& d) noexcept;
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;
   CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
@@ -114,6 +138,14 @@ class PatchMotionCheck final : public MotionCheck {
   std::unique_ptr<CellFront> cells_;
   std::optional<PartBundle> bundle_;  ///< what the cells know as the part after the last
   bool bundled_ = false;              ///< the near parts of the bundle are certified as one
+  Body held_body_;
+  std::vector<Body> bodies_;                     ///< of each part; nothing of those that may be left out
+  std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
+  std::vector<Sides> sides_;                     ///< of each part
+  LeavingCheck leaving_;
+  bool trusted_ = false;  ///< see trust_start()
+  double edge_;           ///< mean of the held part's, m
+  double left_ = 0;       ///< how far A has come by motions that the cells were not asked about, m
   OtherParts others_ = OtherParts::ignored;
   std::vector<Certificate> choice_;  ///< of each part, for as long as it is near
   Vain vain_;
