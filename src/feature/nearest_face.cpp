@@ -58,11 +58,12 @@ void NearestFace::find_in_region(const Vec3& p, std::uint32_t face, NearFace& be
   const std::uint32_t region = of_face[face];
   if (region == kNone) return try_face(p, face, best);
   const auto wanted = [&of_face, region](std::uint32_t f) { return of_face[f] == region; };
-  // Nothing in a plane is nearer than what is straight below.
   const auto enters = [this, region](std::uint32_t node) {
     return (*regions_)[node].first <= region && region <= (*regions_)[node].last;
   };
-  find(p, best, wanted, enters, [](const NearFace& at) { return at.mask == kInside; });
+  // Nothing in a plane is nearer than what is straight below.
+  const auto enough = [&wanted](const NearFace& at) { return at.mask == kInside && wanted(at.face); };
+  find(p, best, wanted, enters, enough);
 }
 
 double NearestFace::squared_bound(const Vec3& p, const PatchNode& node) const noexcept {
