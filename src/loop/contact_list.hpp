@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "tegotae/contact/contact_point.hpp"
@@ -25,11 +26,12 @@ class ContactList {
   const std::vector<ContactEvent>& events() const { return events_; }      ///< in the same order
 
  private:
-  void add(const ContactPoint& contact) noexcept;
+  void list(const std::vector<Contact>& constraints, std::uint32_t which) noexcept;
   void gather(const std::vector<Contact>& constraints, const TickReport& report, const Vec3& center_W) noexcept;
   void compare() noexcept;
 
   std::vector<ContactPoint> contacts_, before_;
+  std::vector<std::uint32_t> listed_;  ///< scratch: numbers of constraints
   std::vector<ContactEvent> events_;
 };
 
