@@ -11,7 +11,7 @@ namespace tegotae {
 int ContactSet::add_cutting_planes(const std::vector<FacePair>& triangles, const Displacement& d, double clearance,
                                    std::int64_t deadline_ns) {
   int added = 0;
-  const Vec3 c = X_ * center_;
+  const Vec3& c = center_W_;
   for (const FacePair& t : triangles) {
     if (past(deadline_ns)) break;
     const FixedSurface& B = fixed_[t.part];
@@ -38,7 +38,7 @@ bool ContactSet::touches(std::size_t constraint, double distance) const noexcept
     if (t.a != c.feature_a.index || t.b != c.feature_b.index || !(fixed_[t.part].part == c.part)) return false;
     // The triangles as they are: one that has collapsed in welding has no edges to walk over.
     Simplex a = corners(*held_, c.feature_a);
-    const Pose X_BA = pose_in(t.part);
+    const Pose& X_BA = pose_in(t.part);
     for (Vec3& p : a.p) p = X_BA * p;
     const Simplex b = corners(*fixed_[t.part].surface, c.feature_b);
     return closest_points(a, b).squared_distance <= distance * distance;
@@ -73,7 +73,7 @@ Vec3 ContactSet::normal_B(std::uint32_t part, const FeaturePair& at) const {
 Contact ContactSet::constraint_of(std::uint32_t part, const FeaturePair& at, int age) const {
   const FixedSurface& B = fixed_[part];
   const Vec3 n = B.X_WB.q * normal_B(part, at);
-  return {n, B.X_WB * at.p_a - X_ * center_, at.distance, B.part, age, at.a, at.b};
+  return {n, B.X_WB * at.p_a - center_W_, at.distance, B.part, age, at.a, at.b};
 }
 
 void ContactSet::add_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
@@ -93,7 +93,7 @@ void ContactSet::add_reflex_constraints(std::uint32_t pair, const FeaturePair& a
   const FixedSurface& B = fixed_[part];
   const Surface& s = corner_of_a ? *B.surface : *held_;
   const std::uint32_t face = corner_of_a ? at.b.index : at.a.index;
-  const Pose X_BA = B.X_WB.inverse() * X_;
+  const Pose& X_BA = pose_in(part);
   const Vec3 corner = corner_of_a ? at.p_a : X_BA.inverse() * at.p_b;  // in the frame of `s`
   // Seen from the back of an open surface its convex edges are the concave ones.
   const Vec3& own = s.topology.face_normals[face];
@@ -118,7 +118,7 @@ void ContactSet::add_reflex_constraints(std::uint32_t pair, const FeaturePair& a
     const Vec3 on_a_W = corner_of_a ? Vec3(B.X_WB * corner) : Vec3(X_ * foot);
     const Feature across{FeatureKind::face, other};
     const Contact constraint{n_W,
-                             on_a_W - X_ * center_,
+                             on_a_W - center_W_,
                              height,
                              B.part,
                              next_[pair].age,

@@ -197,7 +197,7 @@ int ContactSet::seed_corner_of_a(const FacePair& t, std::uint32_t vertex) {
 int ContactSet::seed_crossings(const FacePair& t) {
   Outline a, b;
   if (!outline(*held_, t.a, a) || !outline(*fixed_[t.part].surface, t.b, b)) return 0;
-  const Pose X_BA = pose_in(t.part);
+  const Pose& X_BA = pose_in(t.part);
   for (std::size_t i = 0; i < a.size; ++i) a.p[i] = X_BA * a.p[i];
   int fresh = 0;
   for (std::size_t i = 0; i < a.size && !out_of_time(); ++i)
@@ -247,7 +247,7 @@ int ContactSet::seed_vertex_of_b(std::uint32_t part, std::uint32_t face_a, std::
 
 int ContactSet::seed_rims(const FacePair& t) {
   const Surface& B = *fixed_[t.part].surface;
-  const Pose X_BA = pose_in(t.part);
+  const Pose& X_BA = pose_in(t.part);
   const auto rim = [](const Surface& s, std::uint32_t edge) { return s.topology.edges[edge].kind != EdgeKind::flat; };
   int fresh = 0;
   for (const std::uint32_t ea : held_->topology.face_edges[t.a]) {

@@ -36,7 +36,9 @@ ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSur
       center_(center),
       capacity_(capacity),
       max_followed_(std::min(max_followed, static_cast<std::size_t>(capacity))),
-      choice_(static_cast<std::size_t>(capacity)) {
+      choice_(static_cast<std::size_t>(capacity)),
+      center_W_(center),
+      relative_(fixed_.size(), Relative{Pose{}, 0}) {
   const auto size = static_cast<std::size_t>(capacity);
   pairs_.reserve(size);
   next_.reserve(size);
@@ -84,6 +86,8 @@ void ContactSet::forget_places() {
 
 void ContactSet::begin_track(const Pose& X, double reach) {
   X_ = X;
+  center_W_ = X_ * center_;
+  ++poses_;
   reach_ = reach;
   followed_ = 0;
   overflow_ = 0;
@@ -113,9 +117,15 @@ void ContactSet::carries(std::size_t constraint) noexcept {
   if (pair != kNone) next_[pair].carries = pairs_[pair].carries = true;
 }
 
+const Pose& ContactSet::pose_in(std::uint32_t part) const {
+  Relative& known = relative_[part];
+  if (known.at != poses_) known = {fixed_[part].X_WB.inverse() * X_, poses_};
+  return known.X_BA;
+}
+
 FeaturePair ContactSet::follow(const Pair& pair) const {
   const Surface& B = *fixed_[pair.part].surface;
-  const Pose X_BA = pose_in(pair.part);
+  const Pose& X_BA = pose_in(pair.part);
   const FeaturePair at = walk_to_minimum(*held_, B, X_BA, pair.a, pair.b);
   if (at.ended || pair.a.kind != FeatureKind::vertex || at.b.kind == FeatureKind::vertex) return at;
   // Too many small faces on the way (the middle of a fan): the hierarchy knows where the corner is now.

@@ -107,7 +107,8 @@ class ContactSet {
   int start(std::uint32_t part, Feature a, Feature b);
   int take(std::uint32_t part, const FeaturePair& at, bool support);
   bool try_first_time(const FacePair& t);
-  Pose pose_in(std::uint32_t part) const { return fixed_[part].X_WB.inverse() * X_; }
+  /// X_BA of the held part in the fixed one, at the pose of the track.
+  const Pose& pose_in(std::uint32_t part) const;
 
   void add_constraints(std::uint32_t pair, const FeaturePair& at, std::vector<Contact>& constraints,
                        std::vector<std::uint32_t>& owners);
@@ -127,6 +128,13 @@ class ContactSet {
   ContactChoice choice_;
   std::vector<std::uint8_t> must_;  ///< of each pair
   Pose X_;
+  Vec3 center_W_ = Vec3::Zero();  ///< center_ at X_, in the world
+  struct Relative {
+    Pose X_BA;
+    std::uint64_t at;  ///< the pose of which number it is of
+  };
+  mutable std::vector<Relative> relative_;  ///< of each fixed part, made when it is asked for
+  std::uint64_t poses_ = 1;                 ///< number of X_ among all poses so far
   double reach_ = 0;
   std::vector<Pair> pairs_;  ///< of the last finished track; `followed_` of them are in next_ already
   std::vector<Pair> next_;   ///< of this track

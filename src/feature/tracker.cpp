@@ -25,8 +25,9 @@ Neighbor steepest_neighbor(const Surface& s, Feature f, const Vec3& dir, const W
       const std::uint32_t e = t.vertex_edges[k];
       const auto& ends = t.edges[e].v;
       const Vec3 along = vertices[ends[0] == f.index ? ends[1] : ends[0]] - vertices[f.index];
-      const double length = along.norm();
-      const double lean = length > 0 ? along.dot(dir) / length : 0;
+      const double uphill = along.dot(dir);
+      if (!(uphill > 0)) continue;  // the root below is most of the cost
+      const double lean = uphill / along.norm();
       if (lean > best) {
         best = lean;
         next = {FeatureKind::edge, e};
@@ -47,8 +48,9 @@ Neighbor steepest_neighbor(const Surface& s, Feature f, const Vec3& dir, const W
         if (v != edge.v[0] && v != edge.v[1]) third = v;
       const Vec3 out = vertices[third] - vertices[edge.v[0]];
       const Vec3 inward = out * e.squaredNorm() - e * out.dot(e);
-      const double length = inward.norm();
-      const double lean = length > 0 ? inward.dot(dir) / length : 0;
+      const double uphill = inward.dot(dir);
+      if (!(uphill > 0)) continue;
+      const double lean = uphill / inward.norm();
       if (lean > best) {
         best = lean;
         next = {FeatureKind::face, face};
