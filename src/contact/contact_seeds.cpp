@@ -49,6 +49,12 @@ FacesAround faces_around(const Surface& s, Feature f) {
   return out;
 }
 
+/// The flat region of a face, or the face where it is in none: they are numbered apart.
+std::uint64_t region_or_face(const Surface& s, std::uint32_t face) {
+  const std::uint32_t region = s.regions.of_face[face];
+  return region == kNone ? 2 * std::uint64_t{face} : 2 * std::uint64_t{region} + 1;
+}
+
 /// False when there are fewer than two.
 bool outline(const Surface& s, std::uint32_t face, Outline& out) {
   const auto add = [&](std::uint32_t v) { out.p[out.size++] = s.mesh->vertices[v]; };
@@ -137,15 +143,15 @@ int ContactSet::seed_pair(const FacePair& t, const Pose& X_near) {
 bool ContactSet::try_first_time(const FacePair& t) {
   const FlatRegions &ra = held_->regions, &rb = fixed_[t.part].surface->regions;
   if (ra.of_face[t.a] == kNone && rb.of_face[t.b] == kNone) return false;
-  // Regions and single faces are numbered apart.
-  const auto name = [](const FlatRegions& r, std::uint32_t face) {
-    return r.of_face[face] == kNone ? 2 * std::uint64_t{face} : 2 * std::uint64_t{r.of_face[face]} + 1;
-  };
-  const TriedRegions pair{t.part, name(ra, t.a), name(rb, t.b)};
+  const TriedRegions pair{t.part, region_or_face(*held_, t.a), region_or_face(*fixed_[t.part].surface, t.b)};
   const auto end = tried_.begin() + static_cast<std::ptrdiff_t>(tried_count_);
   if (tried_count_ == tried_.size() || std::find(tried_.begin(), end, pair) != end) return false;
   tried_[tried_count_++] = pair;
   return true;
+}
+
+bool ContactSet::asked(Ask what, std::uint32_t part, std::uint64_t a, std::uint64_t b) noexcept {
+  return asked_.again({4 * std::uint64_t{part} + static_cast<std::uint64_t>(what), a, b});
 }
 
 int ContactSet::seed_regions_at(std::uint32_t part, const FeaturePair& at) {
@@ -182,6 +188,7 @@ int ContactSet::seed_corner_of_a(const FacePair& t, std::uint32_t vertex) {
   const Vec3 p = pose_in(t.part) * held_->mesh->vertices[vertex];
   NearFace near;
   near.squared = reach_ * reach_;
+  asked(Ask::corner_of_a, t.part, vertex, region_or_face(B, t.b));
   around.find_in_region(p, t.b, near);
   int fresh = near.face == kNone ? 0 : start_on_b(t.part, vertex, near);
   // A plane may be several regions (T-junctions, islands): the corner stands on the one that is under it.
@@ -202,8 +209,9 @@ int ContactSet::seed_crossings(const FacePair& t) {
   int fresh = 0;
   for (std::size_t i = 0; i < a.size && !out_of_time(); ++i)
     for (std::size_t j = 0; j < b.size; ++j) {
-      const ClosestPoints c =
-          closest_points({2, {a.p[i], a.p[(i + 1) % a.size]}}, {2, {b.p[j], b.p[(j + 1) % b.size]}});
+      const Simplex of_a{2, {a.p[i], a.p[(i + 1) % a.size]}}, of_b{2, {b.p[j], b.p[(j + 1) % b.size]}};
+      if (!may_be_inside_both(of_a, of_b)) continue;
+      const ClosestPoints c = closest_points(of_a, of_b);
       if (c.mask_a != 3 || c.mask_b != 3 || c.squared_distance > reach_ * reach_) continue;
       // The outline may be many edges of the mesh, or pass by a bay: the faces that are there now.
       NearFace on_a, on_b;
@@ -223,7 +231,9 @@ int ContactSet::seed_corners(const FacePair& t) {
 }
 
 int ContactSet::seed_vertex_of_a(std::uint32_t part, std::uint32_t vertex, std::uint32_t face_b) {
-  if (held_->topology.vertex_flat[vertex] != 0) return 0;
+  if (held_->topology.vertex_flat[vertex] != 0 ||
+      asked(Ask::corner_of_a, part, vertex, region_or_face(*fixed_[part].surface, face_b)))
+    return 0;
   NearFace near;
   near.squared = reach_ * reach_;
   near_fixed_[part].find_in_region(pose_in(part) * held_->mesh->vertices[vertex], face_b, near);
@@ -237,7 +247,8 @@ int ContactSet::start_on_b(std::uint32_t part, std::uint32_t vertex, const NearF
 
 int ContactSet::seed_vertex_of_b(std::uint32_t part, std::uint32_t face_a, std::uint32_t vertex) {
   const Surface& B = *fixed_[part].surface;
-  if (B.topology.vertex_flat[vertex] != 0) return 0;
+  if (B.topology.vertex_flat[vertex] != 0 || asked(Ask::corner_of_b, part, region_or_face(*held_, face_a), vertex))
+    return 0;
   NearFace near;
   near.squared = reach_ * reach_;
   near_held_.find_in_region(pose_in(part).inverse() * B.mesh->vertices[vertex], face_a, near);
@@ -258,7 +269,9 @@ int ContactSet::seed_rims(const FacePair& t) {
     for (const std::uint32_t eb : B.topology.face_edges[t.b]) {
       if (!rim(B, eb)) continue;
       const Feature b{FeatureKind::edge, eb};
-      const ClosestPoints c = closest_points(sa, corners(B, b));
+      const Simplex sb = corners(B, b);
+      if (!may_be_inside_both(sa, sb)) continue;
+      const ClosestPoints c = closest_points(sa, sb);
       if (c.mask_a == 3 && c.mask_b == 3 && c.squared_distance <= reach_ * reach_) fresh += start(t.part, a, b);
     }
   }
@@ -266,7 +279,7 @@ int ContactSet::seed_rims(const FacePair& t) {
 }
 
 int ContactSet::start(std::uint32_t part, Feature a, Feature b) {
-  if (known(part, a, b)) return 0;
+  if (known(part, a, b) || asked(Ask::features, part, number(a), number(b))) return 0;
   return take(part, walk_to_minimum(*held_, *fixed_[part].surface, pose_in(part), a, b), false);
 }
 

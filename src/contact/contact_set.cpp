@@ -55,9 +55,8 @@ ContactSet::ContactSet(std::shared_ptr<const Surface> held, std::vector<FixedSur
 }
 
 std::size_t ContactSet::slot(std::uint32_t part, Feature a, Feature b) const {
-  const auto key = [](Feature f) { return std::uint64_t{f.index} * 3 + static_cast<std::uint64_t>(f.kind); };
   std::uint64_t h =
-      (key(a) * 0x9e3779b97f4a7c15ull) ^ (key(b) * 0xc2b2ae3d27d4eb4full) ^ (part * 0x165667b19e3779f9ull);
+      (number(a) * 0x9e3779b97f4a7c15ull) ^ (number(b) * 0xc2b2ae3d27d4eb4full) ^ (part * 0x165667b19e3779f9ull);
   h ^= h >> 29;
   std::size_t i = h & (table_.size() - 1);
   while (table_[i] >= 0) {
@@ -88,6 +87,7 @@ void ContactSet::begin_track(const Pose& X, double reach) {
   X_ = X;
   center_W_ = X_ * center_;
   ++poses_;
+  asked_.forget();
   reach_ = reach;
   followed_ = 0;
   overflow_ = 0;

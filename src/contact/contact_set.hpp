@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "contact/asked.hpp"
 #include "contact/contact_choice.hpp"
 #include "feature/nearest_face.hpp"
 #include "feature/tracker.hpp"
@@ -77,6 +78,8 @@ class ContactSet {
     std::uint64_t a, b;
     bool operator==(const TriedRegions& o) const { return part == o.part && a == o.a && b == o.b; }
   };
+  /// Of all features of a mesh.
+  static std::uint64_t number(Feature f) { return std::uint64_t{f.index} * 3 + static_cast<std::uint64_t>(f.kind); }
   std::size_t slot(std::uint32_t part, Feature a, Feature b) const;
   bool known(std::uint32_t part, Feature a, Feature b) const;
   void remember(const Pair& pair);
@@ -107,6 +110,9 @@ class ContactSet {
   int start(std::uint32_t part, Feature a, Feature b);
   int take(std::uint32_t part, const FeaturePair& at, bool support);
   bool try_first_time(const FacePair& t);
+  enum class Ask : std::uint8_t { features, corner_of_a, corner_of_b };
+  /// Whether that was asked at this pose before, and brought what it brings.
+  bool asked(Ask what, std::uint32_t part, std::uint64_t a, std::uint64_t b) noexcept;
   /// X_BA of the held part in the fixed one, at the pose of the track.
   const Pose& pose_in(std::uint32_t part) const;
 
@@ -147,6 +153,7 @@ class ContactSet {
   std::vector<Contact> next_constraints_;   ///< of this track, until it is finished
   std::vector<std::uint32_t> next_owners_;  ///< likewise
   std::int64_t deadline_ns_ = 0;            ///< of the call of seed()
+  Asked asked_;                             ///< of this track's pose
   std::array<TriedRegions, 64> tried_;
   std::size_t tried_count_ = 0;
   int overflow_ = 0;

@@ -62,6 +62,17 @@ OnSimplex closest_on(const Vec3& q, const Simplex& s, const Inside& of) {
   }
 }
 
+/// Where the lines through two edges are closest: shares of `u`, the edge of A, and of `v`, that of B; `w` goes from
+/// the start of B's to that of A's. False when they are parallel, or closest outside of one of the edges.
+bool inside_both(const Vec3& u, const Vec3& v, const Vec3& w, double& s, double& t) {
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0)) return false;
+  s = (uv * vw - vv * uw) / det;
+  t = (uu * vw - uv * uw) / det;
+  return s > 0 && s < 1 && t > 0 && t < 1;
+}
+
 int edge_count(int size) {
   return size == 1 ? 0 : size == 2 ? 1 : 3;
 }
@@ -95,19 +106,20 @@ ClosestPoints closest_points(const Simplex& a, const Simplex& b) {
   for (int i = 0; i < edge_count(a.size); ++i) {
     const int i1 = (i + 1) % 3;
     const Vec3 u = a.p[i1] - a.p[i];
-    const double uu = u.squaredNorm();
     for (int j = 0; j < edge_count(b.size); ++j) {
       const int j1 = (j + 1) % 3;
       const Vec3 v = b.p[j1] - b.p[j], w = a.p[i] - b.p[j];
-      const double vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-      const double det = uu * vv - uv * uv;
-      if (!(det > 0)) continue;  // parallel: an end of one of them is as close
-      const double s = (uv * vw - vv * uw) / det, t = (uu * vw - uv * uw) / det;
-      if (s > 0 && s < 1 && t > 0 && t < 1)
+      double s = 0, t = 0;  // of parallel ones an end of one of them is as close
+      if (inside_both(u, v, w, s, t))
         take(a.p[i] + s * u, b.p[j] + t * v, (1u << i) | (1u << i1), (1u << j) | (1u << j1));
     }
   }
   return best;
+}
+
+bool may_be_inside_both(const Simplex& a, const Simplex& b) {
+  double s = 0, t = 0;
+  return inside_both(a.p[1] - a.p[0], b.p[1] - b.p[0], a.p[0] - b.p[0], s, t);
 }
 
 }  // namespace tegotae
