@@ -238,6 +238,30 @@ void offer_products(const TrianglePair& t, Axes which, Search& search) {
   }
 }
 
+/// Whether no direction across two edges, or across a normal and an edge, keeps two triangles apart.
+bool overlap_across_edges(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& q) {
+  const Edges a(p), b(q);
+  Factors left, right;
+  std::array<double, kProducts> least2;  // shorter products have no reliable direction
+  std::size_t count = 0;
+  const auto add = [&](const Vec3& x, const Vec3& y) {
+    left.set(count, x);
+    right.set(count, y);
+    least2[count++] = kParallelEdges * kParallelEdges * x.squaredNorm() * y.squaredNorm();
+  };
+  for (const Vec3& x : a.e)
+    for (const Vec3& y : b.e) add(x, y);
+  for (std::size_t i = 0; i < 3; ++i) {
+    add(b.n, b.e[i]);
+    add(a.n, a.e[i]);
+  }
+  Apart apart;
+  measure_products(left, right, p, q, apart);
+  for (std::size_t k = 0; k < kProducts; ++k)
+    if (apart.gap[k] >= 0 && apart.length2[k] > least2[k]) return false;
+  return true;
+}
+
 void offer_closest(const TrianglePair& t, Search& search) {
   const Vec3 n0 = edge_direction(t.p0, t.q), n1 = edge_direction(t.p1, t.q);
   if (!n0.isZero(0) && !n1.isZero(0)) search.offer({n0, n1});
@@ -257,13 +281,15 @@ bool separate_part(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, c
   search.offer(plane);
   offer_normals(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
+  // The axes are complete, but for triangles without a plane; and most of what is in the way is so at the end.
+  const auto complete = [&a, &b] { return !degenerate(a) && !degenerate(b); };
+  if (search.end() < 0 && overlap_across_edges(pair.p1, pair.q) && complete()) return false;
   // What is best for both ends is among the promising ones, but what is best for one end need not be.
   offer_products(pair, Axes::promising, search);
   if (search.accept_together(bulge, sweep, plane)) return true;
   offer_products(pair, Axes::all, search);
   if (search.accept(bulge, sweep, plane)) return true;
-  // The axes are complete, but for triangles without a plane.
-  if (search.end() < 0 && !degenerate(a) && !degenerate(b)) return false;
+  if (search.end() < 0 && complete()) return false;
   offer_closest(pair, search);
   if (search.accept(bulge, sweep, plane)) return true;
   if (search.end() < sweep.floor || search.start() < sweep.start_floor || halvings == 0) return false;
