@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
@@ -32,6 +33,14 @@ int grade(double share) {
 constexpr double kMotionFades = 0.9;
 /// One of so many cells that are used up is tried as a larger piece: that costs as much as to renew several.
 constexpr int kGrowStride = 4;
+/// The memory of a cell is asked for so many cells before it is needed; bytes of memory that come together.
+constexpr std::uint32_t kCellsAhead = 4;
+constexpr std::size_t kLineBytes = 64;
+
+template <typename T>
+void prefetch(const T& what) {
+  for (std::size_t k = 0; k < sizeof(T); k += kLineBytes) __builtin_prefetch(reinterpret_cast<const char*>(&what) + k);
+}
 
 }  // namespace
 
@@ -45,10 +54,18 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       capacity_(capacity),
       root_(fixed_.size(), kNobody),
       asked_(fixed_.size(), 0),
+      memory_(a_->mesh().triangles.size()),
       sweeps_(fixed_.size()),
       stamped_(fixed_.size(), 0),
       foreseen_(fixed_.size()),
       foreseen_stamped_(fixed_.size(), 0) {
+  // Parts may have a mesh in common.
+  std::map<const PatchTree*, std::shared_ptr<const PatchBatches>> made;
+  for (const FixedPart& part : fixed_) {
+    std::shared_ptr<const PatchBatches>& batches = made[part.tree.get()];
+    if (!batches) batches = std::make_shared<const PatchBatches>(*part.tree);
+    batches_.push_back(batches);
+  }
   // Pages are not touched before they are used: a part of a million triangles has room for 1.6 GB of cells.
   nodes_.reserve(2 * std::size_t{capacity} + 2);
   slots_.reserve(capacity);
@@ -66,11 +83,23 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
 }
 
 std::size_t CellFront::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + capacity_ * (sizeof(Slot) + sizeof(CellItems) + sizeof(CellAnchor) +
-                                                         sizeof(CellCorridor) + 2 * sizeof(double) + 2 * sizeof(Due));
+  std::size_t of_trees = 0;
+  for (std::size_t i = 0; i < batches_.size(); ++i)
+    if (i == 0 || batches_[i] != batches_[i - 1]) of_trees += batches_[i]->bytes();
+  return nodes_.capacity() * sizeof(Node) + memory_.bytes() + of_trees +
+         capacity_ * (sizeof(Slot) + sizeof(CellItems) + sizeof(CellAnchor) + sizeof(CellCorridor) +
+                      2 * sizeof(double) + 2 * sizeof(Due));
 }
 
 void CellFront::clear() noexcept {
+  forget_cut();
+  memory_.clear();
+  started_ = false;
+  travel_ = turned_ = motion_ = 0;
+  cursor_ = 0;
+}
+
+void CellFront::forget_cut() noexcept {
   nodes_.clear();
   free_nodes_ = kNobody;
   slots_.clear();
@@ -80,9 +109,6 @@ void CellFront::clear() noexcept {
   expiry_.clear();
   clear_until_.clear();
   root_.assign(root_.size(), kNobody);
-  started_ = false;
-  travel_ = turned_ = motion_ = 0;
-  cursor_ = 0;
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
@@ -94,7 +120,7 @@ void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
     if (id == kNobody) continue;
     root_[part] = id;
     nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0, 0};
-    enter(id, Slot{id, FreeCell::unknown(), {}}, {}, {}, {}, -kInfinity, -kInfinity);
+    enter(id);
   }
 }
 
@@ -165,7 +191,7 @@ void CellFront::start_motion(const Pose& X, const Displacement& d) {
 double CellFront::allowed(std::uint32_t slot) {
   const double floor = clearance_ + kLengthSlack;
   const Slot& s = slots_[slot];
-  const Sweep& sweep = sweep_of(nodes_[s.node].part);
+  const Sweep& sweep = sweep_of(s.part);
   const AnchoredGap gap = anchored_gap(s.cell, anchors_[slot], sweep, turned_);
   const double planes = share(gap.start - floor, gap.end - floor, gap.bulge);
   double rest = 1, &clear_until = clear_until_[slot];
@@ -178,6 +204,12 @@ double CellFront::allowed(std::uint32_t slot) {
   return std::clamp(std::min(planes, rest), 0.0, 1.0);
 }
 
+/// Has what allowed() will read of a slot brought near.
+void CellFront::prefetch_allowed(std::uint32_t slot) const {
+  prefetch(slots_[slot]);
+  prefetch(anchors_[slot]);
+}
+
 void CellFront::collect_due() {
   unsorted_.clear();
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
@@ -186,8 +218,10 @@ void CellFront::collect_due() {
   bool late = false;
   for (std::uint32_t slot = 0; slot < count(); ++slot) {
     if (!(expiry_[slot] < bound)) continue;
+    const std::uint32_t later = slot + kCellsAhead;
+    if (later < count() && expiry_[later] < bound) prefetch_allowed(later);
     const std::uint32_t id = slots_[slot].node;
-    if (asked_[nodes_[id].part] != now_) continue;
+    if (asked_[slots_[slot].part] != now_) continue;
     const double straight = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
     if (++asked % kAskStride == 0) late = late || past(limit_.deadline_ns);
     const double share = late ? straight : std::max(straight, allowed(slot));

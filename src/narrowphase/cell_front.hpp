@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "narrowphase/cell_anchor.hpp"
+#include "narrowphase/cell_memory.hpp"
 #include "narrowphase/cell_search.hpp"
 #include "narrowphase/certify.hpp"
 #include "narrowphase/face_pair.hpp"
@@ -30,6 +31,9 @@ class CellFront {
 
   /// Forgets all: what follows is as with a new CellFront. set_near() comes next.
   void clear() noexcept;
+  /// Puts the pieces of all parts together again, whatever that costs later: what was known near the fixed parts is
+  /// kept for when A comes back. set_near() comes next.
+  void forget_cut() noexcept;
   /// Fixed parts that certify() is about until the next call.
   void set_near(const std::vector<std::uint32_t>& near) noexcept;
   /// Separations below `clearance` (m) count as blocked from now on; 0 leaves just the rounding.
@@ -86,7 +90,7 @@ class CellFront {
     std::uint64_t due;    ///< the call whose motion uses up what its cell is known to last for
   };
   struct Slot {
-    std::uint32_t node;
+    std::uint32_t node, part;
     FreeCell cell;
     CellCorridor corridor;  ///< of the cell's `clear`
   };
@@ -106,6 +110,7 @@ class CellFront {
   Sweep sweep_by(std::uint32_t part, const Displacement& d) const;
   const Sweep& sweep_of(std::uint32_t part);
   double allowed(std::uint32_t slot);
+  void prefetch_allowed(std::uint32_t slot) const;
   void collect_due();
   void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
@@ -114,9 +119,12 @@ class CellFront {
   CellSearch::Outcome search(std::uint32_t id, bool cells_only);
   CellSearch::Outcome search(const Node& node, const Sweep& sweep, bool cells_only);
   void keep(std::uint32_t id);
+  void need_parts_above(std::uint32_t id, double margin);
+  void remember(const Node& node);
+  bool recall(std::uint32_t id);
   bool split(std::uint32_t id);
-  void enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
-             const CellAnchor& anchor, double expiry, double clear_until);
+  void enter(std::uint32_t id, std::uint32_t like);
+  void enter(std::uint32_t id);
   void leave(std::uint32_t slot);
   std::uint32_t count() const { return static_cast<std::uint32_t>(slots_.size()); }
   std::uint32_t allocate();
@@ -134,7 +142,7 @@ class CellFront {
   double wanted(const MovingHull& a, const Sweep& sweep) const;
   CellCorridor corridor(const Node& node, const MovingHull& a, const Sweep& sweep) const;
   double moved(std::uint32_t slot, const Sweep& sweep) const;
-  bool holds(const Node& node);
+  bool holds(const Node& node, const FreeCell& cell, const CellCorridor& corridor, const Sweep& sweep) const;
   bool foresees() const;
   void shorten_foresight(const Node& node);
   double free_until(std::uint32_t part, std::uint32_t face_a, std::uint32_t face_b, const Displacement& d) const;
@@ -145,6 +153,7 @@ class CellFront {
   Vec3 center_, offset_a_;
   double reach_;  ///< of A about its center of mass, m
   std::vector<FixedPart> fixed_;
+  std::vector<std::shared_ptr<const PatchBatches>> batches_;  ///< of each part
   std::uint32_t capacity_;
   double clearance_ = 0;
 
@@ -158,6 +167,7 @@ class CellFront {
   std::vector<double> clear_until_;   ///< of each slot: the same of what no plane stands for alone
   std::vector<std::uint32_t> root_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> asked_;  ///< of each part: the set_near() that last named it
+  CellMemory memory_;
   std::uint64_t now_ = 1;
 
   Pose X_;

@@ -40,16 +40,27 @@ void CellFront::release(std::uint32_t child) {
   free_nodes_ = child;
 }
 
-void CellFront::enter(std::uint32_t id, const Slot& inherited, const CellItems& items, const CellCorridor& listed,
-                      const CellAnchor& anchor, double expiry, double clear_until) {
+/// Gives the node a slot that knows what another one does.
+void CellFront::enter(std::uint32_t id, std::uint32_t like) {
   nodes_[id].slot = count();
-  slots_.push_back(inherited);
+  slots_.push_back(slots_[like]);
   slots_.back().node = id;
-  items_.push_back(items);
-  listed_.push_back(listed);
-  anchors_.push_back(anchor);
-  clear_until_.push_back(clear_until);
-  expiry_.push_back(expiry);
+  items_.push_back(items_[like]);
+  listed_.push_back(listed_[like]);
+  anchors_.push_back(anchors_[like]);
+  clear_until_.push_back(clear_until_[like]);
+  expiry_.push_back(expiry_[like]);
+}
+
+/// Gives the node a slot that knows nothing.
+void CellFront::enter(std::uint32_t id) {
+  nodes_[id].slot = count();
+  slots_.push_back({id, nodes_[id].part, FreeCell::unknown(), {}});
+  items_.emplace_back();
+  listed_.emplace_back();
+  anchors_.emplace_back();
+  clear_until_.push_back(-kInfinity);
+  expiry_.push_back(-kInfinity);
 }
 
 void CellFront::leave(std::uint32_t slot) {
@@ -80,18 +91,10 @@ bool CellFront::split(std::uint32_t id) {
   if (count() + children > capacity_) return false;
   const std::uint32_t child = allocate();
   if (child == kNobody) return false;
-  // What was known of the whole holds for its parts.
-  const Slot known = slots_[p.slot];
-  // The pieces of B that are listed are of both its parts.
-  CellItems items;
-  CellCorridor listed = listed_[p.slot];
-  if (of_a) {
-    items = search_.items();
-    listed = found_corridor_;
-  }
-  const CellAnchor anchor = anchors_[p.slot];
-  const double expiry = expiry_[p.slot], clear_until = clear_until_[p.slot];
-  leave(p.slot);
+  // What was known of the whole holds for its parts: the first one takes its place. The pieces of B that the search
+  // listed are of all parts of A, and of B's none knows its own.
+  items_[p.slot] = of_a ? search_.items() : CellItems{};
+  if (of_a) listed_[p.slot] = found_corridor_;
   nodes_[id].child = child;
   nodes_[id].children = static_cast<std::uint8_t>(children);
   nodes_[id].due = 0;
@@ -106,7 +109,12 @@ bool CellFront::split(std::uint32_t id) {
     (of_a ? c.a : c.b) = place;
     (of_a ? c.face_a : c.face_b) = whole.leaf();
     nodes_[child + k] = c;
-    enter(child + k, known, items, listed, anchor, expiry, clear_until);
+    if (k == 0) {
+      nodes_[child].slot = p.slot;
+      slots_[p.slot].node = child;
+    } else {
+      enter(child + k, p.slot);
+    }
   }
   return true;
 }
@@ -186,7 +194,7 @@ bool CellFront::merge(std::uint32_t id, double lasts) {
   }
   for (const std::uint32_t child : freed_) release(child);
   nodes_[id].child = kNobody;
-  enter(id, Slot{id, FreeCell::unknown(), {}}, {}, {}, {}, -kInfinity, -kInfinity);
+  enter(id);
   if (near) keep(id);
   ++report_.merges;
   return true;

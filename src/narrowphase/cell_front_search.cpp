@@ -167,7 +167,7 @@ CellSearch::Outcome CellFront::search(std::uint32_t id, bool cells_only) {
   if (foresees()) {
     // What only passes on a way that is not taken yet is of no use.
     const CellSearch::Outcome outcome = search(node, foreseen(node.part), true);
-    if ((outcome == CellSearch::Outcome::found && holds(node)) ||
+    if ((outcome == CellSearch::Outcome::found && holds(node, found_, found_corridor_, sweep_of(node.part))) ||
         (outcome == CellSearch::Outcome::divide && !node.face_a))
       return outcome;
     if (outcome == CellSearch::Outcome::blocked) shorten_foresight(node);
@@ -175,18 +175,10 @@ CellSearch::Outcome CellFront::search(std::uint32_t id, bool cells_only) {
   return search(node, sweep_of(node.part), cells_only);
 }
 
-/// Whether the cell that was found holds for the motion.
-bool CellFront::holds(const Node& node) {
-  const Sweep& sweep = sweep_of(node.part);
-  const double floor = clearance_ + kLengthSlack;
-  const CorridorLoss loss = corridor_loss(found_corridor_, sweep, turned_);
-  return share(kUnit * found_.clear - loss.start - floor, kUnit * found_.clear - loss.end - floor, loss.bulge) == 1 &&
-         check_cell(found_, hull(node, sweep), sweep).free;
-}
-
 CellSearch::Outcome CellFront::search(const Node& node, const Sweep& sweep, bool cells_only) {
   const MovingHull a = hull(node, sweep);
-  CellSearch::Query query{fixed_[node.part].tree.get(), node.b, node.face_b, wanted(a, sweep)};
+  CellSearch::Query query{fixed_[node.part].tree.get(), batches_[node.part].get(), node.b, node.face_b,
+                          wanted(a, sweep)};
   query.cells_only = cells_only;
   found_corridor_ = corridor(node, a, sweep);
   if (node.children == 0) {
@@ -194,7 +186,9 @@ CellSearch::Outcome CellFront::search(const Node& node, const Sweep& sweep, bool
     query.moved = moved(node.slot, sweep);
     if (items.count > 0 && items.clear - query.moved >= kKnownShare * query.wanted) query.known = &items;
   }
-  return search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
+  const CellSearch::Outcome outcome = search_.find(a, node.face_a ? &face_ : nullptr, query, sweep, found_);
+  found_.clear *= kUnit;
+  return outcome;
 }
 
 void CellFront::anchor(std::uint32_t id, const CellGaps& gaps) {
@@ -206,17 +200,21 @@ void CellFront::keep(std::uint32_t id) {
   const std::uint32_t slot = nodes_[id].slot;
   Slot& s = slots_[slot];
   s.cell = found_;
-  s.cell.clear *= kUnit;
   s.corridor = listed_[slot] = found_corridor_;
   items_[slot] = search_.items();
   clear_until_[slot] = travel_ + kUnit * s.cell.clear;
   expiry_[slot] = travel_ + kUnit * search_.margin();
   anchor(id, search_.gaps());
-  // The larger pieces that were just taken apart need it at this distance.
+  remember(nodes_[id]);
+  need_parts_above(id, search_.margin());
+}
+
+/// The larger pieces that were just taken apart need it at this distance (m).
+void CellFront::need_parts_above(std::uint32_t id, double margin) {
   for (std::uint32_t up = nodes_[id].parent; up != kNobody; up = nodes_[up].parent) {
     if (nodes_[up].retry < kInfinity && nodes_[up].split != call_) break;
     const double before = nodes_[up].retry;
-    needs_parts(up, ahead_ ? kAheadRetry * search_.margin() : search_.margin());
+    needs_parts(up, ahead_ ? kAheadRetry * margin : margin);
     nodes_[up].retry = std::min(nodes_[up].retry, before);
   }
 }
@@ -229,6 +227,7 @@ CellFront::Outcome CellFront::settle(std::uint32_t top) {
     const std::uint32_t id = stack_.back();
     stack_.pop_back();
     if (out_of_work(true)) return Outcome::out_of_work;
+    if (recall(id)) continue;
     switch (search(id, false)) {
       case CellSearch::Outcome::found:
         keep(id);

@@ -191,8 +191,7 @@ void CellSearch::measure(const std::uint32_t* items, int count) {
     if (place == items[i]) {
       const PatchNode& b = nodes[place];
       for (std::size_t c = 0; c < 3; ++c) {
-        const auto axis = static_cast<Eigen::Index>(c);
-        boxes_.center[c][box_count] = static_cast<float>(double{b.center[c]} - frame_.origin[axis]);
+        boxes_.center[c][box_count] = b.center[c];
         boxes_.half[c][box_count] = b.half[c];
         for (std::size_t k = 0; k < 3; ++k) boxes_.edge[k][c][box_count] = b.axis[k][c];
       }
@@ -248,6 +247,10 @@ void CellSearch::leave_out(std::uint32_t item, float far) {
 
 void CellSearch::push(const std::uint32_t* items, int count) {
   measure(items, count);
+  sort_out(items, count);
+}
+
+void CellSearch::sort_out(const std::uint32_t* items, int count) {
   const std::size_t first = stacked_;
   const float wanted = static_cast<float>(query_.wanted);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -300,28 +303,16 @@ bool CellSearch::renew(const MovingHull& a, const PatchTree& tree, double moved,
 }
 
 void CellSearch::open(std::uint32_t node) {
-  // A few levels at once, as many pieces as are measured together.
-  std::array<std::uint32_t, kMeasured> pieces;
-  pieces[0] = node;
-  int count = 1;
-  const PatchTree& tree = *query_.tree;
-  for (bool more = true; more;) {
-    more = false;
-    for (int i = 0, n = count; i < n; ++i) {
-      if ((pieces[static_cast<std::size_t>(i)] & CellItems::kFace) != 0) continue;
-      const PatchNode& b = tree.nodes()[pieces[static_cast<std::size_t>(i)]];
-      const int children = b.leaf() ? static_cast<int>(b.count) : 2;
-      if (count + children - 1 > kMeasured) continue;
-      const auto child = [&](int k) {
-        const std::uint32_t place = b.first + static_cast<std::uint32_t>(k);
-        return b.leaf() ? tree.order()[place] | CellItems::kFace : place;
-      };
-      pieces[static_cast<std::size_t>(i)] = child(0);
-      for (int k = 1; k < children; ++k) pieces[static_cast<std::size_t>(count++)] = child(k);
-      more = true;
-    }
+  const PatchBatch& batch = query_.batches->of(*query_.tree, node, batch_);
+  const int count = static_cast<int>(batch.count);
+  if (batch.faces) {
+    push(batch.item.data(), count);
+    return;
   }
-  push(pieces.data(), count);
+  visits_ += count;
+  measure_boxes(frame_, batch.boxes, near_boxes_);
+  for (std::size_t i = 0; i < kMeasured; ++i) lane_[i] = i;
+  sort_out(batch.item.data(), count);
 }
 
 /// Whether the moving plane that keeps A's face off the last face of B that passes keeps it off `b` as well.

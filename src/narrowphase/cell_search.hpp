@@ -6,6 +6,7 @@
 
 #include "narrowphase/free_cell.hpp"
 #include "narrowphase/near_hulls.hpp"
+#include "narrowphase/patch_batches.hpp"
 
 namespace tegotae {
 
@@ -19,8 +20,9 @@ class CellSearch {
     blocked   ///< triangles of B, listed, stop the piece, which is a triangle
   };
   struct Query {
-    const PatchTree* tree = nullptr;  ///< of B
-    std::uint32_t node = 0;           ///< of `tree`, or face
+    const PatchTree* tree = nullptr;        ///< of B
+    const PatchBatches* batches = nullptr;  ///< of `tree`
+    std::uint32_t node = 0;                 ///< of `tree`, or face
     bool is_face = false;
     double wanted = 0;                 ///< what is farther from the piece (m) needs no plane
     const CellItems* known = nullptr;  ///< of an earlier search for the piece or for one that it is of; null: none
@@ -43,6 +45,9 @@ class CellSearch {
 
   /// Of the last find(): least distance of the piece at the start from B that was proved, m.
   double margin() const { return std::min(margin_, clear_); }
+  /// Of the last find(): the same of its planes alone, at the nearer end of the motion, m.
+  /// The same of what planes stand for, at the nearer end of the motion, m.
+  double least() const { return least_; }
   /// Of the last find() that found a cell: at the start.
   CellGaps gaps() const;
   /// Of the last find() that found a cell or says to divide: where to begin the next one.
@@ -87,6 +92,8 @@ class CellSearch {
   void open(std::uint32_t node);
   /// Measures pieces and puts those within reach on the stack, the nearest last.
   void push(const std::uint32_t* items, int count);
+  /// Puts measured pieces within reach on the stack, the nearest last; the others are left out.
+  void sort_out(const std::uint32_t* items, int count);
   /// Measures pieces.
   void measure(const std::uint32_t* items, int count);
   /// What was measured of a piece, and at which place.
@@ -112,6 +119,7 @@ class CellSearch {
   Query query_;
   HullFrame frame_;
   NearHulls boxes_, faces_;
+  PatchBatch batch_;  ///< scratch
   Nearness near_boxes_, near_faces_;
   std::array<std::size_t, kMeasured> lane_;  ///< of each piece that was measured, among the boxes or the faces
   KnownPlanes known_;

@@ -176,6 +176,8 @@ HullFrame::HullFrame(const Hull& a, const Vec3& ahead) : origin(a.middle() + 0.5
   double all = 0;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) row[i][k] = static_cast<float>(axis[i][k]);
+    coarse[i] = static_cast<float>(origin[i]);
+    fine[i] = static_cast<float>(origin[i] - double{coarse[i]});
     way[i] = static_cast<float>(shift[i]);
     low[i] = static_cast<float>(from[i] - std::abs(shift[i]));
     high[i] = static_cast<float>(to[i] + std::abs(shift[i]));
@@ -185,7 +187,10 @@ HullFrame::HullFrame(const Hull& a, const Vec3& ahead) : origin(a.middle() + 0.5
 }
 
 TEGOTAE_WIDE void measure_boxes(const HullFrame& a, const NearHulls& b, Nearness& out) noexcept {
-  const Lanes3 center = load3(b.center), d = turned(center, a), half = load3(b.half);
+  const Lanes3 at = load3(b.center), half = load3(b.half);
+  const Lanes3 center{(at.x - a.coarse[0]) - a.fine[0], (at.y - a.coarse[1]) - a.fine[1],
+                      (at.z - a.coarse[2]) - a.fine[2]};
+  const Lanes3 d = turned(center, a);
   const Lanes3 own[3] = {load3(b.edge[0]), load3(b.edge[1]), load3(b.edge[2])};
   const Lanes3 m[3] = {turned(own[0], a), turned(own[1], a), turned(own[2], a)};
   const Lane x = half.x * magnitude(m[0].x) + half.y * magnitude(m[1].x) + half.z * magnitude(m[2].x);

@@ -17,6 +17,7 @@ struct HullFrame {
   HullFrame() = default;
 
   Vec3 origin = Vec3::Zero();                    ///< the hull's middle on half of its way, B's axes
+  std::array<float, 3> coarse{}, fine{};         ///< the same in two numbers of single precision, m
   std::array<Vec3, 3> axis;                      ///< B's axes, of unit length up to single precision
   std::array<std::array<float, 3>, 3> row{};     ///< the same in single precision
   std::array<float, 3> low{}, high{};            ///< extent along the axes, from the origin, m
@@ -30,8 +31,8 @@ struct HullFrame {
 /// Pieces of B, field after field: boxes or triangles, never both. Unused places may hold any finite numbers.
 struct alignas(64) NearHulls {
   typedef std::array<float, kMeasured> Field;
-  std::array<Field, 3> center;               ///< of boxes, from the origin of the frame, B's axes, m
-  std::array<std::array<Field, 3>, 3> edge;  ///< axes of boxes; corners of triangles like the centers
+  std::array<Field, 3> center;               ///< of boxes, m, B's axes
+  std::array<std::array<Field, 3>, 3> edge;  ///< axes of boxes; corners of triangles, from the frame's origin
   std::array<Field, 3> half;                 ///< of boxes, m
 };
 

@@ -355,7 +355,7 @@ void PatchMotionCheck::forget_small_cells(const Displacement& d) noexcept {
   left_ += d.dp.norm() + radius_ * d.dr.norm();
   const double far = kLeftEdges * edge_;
   if (before > far || left_ <= far) return;
-  cells_->clear();
+  cells_->forget_cut();
   cells_->set_near(near_cells_);
   headway_.restart();
 }

@@ -18,7 +18,7 @@ constexpr float kNearlyFlat = 0.98f;
 /// their outline.
 constexpr std::uint32_t kOutlineFaces = 1024;
 /// Relative enlargement of boxes: covers rounding of the fit (double) and of the stored half extents.
-constexpr double kBoxSlack = 1e-6;
+constexpr double kFitSlack = 1e-6;
 /// Rounding of the single-precision copies of the vertices, relative to the mesh's radius (half a step is 2^-25).
 constexpr double kCopySlack = 1.0 / (1 << 24);
 /// Faces thinner than this part of their longest edge have no plane to speak of.
@@ -297,10 +297,10 @@ class Layout {
     const Vec3 middle = axes * (0.5 * (lo + hi));
     const Vec3f center = middle.cast<float>();
     // Moving the center by its rounding and the corners by theirs moves a coefficient by at most as much (the axes are
-    // orthonormal up to 1e-7, which kBoxSlack covers).
+    // orthonormal up to 1e-7, which kFitSlack covers).
     const double grow = (middle - center.cast<double>()).norm() + 2 * copy_slack_;
     Vec3 half = 0.5 * (hi - lo);
-    half = half * (1 + kBoxSlack) + Vec3::Constant(grow * (1 + kBoxSlack));
+    half = half * (1 + kFitSlack) + Vec3::Constant(grow * (1 + kFitSlack));
     std::array<int, 3> by_size{0, 1, 2};
     std::sort(by_size.begin(), by_size.end(), [&](int i, int j) { return half[i] > half[j]; });
     for (int i = 0; i < 3; ++i) {
@@ -395,8 +395,8 @@ PatchNode PatchTree::face_box(std::uint32_t face) const {
   for (int i = 0; i < 3; ++i) out.center[i] = static_cast<float>(middle[i]);
   // Coefficients along the axes as stored differ from these by the rounding of the center and, since those axes are
   // orthonormal up to 2e-7 only, by that part of the extent.
-  double grow = kBoxSlack * longest;
-  grow += (middle - out.center_vec()).norm() * (1 + kBoxSlack);
+  double grow = kFitSlack * longest;
+  grow += (middle - out.center_vec()).norm() * (1 + kFitSlack);
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) out.axis[i][k] = static_cast<float>(axis[i][k]);
     out.half[i] = std::nextafter(static_cast<float>(half[i] + grow), std::numeric_limits<float>::infinity());

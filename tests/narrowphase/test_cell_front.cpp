@@ -246,6 +246,72 @@ TEST_CASE("what is proved ahead needs no search when the part moves", "[patch]")
   CHECK(front.met() < 0.6);
 }
 
+TEST_CASE("a part that comes back to where it was finds cells of before", "[patch]") {
+  // Down to its seat, off it by more than its height, and down again: aside and turned on the way, so that some of the
+  // cells hold no more.
+  const Scene scene = all_scenes().back();
+  const PatchTree a(scene.a), b(scene.b);
+  const Oracle oracle(scene.a, scene.b);
+  constexpr double kHigh = 0.01, kSeat = 5e-6, kClearance = 1e-6;
+  constexpr int kSteps = 12;
+  std::mt19937 rng(37);
+  CellFront front = cells_of(scene);
+  front.set_near({0});
+  front.set_clearance(kClearance);
+  Pose X = scene.start;
+  X.p.z() = kHigh;
+  /// Searches on the last part of the way: there most faces need cells of their own.
+  const auto go = [&](const Pose& to) {
+    int searches = 0, calls = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      searches = 0;
+      const Displacement left = displacement(X, to, scene.center);
+      const double part = 1.0 / (kSteps - i);
+      Displacement d{part * left.dp, part * left.dr};
+      for (double share = 0; share < 1 && calls < 4 * kSteps; ++calls) {
+        const CertifyReport report = front.certify(X, d);
+        searches += report.searches;
+        share = report.status == CertifyStatus::certified ? 1 : 0.999999 * report.share;
+        REQUIRE(oracle.hits(X, scene.center, share * d, 2) == 0);
+        X = displaced(X, scene.center, share * d);
+        d = (1 - share) * d;
+      }
+    }
+    REQUIRE(oracle.distance(X) >= kClearance * (1 - 1e-5));
+    return searches;
+  };
+  const Pose seat{Quat::Identity(), Vec3(0, 0, kSeat)}, up{Quat::Identity(), Vec3(0, 0, kHigh)};
+  const int first = go(seat);
+  CHECK(X.p.z() < 2 * kSeat);
+  go(up);
+  const int merged = front.cells();
+  CHECK(merged < static_cast<int>(scene.a->triangles.size()) / 4);
+  CHECK(go(seat) < first / 2);
+  for (int i = 0; i < 20; ++i) {
+    const double size = std::pow(10.0, uniform(rng, -6, -4));
+    go({rotation(random_in_ball(rng, 100 * size)), Vec3(0, 0, kHigh) + random_in_ball(rng, 10 * size)});
+    if (i % 5 == 4) {
+      front.forget_cut();
+      front.set_near({0});
+    }
+    go({rotation(random_in_ball(rng, size)), Vec3(0, 0, kSeat) + random_in_ball(rng, size)});
+  }
+  go(up);
+  CHECK(go(seat) < first / 2);
+  require_cover(front, a, b);
+  // Elsewhere the faces have other things near.
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 aside(uniform(rng, -0.03, 0.03), uniform(rng, -0.03, 0.03), 0);
+    for (const double height : {kHigh, kSeat}) go({Quat::Identity(), aside + Vec3(0, 0, height)});
+    go({Quat::Identity(), aside + Vec3(0, 0, kHigh)});
+    go(up);
+  }
+  go(up);
+  front.clear();
+  front.set_near({0});
+  CHECK(go(seat) > 0.9 * first);
+}
+
 TEST_CASE("a part at rest costs no search", "[patch]") {
   const Scene scene = all_scenes().back();
   CellFront front = cells_of(scene);

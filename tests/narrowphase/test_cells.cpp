@@ -60,13 +60,15 @@ void put(const Hull& b, const Vec3& origin, std::size_t i, NearHulls& out) {
     for (int e = 0; e < 3; ++e)
       out.edge[static_cast<std::size_t>(e)][k][i] =
           static_cast<float>(b.is_triangle() ? b.corner(e)[c] - origin[c] : b.axis(e)[c]);
-    out.center[k][i] = static_cast<float>(b.middle()[c] - origin[c]);
+    out.center[k][i] = static_cast<float>(b.middle()[c]);
     out.half[k][i] = b.is_triangle() ? 0 : static_cast<float>(b.half(c));
   }
 }
 
 /// Gaps are measured in single precision, in which the normal of a thin triangle is right up to 1e-4 (m, of 0.05).
 constexpr double kGapMargin = 5e-6;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// The line of the normal that a measure names.
 Vec3 normal(const HullFrame& a, const Hull& b, const Nearness::Side& side, std::size_t i) {
@@ -97,14 +99,15 @@ TEST_CASE("measured distances are lower bounds, and gaps those along the named n
   int close = 0;
   for (int round = 0; round < 400; ++round) {
     const bool a_is_box = round % 2 == 0, b_is_box = round % 4 < 2;
-    const Hull a =
-        a_is_box ? random_box(rng, Vec3::Zero(), 0.01) : Hull::triangle(random_triangle(rng, Vec3::Zero(), 0.01));
+    // Far from the origin too, where numbers of single precision are micrometers apart: centers of boxes are such.
+    const Vec3 where = round % 8 < 4 ? Vec3::Zero().eval() : random_in_ball(rng, 100);
+    const Hull a = a_is_box ? random_box(rng, where, 0.01) : Hull::triangle(random_triangle(rng, where, 0.01));
     const Vec3 ahead = round % 3 == 0 ? Vec3::Zero().eval() : random_in_ball(rng, 0.02);
     const HullFrame frame(a, ahead);
     NearHulls near{};
     std::vector<Hull> b;
     for (std::size_t i = 0; i < kMeasured; ++i) {
-      const Vec3 at = random_in_ball(rng, 0.04);
+      const Vec3 at = single(where + random_in_ball(rng, 0.04));
       b.push_back(b_is_box ? random_box(rng, at, 0.008) : Hull::triangle(random_triangle(rng, at, 0.008)));
       put(b.back(), frame.origin, i, near);
     }
@@ -120,10 +123,10 @@ TEST_CASE("measured distances are lower bounds, and gaps those along the named n
       close += bound > 0.6 * truth;
       for (const Nearness::Side* side : {&n.any, &n.upright}) {
         const Vec3 line = normal(frame, b[i], *side, i);
-        double most = -1;
+        double most = -kNone;
         for (const double sign : {1.0, -1.0}) {
           const Vec3 along = sign * line;
-          double low = 1, high = -1;
+          double low = kNone, high = -kNone;
           for (const Vec3& p : corners(a)) low = std::min({low, along.dot(p), along.dot(p + ahead)});
           for (const Vec3& p : corners(b[i])) high = std::max(high, along.dot(p));
           most = std::max(most, low - high);
@@ -137,6 +140,39 @@ TEST_CASE("measured distances are lower bounds, and gaps those along the named n
     }
   }
   CHECK(close > 1400);
+}
+
+TEST_CASE("a batch has all that is under its node once, as it is in the tree", "[patch]") {
+  for (const Scene& scene : scenes()) {
+    CAPTURE(scene.name);
+    const PatchTree tree(scene.b);
+    const PatchBatches batches(tree);
+    PatchBatch made;
+    for (std::uint32_t node = 0; node < tree.nodes().size(); ++node) {
+      const PatchBatch& batch = batches.of(tree, node, made);
+      REQUIRE((batch.count > 0 && batch.count <= kMeasured));
+      std::vector<std::uint32_t> faces;
+      for (std::size_t i = 0; i < batch.count; ++i) {
+        const bool is_face = (batch.item[i] & CellItems::kFace) != 0;
+        const std::uint32_t place = batch.item[i] & ~CellItems::kFace;
+        REQUIRE(is_face == batch.faces);
+        // A search that opens a piece gets on.
+        REQUIRE((is_face || place > node));
+        for (const std::uint32_t f : faces_under(tree, place, is_face)) faces.push_back(f);
+        if (is_face) continue;
+        const PatchNode& b = tree.nodes()[place];
+        for (std::size_t c = 0; c < 3; ++c) {
+          REQUIRE(batch.boxes.center[c][i] == b.center[c]);
+          REQUIRE(batch.boxes.half[c][i] == b.half[c]);
+          for (std::size_t k = 0; k < 3; ++k) REQUIRE(batch.boxes.edge[k][c][i] == b.axis[k][c]);
+        }
+      }
+      std::vector<std::uint32_t> all = faces_under(tree, node, false);
+      std::sort(faces.begin(), faces.end());
+      std::sort(all.begin(), all.end());
+      REQUIRE(faces == all);
+    }
+  }
 }
 
 TEST_CASE("the first plane over a hull is over it", "[patch]") {
@@ -323,6 +359,7 @@ TEST_CASE("a search that begins with a list looks at all of it", "[patch]") {
   for (int i = 0; i < 9; ++i) add(Vec3(0.1 + 0.02 * i, 0, 0));
   add(Vec3(0, 0, 0));
   const PatchTree tree(mesh);
+  const PatchBatches batches(tree);
   const std::array<Vec3, 3> face = {Vec3(0.002, 0.002, -0.001), Vec3(0.003, 0.002, 0.001), Vec3(0.002, 0.003, 0.001)};
   std::array<Vec3, 3> moved = face;
   for (Vec3& v : moved) v -= tree.origin();
@@ -338,7 +375,8 @@ TEST_CASE("a search that begins with a list looks at all of it", "[patch]") {
   }
   CellSearch search;
   FreeCell cell;
-  CHECK(search.find(a, &face, {&tree, 0, false, 0.005, &known, 0}, sweep, cell) == CellSearch::Outcome::blocked);
+  CHECK(search.find(a, &face, {&tree, &batches, 0, false, 0.005, &known, 0}, sweep, cell) ==
+        CellSearch::Outcome::blocked);
   REQUIRE(search.blocking().size() == 1);
   CHECK(search.blocking()[0] == 9);
 }
