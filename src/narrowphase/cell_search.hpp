@@ -45,8 +45,7 @@ class CellSearch {
 
   /// Of the last find(): least distance of the piece at the start from B that was proved, m.
   double margin() const { return std::min(margin_, clear_); }
-  /// Of the last find(): the same of its planes alone, at the nearer end of the motion, m.
-  /// The same of what planes stand for, at the nearer end of the motion, m.
+  /// The same of what its planes stand for, at the nearer end of the motion, m.
   double least() const { return least_; }
   /// Of the last find() that found a cell: at the start.
   CellGaps gaps() const;
