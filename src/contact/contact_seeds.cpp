@@ -127,11 +127,11 @@ bool ContactSet::out_of_time() const {
 int ContactSet::seed_pair(const FacePair& t, const Pose& X_near) {
   const FixedSurface& B = fixed_[t.part];
   const Feature fa{FeatureKind::face, t.a}, fb{FeatureKind::face, t.b};
-  const Pose X_BW = B.X_WB.inverse(), near_BA = X_BW * X_near;
+  const Pose near_BA = B.X_WB.inverse() * X_near;
   Simplex sa = corners(*held_, fa);
   for (Vec3& p : sa.p) p = near_BA * p;
   const ClosestPoints c = closest_points(sa, corners(*B.surface, fb));
-  const FeaturePair at = walk_to_minimum(*held_, *B.surface, X_BW * X_, subfeature(*held_, fa, c.mask_a),
+  const FeaturePair at = walk_to_minimum(*held_, *B.surface, pose_in(t.part), subfeature(*held_, fa, c.mask_a),
                                          subfeature(*B.surface, fb, c.mask_b));
   int fresh = take(t.part, at, false);
   if (fresh > 0) fresh += seed_regions_at(t.part, at);
