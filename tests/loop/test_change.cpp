@@ -344,8 +344,8 @@ TEST_CASE("scenes change from another thread while the loop runs", "[change]") {
   // Until enough changes went into force. With a sanitizer a scene takes a second to be made ready.
   constexpr std::uint64_t kChanges = kSanitized ? 30 : 60;
   constexpr std::size_t kMaxPoses = 1'000'000;
-  // The loop makes so many ticks while one scene is made ready, and then waits: how many ticks all changes take does not
-  // depend on how fast the machine makes scenes ready.
+  // The loop makes so many ticks while one scene is made ready, and then waits: how many ticks all changes take does
+  // not depend on how fast the machine makes scenes ready.
   constexpr std::uint64_t kTicksPerScene = 1000;
   std::vector<Tick> poses;
   poses.reserve(kMaxPoses);
