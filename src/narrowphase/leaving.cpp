@@ -91,7 +91,9 @@ bool LeavingCheck::stays_apart(const Pair& p, const PatchNode& na, const PatchNo
   const Vec3 from_center = na.center_vec() + a_.tree->origin() - center;
   const double reach = from_center.norm() + radius_of(na);
   MovingPlane plane{Vec3::Zero(), Vec3::Zero()};
-  if (separate_boxes(na, from_center, nb, sweep, reach, 0, 1, plane)) return true;
+  BoxPair boxes{na, nb, from_center, reach, plane};
+  separate_boxes(boxes, boxes, sweep, 0, 1);
+  if (boxes.apart) return true;
   if (!p.face_a || !p.face_b) return false;
   std::array<Vec3, 3> a, b;
   for (int k = 0; k < 3; ++k) {

@@ -8,12 +8,13 @@
 namespace tegotae {
 namespace {
 
-/// Searches of boxes, and splits undone, between two looks at the clock, and how many of them one of triangles counts;
-/// pairs of the wide check.
-constexpr int kPatchClockStride = 16, kRollBackStride = 64, kTriangleWorth = 4;
+/// Pairs that wait while one of the front is settled: a fan for each level of both hierarchies, with much to spare.
+constexpr std::size_t kDeepest = 4096;
+/// Tries to raise, and splits undone, between two looks at the clock; pairs of the wide check.
+constexpr int kRaiseStride = 16, kRollBackStride = 64;
 constexpr std::uint32_t kChunk = 1024;
-/// One pair of the front stops after so many blocking triangle pairs: the rest of the same patches says little more.
-constexpr std::size_t kBlocksPerPair = 2;
+/// Failures whose memory is asked for ahead: the next one is asked about with this one.
+constexpr std::size_t kFailuresAhead = 3;
 /// More splits than this are undone when the motion turns out to be blocked.
 constexpr std::size_t kKeepSplits = 512;
 
@@ -36,10 +37,6 @@ constexpr double kFirstWait = 4, kLastWait = 4;
 /// Tries when time ran out (about 10 µs): without them a front that takes longer than a tick never shrinks. And those
 /// of a call that is a long one anyway, because it took so many pairs apart: the next ones make up for them.
 constexpr int kLateTries = 32, kManySplits = 1000, kBusyTries = 128;
-/// See curves_pay(): hardly any is less than one in so many of the last ones.
-constexpr int kHardlyAny = 32, kBendsCounted = 256, kAskedSeldom = 8;
-/// Where planes may go on with A: of two that are about as good the one that rests is as good later, and cheaper.
-constexpr double kWorthOfA = 0.5;
 /// Share of the motion's length that a raised pair must have to spare, or the next motion splits it again; the longest
 /// motion of late counts, since a blocked part stands still between two pushes. Not more than this (m), under the gap
 /// that motions leave: a part that is pressed to that gap could raise nothing at all.
@@ -57,7 +54,7 @@ PatchFront::PatchFront(const FrontCapacity& capacity)
               Group(capacity.curved > 0 ? capacity.pairs : 0, kTriFields)},
       curved_(capacity.curved, capacity.curved > 0 ? kMaxAxisPairs : 0),
       failures_(capacity.pairs) {
-  stack_.reserve(capacity.pairs);
+  stack_.reserve(kDeepest);
   splits_.reserve(capacity.pairs);
   blocking_.reserve(capacity.blocking);
 }
@@ -93,8 +90,17 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
   splits_.clear();
   set_sweep(X_BA, d);
   report_.exhausted = !collect_failures();
+  const auto failure = [this](std::size_t i) {
+    Unsettled u;
+    if (i < failure_count_) u.id = failures_[i];
+    return u;
+  };
+  Unsettled next = failure(0);
   for (std::size_t i = 0; i < failure_count_ && !report_.exhausted; ++i) {
-    const Outcome outcome = settle(failures_[i]);
+    const Unsettled top = next;
+    next = failure(i + 1);
+    if (i + kFailuresAhead < failure_count_) __builtin_prefetch(&pool_[failures_[i + kFailuresAhead]]);
+    const Outcome outcome = settle(top, next);
     if (outcome == Outcome::out_of_work) {
       report_.exhausted = true;
     } else if (outcome == Outcome::blocked && blocking_.size() >= limit_.blocking) {
@@ -152,97 +158,6 @@ bool PatchFront::collect_failures() {
   return true;
 }
 
-bool PatchFront::spend(bool triangles) {
-  if (++report_.searches > limit_.searches) return false;
-  // A triangle pair may halve its time and cost as much as all boxes of a stride; hardly any does.
-  since_clock_ += triangles ? kTriangleWorth : 1;
-  if (since_clock_ < kPatchClockStride) return true;
-  since_clock_ = 0;
-  return !past(limit_.deadline_ns);
-}
-
-double PatchFront::worth_of_a() const {
-  return slides_ ? kWorthOfA : 1;
-}
-
-PatchFront::Outcome PatchFront::settle(std::uint32_t top) {
-  const std::size_t before = blocking_.size();
-  stack_.clear();
-  stack_.push_back(top);
-  while (!stack_.empty()) {
-    const std::uint32_t id = stack_.back();
-    stack_.pop_back();
-    const PairNode& p = pool_[id];
-    if (!spend(faces(p))) return leave_off(id, Outcome::out_of_work);
-    MovingPlane known = moving(plane(id));
-    if (faces(p)) {
-      const auto a = face_a(p.a), b = face_b(p.b);
-      const double reach = std::sqrt(std::max({a[0].squaredNorm(), a[1].squaredNorm(), a[2].squaredNorm()}));
-      if (separate_triangles(a, b, sweep_, reach, &beside_, known)) {
-        beside_ = known;
-        set_plane(id, last(known));
-        continue;
-      }
-      blocking_.push_back({p.a, p.b});
-      if (blocking_.size() >= std::min(capacity_.blocking, limit_.blocking) ||
-          blocking_.size() - before == kBlocksPerPair)
-        return leave_off(id, Outcome::blocked);
-      admit(id);
-      continue;
-    }
-    // What was curved is asked so first, what was flat last.
-    if (p.curved > 0 && bend(id, 0)) continue;
-    PatchNode scratch_a, scratch_b;
-    const PatchNode &a = box_a(p, scratch_a), &b = box_b(p, scratch_b);
-    const Vec3 center = node_center(a);
-    if (separate_boxes(a, center, b, sweep_, reach_from(center, a), 0, worth_of_a(), known)) {
-      flatten(id);
-      set_plane(id, last(known));
-      continue;
-    }
-    if (p.curved == 0 && curves_pay() && try_to_bend(id)) continue;
-    if (!split(id)) {
-      report_.overflow = true;
-      return leave_off(id, Outcome::out_of_work);
-    }
-    for (std::uint32_t k = 0; k < pool_[id].children; ++k) stack_.push_back(pool_[id].child + k);
-  }
-  return blocking_.size() > before ? Outcome::blocked : Outcome::free;
-}
-
-/// Where hardly any pair that no plane keeps apart is apart about an axis, few are asked.
-bool PatchFront::curves_pay() {
-  return asked_to_bend_ < kBendsCounted / 2 || kHardlyAny * bent_ >= asked_to_bend_ ||
-         ++passed_over_ % kAskedSeldom == 0;
-}
-
-bool PatchFront::try_to_bend(std::uint32_t id) {
-  if (++asked_to_bend_ > kBendsCounted) {
-    asked_to_bend_ /= 2;
-    bent_ /= 2;
-  }
-  if (!bend(id, 0)) return false;
-  ++bent_;
-  return true;
-}
-
-/// Gives a pair that waits for a plane the one of the pair that it comes of.
-void PatchFront::admit(std::uint32_t id) {
-  PairNode& p = pool_[id];
-  if (!p.waits) return;
-  p.waits = false;
-  write_piece(p);
-  write_plane(id, Vec3(p.normal[0], p.normal[1], p.normal[2]));
-}
-
-/// Ends with `outcome` before all is settled: what waits, `id` and what is on the stack, stays with planes that may
-/// fail.
-PatchFront::Outcome PatchFront::leave_off(std::uint32_t id, Outcome outcome) {
-  admit(id);
-  for (const std::uint32_t other : stack_) admit(other);
-  return outcome;
-}
-
 void PatchFront::roll_back() {
   // The last first: what is left when time runs out is a front as well, only larger.
   for (int n = 1; !splits_.empty(); ++n) {
@@ -271,7 +186,7 @@ void PatchFront::raise() {
     const std::uint32_t id = in_front(cursor_);
     const std::uint32_t parent = pool_[id].parent;
     if (parent == kNoPair || pool_[parent].child != id || !may_raise(parent)) continue;
-    if (++tries % kPatchClockStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
+    if (++tries % kRaiseStride == 0 && !report_.exhausted && past(limit_.deadline_ns)) break;
     if (!try_raise(parent)) continue;
     ++report_.merges;
     count = static_cast<std::uint32_t>(pairs());
@@ -311,10 +226,11 @@ bool PatchFront::try_raise(std::uint32_t id) {
   const Vec3 center = node_center(a);
   // With some gap to spare, or the next motion splits it again.
   const double spare = std::min(kRaiseSpare * motion_, kMaxSpare);
-  MovingPlane known = moving(plane(p.child));
-  if (separate_boxes(a, center, b, sweep_, reach_from(center, a), spare, worth_of_a(), known)) {
+  BoxPair pair{a, b, center, reach_from(center, a), moving(plane(p.child))};
+  separate_boxes(pair, pair, sweep_, spare, worth_of_a());
+  if (pair.apart) {
     collapse(id);
-    set_plane(id, last(known));
+    set_plane(id, last(pair.plane));
     return true;
   }
   if (bend(id, spare)) return true;

@@ -77,8 +77,9 @@ class PatchFront {
   }
 
  private:
-  /// A pair of the tree of splits; those without children are the front.
-  struct PairNode {
+  /// A pair of the tree of splits; those without children are the front. Each on a cache line of its own: they are met
+  /// in no order.
+  struct alignas(64) PairNode {
     std::uint32_t a, b;         ///< nodes, or faces
     std::uint32_t parent;       ///< kNoPair for the root
     std::uint32_t child;        ///< first of `children` in a row
@@ -115,10 +116,19 @@ class PatchFront {
   static_assert(kFan < 16 && kMaxAxisPairs < 15, "PairNode has four bits for each");
 
   enum class Outcome : std::uint8_t { free, blocked, out_of_work };
+  /// A pair whose plane does not hold, and whether its boxes were asked about already.
+  struct Unsettled {
+    std::uint32_t id = kNoPair;
+    bool asked = false, apart = false;
+    MovingPlane plane{Vec3::Zero(), Vec3::Zero()};  ///< once it was asked
+  };
 
   void set_sweep(const Pose& X_BA, const Displacement& d);
   bool collect_failures();
-  Outcome settle(std::uint32_t top);
+  Outcome settle(const Unsettled& top, Unsettled& next);
+  bool part_faces(std::uint32_t id);
+  bool part_boxes(Unsettled& now, Unsettled& other);
+  void ask(Unsettled& now, Unsettled& other);
   bool spend(bool triangles);
   bool split(std::uint32_t id);
   void collapse(std::uint32_t id);
@@ -137,7 +147,7 @@ class PatchFront {
 
   std::uint32_t allocate(std::uint32_t children);
   void admit(std::uint32_t id);
-  Outcome leave_off(std::uint32_t id, Outcome outcome);
+  Outcome leave_off(Outcome outcome);
   void enter(std::uint32_t id);
   void take_place(std::uint32_t id);
   void write_piece(const PairNode& p);
@@ -186,7 +196,8 @@ class PatchFront {
   std::vector<std::uint32_t>
       failures_;  ///< the first failure_count_ of them; clearing all would cost more than a check
   std::size_t failure_count_ = 0;
-  std::vector<std::uint32_t> stack_, splits_;
+  std::vector<Unsettled> stack_;
+  std::vector<std::uint32_t> splits_;
   std::vector<BlockingPair> blocking_;
   std::uint32_t cursor_ = 0;                            ///< where raising goes on
   double motion_ = 0;                                   ///< longest motion of late, m

@@ -20,6 +20,9 @@ std::uint32_t PatchFront::allocate(std::uint32_t children) {
   if (head != kNoPair) {
     const std::uint32_t id = head;
     head = pool_[id].child;
+    // The next one taken was free for long, and is in no cache.
+    if (head != kNoPair)
+      for (const std::uint32_t next : {head, head + 1}) __builtin_prefetch(&pool_[next], 1);
     return id;
   }
   const std::uint32_t size = two ? 2 : kFan;
@@ -56,8 +59,10 @@ bool PatchFront::split(std::uint32_t id) {
   parent.wait = 0;
   put_off(id);
   for (int k = 0; k < 3; ++k) parent.normal[k] = static_cast<float>(known.n[k]);
+  const std::array<float, 3> normal = parent.normal;
   for (std::uint32_t k = 0; k < children; ++k) {
-    PairNode c{p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, false, parent.normal, 0, 0};
+    PairNode& c = pool_[child + k];
+    c = {p.a, p.b, id, kNoPair, 0, 0, 0, p.face_a, p.face_b, p.with_a, false, normal, 0, 0};
     if ((ends || split_a) && !p.face_a) {
       const std::uint32_t place = a.first + (ends ? k / of_b : k);
       c.face_a = a.leaf();
@@ -68,7 +73,6 @@ bool PatchFront::split(std::uint32_t id) {
       c.face_b = b.leaf();
       c.b = b.leaf() ? b_->order()[place] : place;
     }
-    pool_[child + k] = c;
     take_place(child + k);
   }
   splits_.push_back(id);

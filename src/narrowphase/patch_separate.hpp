@@ -54,17 +54,25 @@ struct TrianglePair {
   double mixed(const Vec3& n0, const Vec3& n1) const;
 };
 
-/// Looks for a plane that keeps the box `a` of A, whose center is at `center_a` from A's center of mass, apart from the
-/// box `b` of B all along the motion. `reach` is the largest distance of a point of A's box from the center of mass
-/// (m). `spare` (m) asks for that much more at both ends. A gap along a face of A counts `worth_of_a` times what one
-/// along a face of B does, where there is a choice. `plane` comes in as the last known one and, where the boxes are
-/// apart, goes out as the one that keeps them so.
-bool separate_boxes(const PatchNode& a, const Vec3& center_a, const PatchNode& b, const Sweep& sweep, double reach,
-                    double spare, double worth_of_a, MovingPlane& plane);
+/// A box of A and a box of B; the boxes outlive it.
+struct BoxPair {
+  const PatchNode& a;
+  const PatchNode& b;
+  Vec3 center_a;       ///< of A's box, from A's center of mass, A's axes, m
+  double reach;        ///< largest distance of a point of A's box from the center of mass, m
+  MovingPlane plane;   ///< in: the last known one; out: one that keeps the boxes apart, where there is one
+  bool apart = false;  ///< out
+};
 
-/// The same for two triangles (`a` relative to the center of mass, `b` to the origin of B's tree), complete at the two
-/// ends (all separating axes and the closest direction are tried); halves the time up to 4 times in between. `beside`
-/// (null: none) is tried after `plane`: one that keeps triangles near these apart.
+/// Looks for planes that keep two pairs of boxes apart all along the motion; both take about as long as one (which may
+/// be given twice). `spare` (m) asks for that much more at both ends. A gap along a face of A counts `worth_of_a` times
+/// what one along a face of B does, where there is a choice.
+void separate_boxes(BoxPair& one, BoxPair& two, const Sweep& sweep, double spare, double worth_of_a);
+
+/// Looks for a plane that keeps two triangles apart (`a` relative to the center of mass, `b` to the origin of B's
+/// tree), complete at the two ends (all separating axes and the closest direction are tried); halves the time up to 4
+/// times in between. `reach` is that of a BoxPair, `plane` comes in as the last known one and goes out as the one that
+/// keeps them apart. `beside` (null: none) is tried after it: one that keeps triangles near these apart.
 bool separate_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Sweep& sweep, double reach,
                         const MovingPlane* beside, MovingPlane& plane);
 
