@@ -14,13 +14,24 @@
 namespace tegotae::apps {
 namespace {
 
-constexpr double kWindow = 0.5;  // s
+constexpr double kWindow = 0.5;     // s
+constexpr double kStep = 0.01;      // s between two ticks that are looked at
+constexpr double kRounding = 1e-6;  // s, of times
 
 struct Touched {
   std::size_t ticks = 0;
   double push = 0;  // m, summed over the ticks
   Vec3 place_W = Vec3::Zero();
 };
+
+/// The ticks that are looked at: the last one, and back from it over the window.
+std::vector<const TickPoses*> sampled(const std::vector<TickPoses>& ticks) {
+  std::vector<const TickPoses*> out;
+  for (auto tick = ticks.rbegin(); tick != ticks.rend() && tick->t >= ticks.back().t - kWindow; ++tick)
+    if (out.empty() || tick->t <= out.back()->t - kStep + kRounding) out.push_back(&*tick);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
 
 /// How far the held part would go into the other one at their nearest points, if it went from x to y; m.
 double push(const TickPoses& tick, const Clearance& c) {
@@ -32,8 +43,10 @@ double push(const TickPoses& tick, const Clearance& c) {
 
 }  // namespace
 
-Blocker find_blocker(const Scene& scene, const InitialContactReport& start, const std::vector<TickPoses>& ticks) {
-  if (ticks.empty()) return {};
+Blocker find_blocker(const Scene& scene, const InitialContactReport& start, const std::vector<TickPoses>& ticks,
+                     const std::atomic<bool>* stop) {
+  const auto stopped = [stop] { return stop != nullptr && stop->load(std::memory_order_relaxed); };
+  if (ticks.empty() || stopped()) return {};
   Scene felt = scene;
   std::set<std::size_t> unfelt;
   for (const InitialContact& pair : start.pairs) {
@@ -47,16 +60,16 @@ Blocker find_blocker(const Scene& scene, const InitialContactReport& start, cons
   std::vector<Clearance> near;
   std::map<std::size_t, Touched> touched;
   const Pose* last = nullptr;
-  for (const TickPoses& tick : ticks) {
-    if (tick.t < ticks.back().t - kWindow) continue;
-    const bool stands = last && last->p == tick.x.p && last->q.coeffs() == tick.x.q.coeffs();
-    if (!stands) probe.at(tick.x, reach, near);
-    last = &tick.x;
+  for (const TickPoses* tick : sampled(ticks)) {
+    if (stopped()) return {};
+    const bool stands = last && last->p == tick->x.p && last->q.coeffs() == tick->x.q.coeffs();
+    if (!stands) probe.at(tick->x, reach, near);
+    last = &tick->x;
     for (const Clearance& c : near) {
       if (c.distance > reach || unfelt.count(c.part) > 0) continue;
       Touched& one = touched[c.part];
       ++one.ticks;
-      one.push += push(tick, c);
+      one.push += push(*tick, c);
       one.place_W = c.on_other_W;
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,10 @@ struct Blocker {
 /// of `ticks`; only parts count that were touched (nearer than `l_min`) in half as many ticks at least as the most
 /// touched one, and where it pushed into none it is that one. The place is where it was touched last. `ticks`: of a
 /// run, in order; `start`: the initial contacts as they are at its end: a shrunk part is felt inside its surface, a
-/// filtered one not at all. Depends on nothing else, so a recording gives what its run gave.
-Blocker find_blocker(const Scene& scene, const InitialContactReport& start, const std::vector<TickPoses>& ticks);
+/// filtered one not at all. Depends on nothing else, so a recording gives what its run gave; but `stop` (may be null)
+/// ends the search, and then there is none. Between two ticks that are looked at there are 10 ms, so that of large
+/// surfaces that lie close, where a tick takes a tenth of a second, it takes seconds.
+Blocker find_blocker(const Scene& scene, const InitialContactReport& start, const std::vector<TickPoses>& ticks,
+                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace tegotae::apps

@@ -18,10 +18,10 @@ void BlockerWatch::after_tick(const TickView& tick) noexcept {
   ++count_;
 }
 
-Blocker BlockerWatch::find(const Scene& scene, const InitialContactReport& start) const {
+Blocker BlockerWatch::find(const Scene& scene, const InitialContactReport& start, const std::atomic<bool>* stop) const {
   std::vector<TickPoses> last;
   for (std::size_t i = 0; i < count_; ++i) last.push_back(ticks_[(first_ + i) % ticks_.size()]);
-  return find_blocker(scene, start, last);
+  return find_blocker(scene, start, last, stop);
 }
 
 }  // namespace tegotae::apps

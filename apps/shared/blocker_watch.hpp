@@ -15,7 +15,7 @@ class BlockerWatch final : public RunObserver {
   void after_tick(const TickView& tick) noexcept override;
 
   /// find_blocker() at the end of the run. `scene`: of the run; `start`: RunSummary::start.
-  Blocker find(const Scene& scene, const InitialContactReport& start) const;
+  Blocker find(const Scene& scene, const InitialContactReport& start, const std::atomic<bool>* stop = nullptr) const;
 
  private:
   std::vector<TickPoses> ticks_;  // a ring: of more, the oldest go

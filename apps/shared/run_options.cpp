@@ -124,8 +124,9 @@ int run_and_report(SceneFile file, const RunOptions& options, const std::string&
   }
   if (!run) return kDone;  // the page was open and held no part
   const RunSummary& summary = *run;
+  // None after a run with a page, which may have changed the scene. Looked for where it is told; Ctrl-C ends that.
   const Blocker blocker =
-      watch.find(file.scene, summary.start);  // none after a run with a page, which may have changed the scene
+      options.json || !summary.completed ? watch.find(file.scene, summary.start, &interrupted) : Blocker();
   if (options.json)
     std::cout << json_line(summary, file, blocker) << std::endl;
   else

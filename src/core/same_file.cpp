@@ -13,6 +13,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// As the system follows.
+constexpr int kMostLinks = 40;
+
+/// The place that `path` leads to over symbolic links, also where nothing stands there yet.
+fs::path followed(fs::path path) {
+  std::error_code failed;
+  for (int links = 0; links < kMostLinks; ++links) {
+    const fs::path to = fs::read_symlink(path, failed);
+    if (failed) break;
+    path = path.parent_path() / to;
+  }
+  return path;
+}
+
 /// Files by what they are, where they are there, and by where they are or would be. Of each the first one counts.
 class Files {
  public:
@@ -33,7 +47,7 @@ class Files {
     if (::stat(path.c_str(), &file) == 0)
       out.push_back(std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino));
     std::error_code failed;
-    const fs::path place = fs::weakly_canonical(fs::absolute(path, failed), failed);
+    const fs::path place = fs::weakly_canonical(followed(fs::absolute(path, failed)), failed);
     if (!failed && !place.empty()) out.push_back(place.string());
     return out;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "narrowphase/near_front.hpp"
@@ -17,8 +18,9 @@ class FclNearTriangles {
       : front_(std::move(a), std::move(b)) {}
 
   /// Whether any triangles intersect with A's file frame at `X_BA` in B's; stops at the first. Poses along a path, in
-  /// order, are asked fastest.
-  bool intersect(const Pose& X_BA);
+  /// order, are asked fastest. A question is broken off when `stop` (may be null) becomes true: then false means
+  /// nothing.
+  bool intersect(const Pose& X_BA, const std::atomic<bool>* stop = nullptr);
 
  private:
   NearFront front_;

@@ -29,13 +29,13 @@ void JudgedScene::came_free(const InitialContactReport& start) noexcept {
   for (const InitialContact& pair : start.pairs) freed_[pair.part].store(pair.freed, std::memory_order_release);
 }
 
-bool PoseJudge::intersects(const Pose& X, std::uint32_t freed) {
+bool PoseJudge::intersects(const Pose& X, std::uint32_t freed, const std::atomic<bool>* stop) {
   scene_.spheres_.query(X * scene_.ball_.center, scene_.ball_.radius, 0.0, near_);
   return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t i) {
     if (scene_.freed_[scene_.number_[i]].load(std::memory_order_acquire) > freed) return false;
     const Part& fixed = *scene_.fixed_[i];
     if (!pairs_[i]) pairs_[i].emplace(cached_patch_tree(scene_.held_.mesh), cached_patch_tree(fixed.mesh));
-    return pairs_[i]->intersect(fixed.pose.inverse() * X);
+    return pairs_[i]->intersect(fixed.pose.inverse() * X, stop);
   });
 }
 

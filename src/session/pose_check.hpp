@@ -37,8 +37,9 @@ class PoseJudge {
   /// Keeps a reference to `scene`.
   explicit PoseJudge(const JudgedScene& scene) : scene_(scene), pairs_(scene.fixed_.size()) {}
   /// Whether the held part at `X` intersects a fixed one. `freed`: how many pairs of the start had come free there.
-  /// Poses along a path, in order, are asked fastest.
-  bool intersects(const Pose& X, std::uint32_t freed);
+  /// Poses along a path, in order, are asked fastest. A question is broken off when `stop` (may be null) becomes true:
+  /// then false means nothing.
+  bool intersects(const Pose& X, std::uint32_t freed, const std::atomic<bool>* stop = nullptr);
 
  private:
   const JudgedScene& scene_;

@@ -22,7 +22,8 @@ constexpr std::size_t kOnTheWay = 65536;
 constexpr std::size_t kBlock = 64;
 // Blocks that wait to be asked about; of more, every second, fourth, ... one.
 constexpr std::size_t kMaxWaiting = 20000 / kBlock;
-constexpr double kIdle = 5e-3;  // s between two looks for poses where there are none
+constexpr double kIdle = 5e-3;   // s between two looks for poses where there are none
+constexpr double kSlice = 5e-3;  // s of questions between two looks for poses; one question may take longer
 constexpr int kNice = 10;
 
 }  // namespace
@@ -97,10 +98,11 @@ void RunCheck::work() {
     collect(last);
     if (last) break;
     const std::int64_t begin = monotonic_ns();
-    const bool asked = ask_one(asker);
+    const bool asked = ask_some(asker);
     const double took = 1e-9 * static_cast<double>(monotonic_ns() - begin);
     if (!rest(!asked ? kIdle : real_time_ ? took * (1 / kShare - 1) : 0)) return;
   }
+  give_back(asker);
   ask_all();
   done_ = true;
 }
@@ -142,34 +144,52 @@ void RunCheck::thin_out() {
   stride_ *= 2;
 }
 
-/// Asks about a block; false when there is none.
-bool RunCheck::ask_one(Asker& asker) {
-  Block block;
-  {
-    const std::lock_guard<std::mutex> lock(queue_mutex_);
-    if (waiting_.empty()) return false;
-    // At random, so that what is asked by the end is spread over the whole run.
-    std::swap(waiting_[rng_() % waiting_.size()], waiting_.back());
-    block = std::move(waiting_.back());
-    waiting_.pop_back();
-  }
-  if (asker.segment != block.segment) {
-    asker.segment = block.segment;
-    asker.judge.emplace(block.segment->judged_);
-  }
-  for (const CheckedSegment::Item& item : block.items) {
-    if (asker.judge->intersects(item.X, item.freed)) ++intersecting_;
+/// Asks for a slice of time, of one block; false when no pose waits.
+bool RunCheck::ask_some(Asker& asker) {
+  if (asker.next == asker.block.items.size() && !take_block(asker)) return false;
+  const std::int64_t until_ns = deadline_after(monotonic_ns(), kSlice);
+  while (asker.next < asker.block.items.size() && monotonic_ns() < until_ns) {
+    const CheckedSegment::Item& item = asker.block.items[asker.next++];
+    const bool hit = asker.judge->intersects(item.X, item.freed, &abandoned_);
+    if (!hit && abandoned_) return true;  // maybe broken off
+    if (hit) ++intersecting_;
     ++checked_;
     --left_;
   }
   return true;
 }
 
+bool RunCheck::take_block(Asker& asker) {
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    if (waiting_.empty()) return false;
+    // At random, so that what is asked by the end is spread over the whole run.
+    std::swap(waiting_[rng_() % waiting_.size()], waiting_.back());
+    asker.block = std::move(waiting_.back());
+    waiting_.pop_back();
+  }
+  asker.next = 0;
+  if (asker.segment != asker.block.segment) {
+    asker.segment = asker.block.segment;
+    asker.judge.emplace(asker.block.segment->judged_);
+  }
+  return true;
+}
+
+/// Lets others ask about the rest of the block.
+void RunCheck::give_back(Asker& asker) {
+  const auto asked = asker.block.items.begin() + static_cast<std::ptrdiff_t>(asker.next);
+  asker.block.items.erase(asker.block.items.begin(), asked);
+  asker.next = 0;
+  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  if (!asker.block.items.empty()) waiting_.push_back(std::exchange(asker.block, Block{nullptr, {}}));
+}
+
 /// Asks about what waits, on all processors.
 void RunCheck::ask_all() {
   const auto ask = [this](int) {
     Asker asker;
-    while (rest(0) && ask_one(asker)) {
+    while (!abandoned_ && ask_some(asker)) {
     }
   };
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -39,7 +39,8 @@ class CheckedSegment {
 
 /// Asks FCL about the poses that a run commits, beside the run, in a thread of its own: some in a row at a time, which
 /// is fast, and the rows in no order. Of a run in real time it takes a quarter of one processor, so that the loops keep
-/// theirs; after any run it works on all processors.
+/// theirs; after any run it works on all processors. A question can take a second where large surfaces lie close: it is
+/// broken off where the check ends.
 class RunCheck {
  public:
   /// Share of the run's time that the check takes beside a run in real time and, at most, after any run.
@@ -61,7 +62,7 @@ class RunCheck {
   /// No pose comes any more, after `seconds`. Goes on while there is time, until `stop` (may be null); `share` (may be
   /// null) is told how far that is, from 0 to 1.
   void end(double seconds, const std::atomic<bool>* stop, std::atomic<double>* share);
-  /// Ends at once, after the questions at hand.
+  /// Ends at once; the questions at hand stay without an answer.
   void abandon() noexcept;
 
   // After end().
@@ -75,9 +76,11 @@ class RunCheck {
     CheckedSegment* segment;
     std::vector<CheckedSegment::Item> items;
   };
-  /// Who asks, in one thread: of the segment of the last block.
+  /// Who asks, in one thread: about a block, from the pose `next` on.
   struct Asker {
-    const CheckedSegment* segment = nullptr;
+    Block block{nullptr, {}};
+    std::size_t next = 0;
+    const CheckedSegment* segment = nullptr;  ///< that the judge is for
     std::optional<PoseJudge> judge;
   };
 
@@ -85,15 +88,17 @@ class RunCheck {
   void collect(bool last);
   void add(Block block);
   void thin_out();
-  bool ask_one(Asker& asker);
+  bool ask_some(Asker& asker);
+  bool take_block(Asker& asker);
+  void give_back(Asker& asker);
   void ask_all();
   bool rest(double seconds);
 
   const bool all_, real_time_;
-  mutable std::mutex mutex_;  // of the next three
+  mutable std::mutex mutex_;  // of the next two
   std::condition_variable wake_;
   std::vector<CheckedSegment*> segments_;
-  bool abandoned_ = false;  // what is not asked by now is not
+  std::atomic<bool> abandoned_{false};  // what is not asked by now is not
   std::atomic<bool> ended_{false};
   std::atomic<std::int64_t> checked_{0}, intersecting_{0}, left_{0};
   std::atomic<bool> done_{false};

@@ -26,4 +26,13 @@ TEST_CASE("a file is the same under every name", "[core]") {
   // Files that are not there yet are where they would be.
   CHECK_THROWS_WITH(refuse_to_replace({folder / "n", folder / "here/n"}, {}), Contains("writes it twice"));
   CHECK_NOTHROW(refuse_to_replace({folder / "n", folder / "m", "", ""}, {folder / "a"}));
+  fs::create_symlink("n", folder / "to n");
+  fs::create_symlink("here/to n", folder / "to that");
+  fs::create_symlink("round", folder / "round");
+  for (const char* name : {"to n", "to that", "here/to n"}) {
+    CAPTURE(name);
+    CHECK_THROWS_WITH(refuse_to_replace({folder / "n", folder / name}, {}), Contains("writes it twice"));
+    CHECK_THROWS_WITH(refuse_to_replace({folder / name, folder / "n"}, {}), Contains("writes it twice"));
+  }
+  CHECK_NOTHROW(refuse_to_replace({folder / "n", folder / "round"}, {}));
 }

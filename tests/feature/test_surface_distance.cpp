@@ -1,5 +1,6 @@
 // Distances and intersections of surfaces by a front of patches against brute force over all pairs of triangles and
 // against FCL's own hierarchies.
+#include <atomic>
 #include <cmath>
 #include <functional>
 
@@ -109,4 +110,14 @@ TEST_CASE("triangles without area have distances too", "[feature]") {
     REQUIRE(surfaces.within(1, {Quat::Identity(), {0, 0, 0.005 + 1e-6 + height}}, found));
     CHECK(found.distance == Approx(1e-6 + height).margin(NearFront::kTolerance));
   }
+}
+
+TEST_CASE("a question that is broken off has no answer", "[feature]") {
+  std::atomic<bool> stop{false};
+  const auto a = shared(box({0.01, 0.01, 0.01})), b = shared(box({0.02, 0.02, 0.01}));
+  FclNearTriangles near(tree(a), tree(b));
+  const Pose X{Quat::Identity(), Vec3(0, 0, 0.009)};
+  CHECK(near.intersect(X, &stop));
+  stop = true;
+  CHECK_FALSE(near.intersect(X, &stop));
 }

@@ -1,4 +1,6 @@
 // Who is in the way, by the last poses of a run.
+#include <atomic>
+
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "shared/blocker.hpp"
@@ -71,6 +73,35 @@ TEST_CASE("only the last half second counts, and parts that were touched for lon
   stay(scene, 0.1, 0.1, Vec3::Zero(), {-5e-3, 0, 0}, ticks);
   stay(scene, 0.2, 0.3, {1e-3, 0, 0}, {0, 0, -1e-4}, ticks);
   CHECK(blocker(scene, ticks) == "floor");
+}
+
+TEST_CASE("a search that is stopped finds nobody", "[blocker]") {
+  const Scene scene = corner();
+  std::vector<TickPoses> ticks;
+  stay(scene, 0, 1, Vec3::Zero(), {0, 0, -1e-3}, ticks);
+  std::atomic<bool> stop{false};
+  CHECK(find_blocker(scene, {}, ticks, &stop).part == "floor");
+  stop = true;
+  CHECK(find_blocker(scene, {}, ticks, &stop).part.empty());
+}
+
+TEST_CASE("what is looked at is spread over the last half second, whatever the rate of the ticks", "[blocker]") {
+  const Scene scene = corner();
+  const double rate = GENERATE(50.0, 100.0, 1000.0, 4000.0);
+  const auto blocker_at = [&](double wall, double floor) {
+    std::vector<TickPoses> ticks;
+    const Pose X = scene.parts.back().pose;
+    const auto add = [&](double from, double to, const Vec3& off, const Vec3& ahead) {
+      for (double t = from; t < to - 1e-9; t += 1 / rate)
+        ticks.push_back({t, {X.q, X.p + off + ahead}, {X.q, X.p + off}});
+    };
+    add(0, 1, {1e-3, 0, 1e-3}, Vec3::Zero());
+    add(1, 1 + wall, {0, 0, 1e-3}, {-1e-4, 0, 0});
+    add(1 + wall, 1 + wall + floor, {1e-3, 0, 0}, {0, 0, -1e-3});
+    return blocker(scene, ticks);
+  };
+  CHECK(blocker_at(0.2, 0.24) == "floor");
+  CHECK(blocker_at(0.38, 0.1) == "wall");  // the floor for less than half as long, however hard
 }
 
 TEST_CASE("a suspended part is in nobody's way, a relieved one where it is felt", "[blocker]") {
