@@ -109,7 +109,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   X_ = last.proxy.X;
   at_.check->jumped();
   last_Y_ = Y;
-  tracked_ = false;
+  tracked_ = touched_ = false;
   owed_.reset();
   swings_.forget();
   margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
@@ -123,7 +123,7 @@ void ContactLoop::stand_at(const Pose& X) {
   near_.clear();
   // Nothing is near: what the check knew of parts that were goes.
   at_.check->begin(near_, kNoDeadline, OtherParts::far);
-  tracked_ = timed_out_ = comes_ = queried_ = false;
+  tracked_ = timed_out_ = comes_ = touched_ = queried_ = false;
   owed_.reset();
   margin_ = max_margin_;
   trust_ = substep_cap_;
@@ -165,10 +165,16 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
   // that removed what it touched, it comes back to the pen through the air.
   comes_ = near_.empty() || made_ >= kFullShare * travel;
-  report.proxy.touching = report.contacts > 0 || (report.lag_reason != LagReason::none && !comes_ && left > margin_);
+  // On its way from a contact that it slipped off to the next one, a surface is still beside it: there the springs'
+  // force stays, or it would drop out for these few ticks and come back.
+  const bool slips = comes_ && touched_ && !near_.empty() && report.gap <= substep_cap_;
+  report.proxy.touching =
+      report.contacts > 0 || (report.lag_reason != LagReason::none && (!comes_ || slips) && left > margin_);
+  touched_ = report.proxy.touching;
   report.fraction = wanted > kRest ? std::clamp(1 - left / wanted, 0.0, 1.0) : 1;
   report.proxy.X = X_;
-  report.proxy.velocity = dt > 0 ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
+  // The pace of a slip is the loop's, not the hand's: the damper does not answer it.
+  report.proxy.velocity = dt > 0 && !slips ? Twist{moved.dp / dt, moved.dr / dt} : Twist{};
   report.flags.timed_out |= late();
   timed_out_ = report.flags.timed_out;
   report_forces(Y, report);

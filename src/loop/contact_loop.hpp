@@ -148,6 +148,7 @@ class ContactLoop final : public ProxyLoop {
   bool tracked_ = false;         ///< the contacts are those of X_
   bool timed_out_ = false;       ///< the last tick
   bool comes_ = false;           ///< X went as fast as it may in the last tick
+  bool touched_ = false;         ///< ProxyState::touching after the last tick
   bool queried_ = false;         ///< query_around() did at this pose
   bool far_planes_ = false;      ///< see only_contacts()
   bool held_by_planes_ = false;  ///< planes for one motion made the last sub-step short
