@@ -125,7 +125,7 @@ check_headers() {
   tr '\n' '\0' <build/headers.txt |
     xargs -0 -P "$jobs" -I{} sh -c 'header=$1; shift; echo "$header" | "$@" - || { echo "alone: $header" >&2; exit 1; }' \
       sh {} "$tool" -std=c++17 "${flags[@]}"
-  "$tool" -std=c++23 "${flags[@]}" build/headers.txt
+  "$tool" -std=c++2b "${flags[@]}" build/headers.txt
 }
 
 # In $tool: clang. Each source for itself: each must have what it needs.
