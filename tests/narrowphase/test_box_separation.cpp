@@ -109,7 +109,7 @@ TEST_CASE("planes keep boxes apart all along a motion, whatever box is asked abo
   std::mt19937 rng(307);
   const PatchTree tree(soup(rng, 20, 0.05, 0.01));
   int apart = 0, clear = 0, wrong = 0, missed = 0, other = 0;
-  constexpr int kMotions = 20000;
+  constexpr int kMotions = 10000;
   for (int i = 0; i < kMotions; ++i) {
     const Motion m(rng, tree);
     const std::array<Couple, 2> couples = {Couple(rng, m), Couple(rng, m)};
