@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxFronts = 32;
 // Where more parts of as many triangles at most are near, they are one for the cells: 2 µs for each at the start.
 constexpr std::size_t kMaxBundleFaces = 1u << 17;
-// Pairs of all fronts together (about 200 bytes each, 330 where parts have a common axis), and the least and the most
+// Pairs of all fronts together (about 400 bytes each, 550 where parts have a common axis), and the least and the most
 // of one.
 constexpr std::size_t kAllPairs = 1u << 18;
 constexpr std::size_t kMinPairs = 1u << 13;
