@@ -77,6 +77,8 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   sizes_ = {node_reach(a.nodes()[0]), a.radius() + offset_a_.norm(),
             reach_from(b.nodes()[0].center_vec(), b.nodes()[0]), b.radius()};
   slides_ = axes != nullptr && !axes->empty() && capacity_.curved > 0;
+  screws_ =
+      slides_ && std::any_of(axes->begin(), axes->end(), [](const AxisPair& p) { return p.b->frame().rise != 0; });
   effort_ = slides_ ? kSlidingTries : kMaxTries;
   motion_ = travel_ = 0;
   pool_[0] = {0, 0, kNoPair, kNoPair, 0, 0, 0, false, false, false, false, {0, 0, 0}, 0, 0};
@@ -89,6 +91,9 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
   blocking_.clear();
   splits_.clear();
   set_sweep(X_BA, d);
+  const double carried = d.dp.norm() + sizes_.reach_a * d.dr.norm();
+  if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
+  travel_ += carried;
   report_.exhausted = !collect_failures();
   const auto failure = [this](std::size_t i) {
     Unsettled u;
@@ -111,13 +116,15 @@ CertifyReport PatchFront::certify(const Pose& X_BA, const Displacement& d, const
     }
   }
   report_.splits = static_cast<int>(splits_.size());
-  debt_ = std::min(debt_ + report_.splits + report_.splits / 2 + kRaiseAlways, kMaxDebt);
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
     if (splits_.size() > kKeepSplits) roll_back();
   } else if (report_.exhausted) {
     report_.status = CertifyStatus::out_of_budget;
+  } else {
+    look_ahead(X_BA, d);
   }
+  debt_ = std::min(debt_ + report_.splits + report_.splits / 2 + kRaiseAlways, kMaxDebt);
   // Also after a motion that was not certified: its splits stay, and a front that is full of them certifies nothing.
   if (report_.status == CertifyStatus::out_of_budget && report_.overflow) debt_ = std::max(debt_, pairs() / kFullShare);
   raise();
@@ -130,9 +137,6 @@ void PatchFront::set_sweep(const Pose& X_BA, const Displacement& d) {
   sweep_ = Sweep(X_BA, d, center_, *b_, sizes_.radius_a, clearance_);
   beside_ = {Vec3::Zero(), Vec3::Zero()};
   curved_.begin(*a_, center_, *b_, sweep_);
-  const double carried = d.dp.norm() + sizes_.reach_a * d.dr.norm();
-  if (carried > 0) motion_ = std::max(kMotionFades * motion_, carried);
-  travel_ += carried;
 }
 
 bool PatchFront::collect_failures() {
@@ -141,21 +145,27 @@ bool PatchFront::collect_failures() {
                                          any_on_a ? seen_from_a(sweep_, sizes_) : LaneSweep{}};
   failure_count_ = 0;
   // The nearest first.
-  for (const std::size_t kind : {kFacesOnB, kFacesOnA, kBoxesOnB, kBoxesOnA}) {
-    const Group& g = groups_[kind];
-    const auto check = kind == kFacesOnB || kind == kFacesOnA ? triangle_failures : box_failures;
+  for (const GroupKind kind : {kFacesOnB, kFacesOnA, kBoxesOnB, kBoxesOnA}) {
     const LaneSweep& sweep = seen[kind == kFacesOnA || kind == kBoxesOnA ? 1 : 0];
-    for (std::uint32_t first = 0; first < g.count; first += kChunk) {
+    for (std::uint32_t first = 0; first < groups_[kind].count; first += kChunk) {
       if (past(limit_.deadline_ns)) return false;
-      std::uint32_t* failed = failures_.data() + failure_count_;
-      const std::size_t n = check(g.lanes, first, std::min(g.count, first + kChunk), sweep, failed);
-      for (std::size_t i = 0; i < n; ++i) failed[i] = g.owner[failed[i]];
-      failure_count_ += n;
+      collect(kind, first, first + kChunk, sweep);
     }
   }
   if (past(limit_.deadline_ns)) return false;
   failure_count_ += curved_.collect_failures(failures_.data() + failure_count_);
   return true;
+}
+
+/// Adds those that may fail of a group's slots from `first`, the first of a block, up to `end`.
+void PatchFront::collect(GroupKind kind, std::uint32_t first, std::uint32_t end, const LaneSweep& sweep) {
+  const Group& g = groups_[kind];
+  if (first >= g.count) return;
+  const auto check = kind == kFacesOnB || kind == kFacesOnA ? triangle_failures : box_failures;
+  std::uint32_t* failed = failures_.data() + failure_count_;
+  const std::size_t n = check(g.lanes, first, std::min(g.count, end), sweep, failed);
+  for (std::size_t i = 0; i < n; ++i) failed[i] = g.owner[failed[i]];
+  failure_count_ += n;
 }
 
 void PatchFront::roll_back() {

@@ -125,6 +125,8 @@ class PatchFront {
 
   void set_sweep(const Pose& X_BA, const Displacement& d);
   bool collect_failures();
+  void collect(GroupKind kind, std::uint32_t first, std::uint32_t end, const LaneSweep& sweep);
+  void look_ahead(const Pose& X_BA, const Displacement& d);
   Outcome settle(const Unsettled& top, Unsettled& next);
   bool part_faces(std::uint32_t id);
   bool part_boxes(Unsettled& now, Unsettled& other);
@@ -203,6 +205,8 @@ class PatchFront {
   double motion_ = 0;                                   ///< longest motion of late, m
   double travel_ = 0;                                   ///< sum of the lengths of all motions, m
   bool slides_ = false;                                 ///< the parts have a common axis
+  bool screws_ = false;                                 ///< and it is a thread's
+  std::uint32_t slice_ = 0;                             ///< of the front that was looked at ahead last
   int asked_to_bend_ = 0, bent_ = 0, passed_over_ = 0;  ///< see curves_pay()
   int since_clock_ = 0;                                 ///< searches since the last look at it
   int debt_ = 0;                                        ///< pairs to raise, for those that were split

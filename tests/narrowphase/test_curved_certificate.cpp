@@ -2,6 +2,7 @@
 // by planes alone.
 #include "alloc_guard.hpp"
 #include "catch.hpp"
+#include "models/helical.hpp"
 #include "models/shapes.hpp"
 #include "models/threaded.hpp"
 #include "narrowphase/axis_pairs.hpp"
@@ -511,4 +512,56 @@ TEST_CASE("a nut that is pushed about on its bolt has few of the pairs that plan
   CHECK(flat.blocked > 200);
   CHECK(curved.pairs < 0.4 * flat.pairs);
   CHECK(curved.searches < flat.searches);
+}
+
+TEST_CASE("bursts of a thread whose facets fall into step are spread over the motions before them", "[curved]") {
+  shapes::WavyThread outer;
+  outer.radius = 0.0046;
+  outer.depth = 0.0008;
+  outer.pitch = 0.0015;
+  outer.segments = 36;
+  outer.low = -0.0135;
+  shapes::WavyThread inner = outer;
+  inner.radius += 1.2e-4;
+  inner.low = -0.0045;
+  const MeshPtr nut = mesh_of(shapes::nut(inner, 0.008)), screw = mesh_of(shapes::screw(outer));
+  const auto a = std::make_shared<const PatchTree>(nut), b = std::make_shared<const PatchTree>(screw);
+  AxisPairing pairing(a);
+  PatchFront front(FrontCapacity{1u << 15, 32, 1u << 12});
+  front.attach(*a, a->origin(), *b, pairing.with(b));
+  const Oracle oracle(nut, screw);
+  front.set_clearance(3e-6);
+  // 42 motions from one facet to the next, with a hand's tremor; down until the flanks stop it.
+  std::mt19937 rng(5);
+  double down = 5e-5;
+  Pose X;
+  std::vector<int> all;
+  for (int i = 0; i < 500; ++i) {
+    const double turn = 2 * kPi * i / (36 * 42);
+    const Quat q = rotation(Vec3(0, 0, turn) + random_in_ball(rng, 1e-5));
+    const Vec3 helix(0, 0, -0.003 + 0.0015 * turn / (2 * kPi));
+    int searches = 0;
+    CertifyReport r;
+    for (const double more : {4e-6, 0.0, -4e-6, -2e-5}) {
+      const Pose next{q, helix - Vec3(0, 0, down + more)};
+      if (i == 0) X = next;
+      const Displacement d = displacement(X, next, a->origin());
+      r = front.certify(X, d, {1 << 20, 8});
+      searches += r.searches;
+      if (r.status != CertifyStatus::certified) continue;
+      if (i % 16 == 0) CHECK(oracle.hits(X, a->origin(), d, 4) == 0);
+      X = next;
+      down += more;
+      break;
+    }
+    REQUIRE(r.status == CertifyStatus::certified);
+    if (i >= 100) all.push_back(searches);
+  }
+  CHECK(covers_once(*a, *b, [&](auto f) { front.for_each_pair(f); }));
+  // Half as many again when nothing is looked at ahead.
+  std::sort(all.begin(), all.end());
+  const int median = all[all.size() / 2], burst = all[all.size() * 98 / 100];
+  CAPTURE(median, burst, all.back());
+  CHECK(median > 200);
+  CHECK(burst < 5 * median);
 }
