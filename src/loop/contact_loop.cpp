@@ -286,7 +286,9 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
       return size(trial.d);
     }
     if (late()) {
-      trust_ = 0.5 * std::min(trust_, size(trial.d));
+      // What was begun in what other sub-steps left of the tick may need no more than a whole one: to go on with half
+      // of it in every tick would be to creep for good.
+      if (made_ == 0) trust_ = 0.5 * std::min(trust_, size(trial.d));
       return 0;
     }
     if (!take_in(trial.d)) break;

@@ -33,9 +33,29 @@ int grade(double share) {
 constexpr double kMotionFades = 0.9;
 /// One of so many cells that are used up is tried as a larger piece: that costs as much as to renew several.
 constexpr int kGrowStride = 4;
+/// Faces nearer than so many clearances are told when time ends before what blocks is found, and so many of them.
+constexpr double kTouch = 10;
+constexpr std::size_t kMostTold = 8;
+/// Cells in a sample; a motion leads away from a plane when it makes less than this cosine with it, and from all when
+/// it does so from this share of the planes.
+constexpr std::uint32_t kSample = 64;
+constexpr double kLeadsAway = 0.2, kMostAway = 0.75;
 /// The memory of a cell is asked for so many cells before it is needed; bytes of memory that come together.
 constexpr std::uint32_t kCellsAhead = 4;
 constexpr std::size_t kLineBytes = 64;
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+/// The face of B nearest to a piece of A at the search, or kNone.
+std::uint32_t nearest_face(const CellItems& items) {
+  std::uint32_t best = kNone;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::uint32_t i = 0; i < items.count; ++i) {
+    if ((items.item[i] & CellItems::kFace) == 0 || !(items.distance[i] < least)) continue;
+    best = items.item[i] & ~CellItems::kFace;
+    least = items.distance[i];
+  }
+  return best;
+}
 
 template <typename T>
 void prefetch(const T& what) {
@@ -150,6 +170,8 @@ CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const Wor
   start_motion(X, d);
   collect_due();
   settle_due();
+  const bool creeps = carried_ > 0 && carried_ < clearance_;
+  if (creeps && report_.exhausted && blocking_.empty() && past(limit_.deadline_ns)) tell_nearest();
   report_.searches = static_cast<int>((search_.visits() - visits_at_start_) / kVisitsPerSearch);
   if (!blocking_.empty()) {
     report_.status = CertifyStatus::blocked;
@@ -267,6 +289,21 @@ void CellFront::settle_due() {
   }
 }
 
+/// A part that creeps, since time ends before anything is found that blocks, may lie on what is nearest. Some of that
+/// is told as if it blocked, so that contacts are looked for there: else the last micrometer takes as long as all
+/// cells.
+void CellFront::tell_nearest() {
+  const double near = travel_ + kTouch * clearance_;
+  for (const Due& due : due_) {
+    const Node& node = nodes_[due.node];
+    if (node.due != call_ || !node.face_a || !(expiry_[node.slot] < near)) continue;
+    const std::uint32_t face = nearest_face(items_[node.slot]);
+    if (face == kNone) continue;
+    blocking_.push_back({node.part, node.a, face});
+    if (blocking_.size() == std::min<std::size_t>({kMostTold, limit_.blocking, blocking_.capacity()})) return;
+  }
+}
+
 CellFront::CellState CellFront::state_of(std::uint32_t id) {
   const Node& node = nodes_[id];
   const Slot& s = slots_[node.slot];
@@ -286,6 +323,22 @@ CellFront::CellState CellFront::state_of(std::uint32_t id) {
 bool CellFront::out_of_work(bool read_clock) {
   if ((search_.visits() - visits_at_start_) / kVisitsPerSearch > limit_.searches) return true;
   return read_clock && past(limit_.deadline_ns);
+}
+
+bool CellFront::leads_away(const Vec3& dp) const noexcept {
+  const double length = dp.norm();
+  const std::uint32_t stride = count() / kSample + 1;
+  int planes = 0, away = 0;
+  for (std::uint32_t slot = 0; slot < count(); slot += stride) {
+    const Slot& s = slots_[slot];
+    const Vec3 way = fixed_[s.part].pose.q.conjugate() * dp;
+    for (int k = 0; k < kCellPlanes; ++k) {
+      if (s.cell.offset[k] == std::numeric_limits<float>::lowest()) continue;
+      ++planes;
+      away += s.cell.normal(k).dot(way) > kLeadsAway * length;
+    }
+  }
+  return planes > 0 && away > kMostAway * planes;
 }
 
 double CellFront::one_sidedness(std::uint32_t part) const noexcept {

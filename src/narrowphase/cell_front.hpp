@@ -69,6 +69,9 @@ class CellFront {
   /// How far the surfaces of the held part and `part` face each other from one side: the length of the mean of the
   /// planes' normals, 1 on a flat seat, 0 in a hole. 0 where there are no cells.
   double one_sidedness(std::uint32_t part) const noexcept;
+  /// Whether a displacement `dp` (world) leads away from what the planes of a sample of the cells stand for, most of
+  /// it.
+  bool leads_away(const Vec3& dp) const noexcept;
   /// So many cells that none should be spent on what may never come.
   bool crowded() const;
   int cells() const { return static_cast<int>(count()); }
@@ -114,6 +117,7 @@ class CellFront {
   void collect_due();
   void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
+  void tell_nearest();
   CellState state_of(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id, bool cells_only);

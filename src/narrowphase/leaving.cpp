@@ -3,12 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "tegotae/core/clock.hpp"
+
 namespace tegotae {
 namespace {
 
-/// Where a motion leaves, few pairs tell (35 in the median of a sheet of 7000 triangles); where it does not, that many
-/// are lost.
-constexpr int kMostVisits = 128;
+/// Pairs between two looks at the clock.
+constexpr int kClockStride = 64;
 /// Of velocities, for the rounding of all that they are computed from.
 constexpr double kVelocitySlack = 1e-6;
 /// Half extents are in single precision, and axes are of unit length up to it.
@@ -57,10 +58,11 @@ Field field_of_a(const Sweep& w) {
 }  // namespace
 
 LeavingCheck::LeavingCheck() {
-  stack_.reserve(2 * kMostVisits);
+  stack_.reserve(2 * std::size_t{kMostVisits});
 }
 
-bool LeavingCheck::leaves(const LeavingSide& a, const Vec3& center, const LeavingSide& b, const Sweep& sweep) noexcept {
+bool LeavingCheck::leaves(const LeavingSide& a, const Vec3& center, const LeavingSide& b, const Sweep& sweep, int most,
+                          std::int64_t deadline_ns) noexcept {
   a_ = a;
   b_ = b;
   visits_ = 0;
@@ -72,7 +74,7 @@ bool LeavingCheck::leaves(const LeavingSide& a, const Vec3& center, const Leavin
   while (!stack_.empty()) {
     const Pair p = stack_.back();
     stack_.pop_back();
-    if (++visits_ > kMostVisits) return false;
+    if (++visits_ > most || (visits_ % kClockStride == 0 && past(deadline_ns))) return false;
     const PatchNode nb = p.face_b ? b.tree->face_box(p.b) : b.tree->nodes()[p.b];
     if (b.facing != nullptr && from_b.recedes(p.face_b ? b.facing->face(p.b) : b.facing->node(p.b),
                                               nb.center_vec() - sweep.start.t, radius_of(nb)))

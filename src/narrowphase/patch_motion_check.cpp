@@ -11,8 +11,9 @@ namespace {
 
 // Parts that can have fronts at once.
 constexpr std::size_t kMaxFronts = 32;
-// Where more parts of as many triangles at most are near, they are one for the cells: 2 µs for each at the start.
-constexpr std::size_t kMaxBundleFaces = 1u << 17;
+// Where more parts than these, of as many triangles at most, are near, they are one for the cells: 2 µs for each
+// triangle at the start. Until fewer than half of them are.
+constexpr std::size_t kMostApart = 16, kMaxBundleFaces = 1u << 18;
 // Pairs of all fronts together (about 400 bytes each, 550 where parts have a common axis), and the least and the most
 // of one.
 constexpr std::size_t kAllPairs = 1u << 18;
@@ -37,6 +38,8 @@ constexpr std::uint32_t kMaxExhausted = 6;
 // two times, and do not double meanwhile, are those of a part that slides along walls: each is looked for again in
 // every tick. A front of some 20 pairs for each of them has room.
 constexpr int kFewCells = 800;
+// With as many for each part the cells have hardly begun.
+constexpr int kCellsToBegin = 4;
 constexpr std::uint64_t kTicksBetween = 12;
 // So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
 // cells: they lie on each other over much of the part.
@@ -76,6 +79,12 @@ constexpr int kStandSearches = 1024;
 constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
+
+/// Where a motion leaves, few pairs tell (35 in the median of a sheet of 7000 triangles); where it does not, that many
+/// are lost. Walls of many parts take thousands, which is worth it when the cells are behind.
+constexpr int kFewPairs = 128;
+/// Ticks after which what was too much is tried again, at most.
+constexpr std::uint64_t kLongestWait = 32;
 
 /// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done or `idle_rounds` in
 /// a row have taken nothing apart.
@@ -154,18 +163,23 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   near_cells_.reserve(fixed.size() + 1);
 }
 
-/// For scenes of more parts than there are fronts. Bores and threads are not in it: their fronts are faster.
+/// For scenes of many parts. Bores and threads are not in it, since their fronts are faster, unless there are far more
+/// of them than fronts: what has some round surface may have an axis in common with everything.
 void PatchMotionCheck::make_bundle(const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                                    const std::vector<std::uint32_t>& left_out) {
-  if (effort_ == ProofEffort::quick || fixed.size() <= kMaxFronts) return;
+  if (effort_ == ProofEffort::quick || fixed.size() <= kMostApart) return;
+  const auto with_axes = static_cast<std::size_t>(
+      std::count_if(axes_.begin(), axes_.end(), [](const auto* axes) { return !axes->empty(); }));
+  const bool all = with_axes > 2 * kMaxFronts;
   std::vector<std::uint32_t> members;
   std::size_t faces = 0;
   for (std::uint32_t part = 0; part < fixed.size(); ++part) {
-    if (!axes_[part]->empty() || std::find(left_out.begin(), left_out.end(), part) != left_out.end()) continue;
+    if (!all && !axes_[part]->empty()) continue;
+    if (std::find(left_out.begin(), left_out.end(), part) != left_out.end()) continue;
     members.push_back(part);
     faces += fixed[part]->triangles.size();
   }
-  if (members.size() > kMaxFronts && faces <= kMaxBundleFaces) bundle_.emplace(fixed, poses_, members);
+  if (members.size() > kMostApart && faces <= kMaxBundleFaces) bundle_.emplace(fixed, poses_, members);
 }
 
 void PatchMotionCheck::make_bodies(const std::shared_ptr<const TriangleMesh>& held,
@@ -193,7 +207,7 @@ void PatchMotionCheck::make_bodies(const std::shared_ptr<const TriangleMesh>& he
 
 bool PatchMotionCheck::bundles() noexcept {
   if (!bundle_ || others_ == OtherParts::ignored) return false;
-  return near_.size() > (bundled_ ? kMaxFronts / 2 : kMaxFronts);
+  return near_.size() > (bundled_ ? kMostApart / 2 : kMostApart);
 }
 
 double PatchMotionCheck::longest_motion() const {
@@ -296,6 +310,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double 
     const CertifyReport report =
         ask_through(limit_.deadline_ns, kMaxRounds, [&] { return ask_cells(X, d, clearance); });
     overflow_ |= report.overflow;
+    behind_ = report.exhausted && limit_.deadline_ns != kNoDeadline;
     judge_cells(report);
     share_ = std::min(share_, report.share);
     for (const FacePair& pair : cells_->blocking())
@@ -324,6 +339,8 @@ const PatchMotionCheck::Sides& PatchMotionCheck::sides_of(std::uint32_t part, co
 
 bool PatchMotionCheck::only_leaves(const Pose& X, const Displacement& d, double clearance) noexcept {
   if (!trusted_ || (d.dp.isZero(0) && d.dr.isZero(0))) return false;
+  const bool thorough = behind_ && now_ >= retry_leaving_ && cells_->leads_away(d.dp);
+  const int most = thorough ? LeavingCheck::kMostVisits : kFewPairs;
   // Of many parts as one, all that are near.
   bool a_outside = true, b_outside = true;
   for (const std::uint32_t part : near_) {
@@ -344,9 +361,15 @@ bool PatchMotionCheck::only_leaves(const Pose& X, const Displacement& d, double 
     const Sweep sweep(pose.inverse() * X, {q * d.dp, q * d.dr}, center_, tree,
                       held_->radius() + (held_->origin() - center_).norm(), clearance);
     if (!leaving_.leaves({held_.get(), sides.b_outside ? held_body_.facing.get() : nullptr}, center_,
-                         {&tree, sides.a_outside ? facing : nullptr}, sweep))
+                         {&tree, sides.a_outside ? facing : nullptr}, sweep, most, limit_.deadline_ns)) {
+      if (thorough && leaving_.visits() > kFewPairs) {
+        wait_ = std::min(2 * wait_ + 2, kLongestWait);
+        retry_leaving_ = now_ + wait_;
+      }
       return false;
+    }
   }
+  wait_ = 0;
   return true;
 }
 
@@ -408,7 +431,8 @@ void PatchMotionCheck::judge_cells(const CertifyReport& report) noexcept {
   const bool begins = vain_.last + kTicksBetween < now_ || report.pairs > 2 * vain_.cells;
   if (begins) vain_ = {report.pairs, 0, 0};
   vain_.last = now_;
-  vain_.exhausted = report.pairs <= kFewCells ? vain_.exhausted + 1 : 0;
+  const bool begun = report.pairs > kCellsToBegin * static_cast<int>(near_cells_.size());
+  vain_.exhausted = begun && report.pairs <= kFewCells ? vain_.exhausted + 1 : 0;
   if (vain_.exhausted <= kMaxExhausted) return;
   for (const std::uint32_t part : near_cells_)
     if (choice_[part] == Certificate::cells) choice_[part] = Certificate::front_for_good;

@@ -143,9 +143,11 @@ class PatchMotionCheck final : public MotionCheck {
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part
   LeavingCheck leaving_;
-  bool trusted_ = false;  ///< see trust_start()
-  double edge_;           ///< mean of the held part's, m
-  double left_ = 0;       ///< how far A has come by motions that the cells were not asked about, m
+  bool behind_ = false;                         ///< the cells ran out of time when they were asked last
+  std::uint64_t wait_ = 0, retry_leaving_ = 0;  ///< ticks, and the one, until leaving is looked at thoroughly again
+  bool trusted_ = false;                        ///< see trust_start()
+  double edge_;                                 ///< mean of the held part's, m
+  double left_ = 0;  ///< how far A has come by motions that the cells were not asked about, m
   OtherParts others_ = OtherParts::ignored;
   std::vector<Certificate> choice_;  ///< of each part, for as long as it is near
   Vain vain_;

@@ -5,6 +5,7 @@
 #include "narrowphase/cell_front.hpp"
 #include "patch_oracle.hpp"
 #include "patch_scenes.hpp"
+#include "triangle_distance.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -390,6 +391,40 @@ TEST_CASE("blocking triangles of cells stand in the way", "[patch]") {
     }
     REQUIRE(low_a > high_b);
     REQUIRE(low_a + d.dp.z() <= high_b);
+  }
+}
+
+TEST_CASE("what a part that creeps lies on is told where time ends", "[patch]") {
+  const Scene scene = all_scenes().back();
+  constexpr double kClearance = 1.1e-6;
+  CellFront front = cells_of(scene);
+  front.set_near({0});
+  front.set_clearance(kClearance);
+  const auto down_from = [&](double height, double by, std::int64_t deadline_ns) {
+    const Pose X{Quat::Identity(), Vec3(0, 0, height)};
+    return front.certify(X, {Vec3(0, 0, -by), Vec3::Zero()}, {1 << 20, 32, deadline_ns});
+  };
+  constexpr std::int64_t kPast = 1;
+  // High above, and where it comes by more than it may lie above: nothing is told.
+  REQUIRE(down_from(2e-4, 1e-5, kNoDeadline).status == CertifyStatus::certified);
+  CHECK(down_from(2e-4, 1.5e-4, kPast).status == CertifyStatus::out_of_budget);
+  REQUIRE(down_from(1.6e-6, 0, kNoDeadline).status == CertifyStatus::certified);
+  CHECK(down_from(1.6e-6, 5e-6, kPast).status == CertifyStatus::out_of_budget);
+  CHECK(front.blocking().empty());
+  const CertifyReport report = down_from(1.6e-6, 8e-7, kPast);
+  CHECK(report.status == CertifyStatus::blocked);
+  CHECK(report.exhausted);
+  CHECK(report.share < 1);
+  REQUIRE(!front.blocking().empty());
+  CHECK(front.blocking().size() <= 8);
+  const Pose X{Quat::Identity(), Vec3(0, 0, 1.6e-6)};
+  for (const FacePair& pair : front.blocking()) {
+    std::array<Vec3, 3> a, b;
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = X * scene.a->vertices[scene.a->triangles[pair.a][k]];
+      b[k] = scene.b->vertices[scene.b->triangles[pair.b][k]];
+    }
+    CHECK(distance(a, b) < 10 * kClearance);
   }
 }
 

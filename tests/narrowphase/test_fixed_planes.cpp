@@ -183,3 +183,28 @@ TEST_CASE("planes on the hollow side last while facets slide on each other", "[p
   CHECK(ring_held < 2 * pin_held);
   CHECK(pin_held < 2 * ring_held);
 }
+
+TEST_CASE("no number of the wide check is subnormal, however small a turn is", "[patch]") {
+  // Such a number makes a check take ten times as long on some processors.
+  const MeshPtr mesh = box({0.02, 0.01, 0.005});
+  const PatchTree tree(mesh);
+  const Vec3 center(0.001, 0.002, 0);
+  std::mt19937 rng(5);
+  const PairSizes sizes{0.03, 0.03, 0.03, 0.03};
+  const auto normal = [](const auto& m) {
+    const auto good = [](auto x) { return std::fpclassify(x) != FP_SUBNORMAL; };
+    const auto all = [&](const auto& v) { return std::all_of(v.begin(), v.end(), good); };
+    return all(m.R0) && all(m.R1) && all(m.t0) && all(m.t1) && good(m.bulge) && good(m.bulge_offset) && good(m.error);
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const auto tiny = [&](int k) { return i % k == 0 ? 0.0 : std::pow(10.0, uniform(rng, -330, 0)); };
+    const Pose X{rotation(random_in_ball(rng, tiny(3))), random_in_ball(rng, tiny(5))};
+    const Displacement d{random_in_ball(rng, 1e-3 * tiny(7)), random_in_ball(rng, tiny(2))};
+    const Sweep sweep(X, d, center, tree, 0.03, i % 11 == 0 ? 0 : 1.1e-6);
+    for (const LaneSweep& seen : {seen_from_b(sweep, sizes), seen_from_a(sweep, sizes)}) {
+      REQUIRE(normal(seen.coarse));
+      REQUIRE(normal(seen.fine));
+      REQUIRE(seen.fine.bulge >= sweep.theta2 / 8);
+    }
+  }
+}

@@ -208,9 +208,11 @@ struct Couple {
     X = at(far);
     return oracle.distance(X) > 0.2 * gap && windings(*b, X * a->vertices[0]) < 0.5;
   }
-  bool leaves(const Pose& X, const Displacement& d, double clearance) {
+  bool leaves(const Pose& X, const Displacement& d, double clearance, int most = LeavingCheck::kMostVisits,
+              std::int64_t deadline_ns = kNoDeadline) {
     const Sweep sweep(X, d, center, *tree_b, reach, clearance);
-    return check.leaves({tree_a.get(), facing_a.get()}, center, {tree_b.get(), facing_b.get()}, sweep);
+    return check.leaves({tree_a.get(), facing_a.get()}, center, {tree_b.get(), facing_b.get()}, sweep, most,
+                        deadline_ns);
   }
 };
 
@@ -225,6 +227,11 @@ int judge_at(Couple& c, std::mt19937& rng, const Pose& X, const Vec3& from, int 
     if (k % 3 > 0) d.dr = std::pow(10.0, uniform(rng, -4, 0)) * length / kSize * (k % 3) * direction(rng);
     if (!c.leaves(X, d, kClearance)) continue;
     ++accepted;
+    // A part of the pairs is not enough, and no pair is looked at for long after the deadline.
+    const int pairs = c.check.visits();
+    CHECK(c.leaves(X, d, kClearance, pairs));
+    CHECK_FALSE(c.leaves(X, d, kClearance, pairs - 1));
+    CHECK(c.leaves(X, d, kClearance, pairs, 1) == (pairs < 64));
     CHECK(c.oracle.hits(X, c.center, d, poses) == 0);
     if (k % 8 == 0)
       CHECK(c.oracle.path_distance(X, c.center, d, poses) >= std::min(at_start, kClearance) * (1 - 1e-3) - 1e-9);
