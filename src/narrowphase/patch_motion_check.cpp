@@ -34,6 +34,8 @@ constexpr int kMaxRounds = 64, kMaxIdleRounds = 8;
 // cells would not be faster: what slides along walls uses up their distance to everything else.
 constexpr int kManyPairs = 10000;
 constexpr std::uint32_t kMaxExhausted = 6;
+// A full front is not emptied again for so many ticks.
+constexpr std::uint64_t kTicksBetweenEmptied = 100;
 // The other way round, so few cells that run out of time more often than that, with no more ticks than these between
 // two times, and do not double meanwhile, are those of a part that slides along walls: each is looked for again in
 // every tick. A front of some 20 pairs for each of them has room.
@@ -150,6 +152,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   part_of_.assign(fronts, kNobody);
   used_.assign(fronts, 0);
   exhausted_.assign(fronts, 0);
+  emptied_.assign(fronts, 0);
   ahead_.resize(fronts);
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
@@ -383,6 +386,19 @@ void PatchMotionCheck::forget_small_cells(const Displacement& d) noexcept {
   headway_.restart();
 }
 
+/// The front of parts that slide along each other holds what was taken apart and not put together again: where it is
+/// full it begins anew, which takes some milliseconds, since cells would be slower in every tick. Not again soon: then
+/// it is too small.
+bool PatchMotionCheck::empty_full_front(std::uint32_t part, const CertifyReport& report) noexcept {
+  const std::uint32_t front = front_of_[part];
+  const bool full = report.overflow && report.status == CertifyStatus::out_of_budget;
+  if (!full || axes_[part]->empty()) return false;
+  if (emptied_[front] > 0 && now_ < emptied_[front] + kTicksBetweenEmptied) return false;
+  emptied_[front] = now_;
+  fronts_[front].attach(*held_, center_, *fixed_[part], axes_[part]);
+  return true;
+}
+
 /// Parts whose fronts are too small or too slow go over to the cells.
 void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
                                   std::vector<FacePair>& blocking) noexcept {
@@ -392,8 +408,11 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
   for (const std::uint32_t part : near_fronts_) {
     limit_.blocking = blocking.size() < kEnoughBlocking ? kMaxBlocking : kFewBlocking;
     const auto ask = [&] { return ask_front(part, X, d, clearance, limit_); };
-    const CertifyReport report =
-        effort_ == ProofEffort::quick ? ask() : ask_through(limit_.deadline_ns, kMaxIdleRounds, ask);
+    const auto ask_all = [&] {
+      return effort_ == ProofEffort::quick ? ask() : ask_through(limit_.deadline_ns, kMaxIdleRounds, ask);
+    };
+    CertifyReport report = ask_all();
+    if (empty_full_front(part, report)) report = ask_all();
     std::uint32_t& exhausted = exhausted_[front_of_[part]];
     exhausted = report.status == CertifyStatus::out_of_budget ? exhausted + 1 : 0;
     const bool slides = !axes_[part]->empty();

@@ -96,6 +96,7 @@ class PatchMotionCheck final : public MotionCheck {
   void take_front(std::uint32_t part) noexcept;
   void move_to_cells(std::uint32_t part) noexcept;
   MotionAnswer ask(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
+  bool empty_full_front(std::uint32_t part, const CertifyReport& report) noexcept;
   void ask_fronts(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
   /// Sends parts back to fronts, from the next tick on, where cells do not pay.
   void judge_cells(const CertifyReport& report) noexcept;
@@ -130,6 +131,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<std::uint32_t> part_of_;    ///< of each front, kNobody while unused
   std::vector<std::uint32_t> front_of_;   ///< of each part, kNobody while it has none
   std::vector<std::uint64_t> used_;       ///< of each front: the begin() that last named its part
+  std::vector<std::uint64_t> emptied_;    ///< of each front: the begin() in which it began anew because it was full
   std::vector<std::uint32_t> exhausted_;  ///< of each front: calls in a row that ran out of time or work
   std::vector<Ahead> ahead_;              ///< of each front
   Headway headway_;                       ///< of the cells
