@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
@@ -44,10 +45,9 @@ constexpr double kLeadsAway = 0.2, kMostAway = 0.75;
 constexpr std::uint32_t kCellsAhead = 4;
 constexpr std::size_t kLineBytes = 64;
 
-constexpr std::uint32_t kNone = 0xffffffffu;
-/// The face of B nearest to a piece of A at the search, or kNone.
-std::uint32_t nearest_face(const CellItems& items) {
-  std::uint32_t best = kNone;
+/// The face of B nearest to a piece of A at the search.
+std::optional<std::uint32_t> nearest_face(const CellItems& items) {
+  std::optional<std::uint32_t> best;
   float least = std::numeric_limits<float>::infinity();
   for (std::uint32_t i = 0; i < items.count; ++i) {
     if ((items.item[i] & CellItems::kFace) == 0 || !(items.distance[i] < least)) continue;
@@ -297,9 +297,9 @@ void CellFront::tell_nearest() {
   for (const Due& due : due_) {
     const Node& node = nodes_[due.node];
     if (node.due != call_ || !node.face_a || !(expiry_[node.slot] < near)) continue;
-    const std::uint32_t face = nearest_face(items_[node.slot]);
-    if (face == kNone) continue;
-    blocking_.push_back({node.part, node.a, face});
+    const auto face = nearest_face(items_[node.slot]);
+    if (!face) continue;
+    blocking_.push_back({node.part, node.a, *face});
     if (blocking_.size() == std::min<std::size_t>({kMostTold, limit_.blocking, blocking_.capacity()})) return;
   }
 }

@@ -71,7 +71,7 @@ void PatchFront::attach(const PatchTree& a, const Vec3& center_A, const PatchTre
   splits_.clear();
   pool_used_ = 1;
   free_twos_ = free_fans_ = kNoPair;
-  cursor_ = 0;
+  cursor_ = slice_ = 0;
   debt_ = 0;
   asked_to_bend_ = bent_ = passed_over_ = 0;
   sizes_ = {node_reach(a.nodes()[0]), a.radius() + offset_a_.norm(),

@@ -226,6 +226,7 @@ void PatchMotionCheck::take_front(std::uint32_t part) noexcept {
   front_of_[part] = front;
   used_[front] = now_;
   exhausted_[front] = 0;
+  emptied_[front] = 0;
   ahead_[front] = Ahead{};
   fronts_[front].attach(*held_, center_, *fixed_[part], axes_[part]);
 }
