@@ -70,6 +70,7 @@ CellFront::CellFront(std::shared_ptr<const PatchTree> a, const Vec3& center, std
       center_(center),
       offset_a_(a_->origin() - center),
       reach_(0),
+      pieces_(*a_),
       fixed_(std::move(fixed)),
       capacity_(capacity),
       root_(fixed_.size(), kNobody),
@@ -129,19 +130,26 @@ void CellFront::forget_cut() noexcept {
   expiry_.clear();
   clear_until_.clear();
   root_.assign(root_.size(), kNobody);
+  nearest_ = kInfinity;
+  begun_ = call_;
 }
 
 void CellFront::set_near(const std::vector<std::uint32_t>& near) noexcept {
   ++now_;
   for (const std::uint32_t part : near) {
     asked_[part] = now_;
-    if (root_[part] != kNobody || count() == capacity_) continue;
-    const std::uint32_t id = allocate();
-    if (id == kNobody) continue;
-    root_[part] = id;
-    nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0, 0};
-    enter(id);
+    enter_root(part);
   }
+}
+
+/// Gives the part a cell for all of A, unless it has cells.
+void CellFront::enter_root(std::uint32_t part) {
+  if (root_[part] != kNobody || count() == capacity_) return;
+  const std::uint32_t id = allocate();
+  if (id == kNobody) return;
+  root_[part] = id;
+  nodes_[id] = {0, 0, part, kNobody, kNobody, kNobody, 0, false, false, 0, 0, 0};
+  enter(id);
 }
 
 void CellFront::foresee(const Displacement& d) noexcept {
@@ -180,6 +188,7 @@ CertifyReport CellFront::certify(const Pose& X, const Displacement& d, const Wor
   }
   if (report_.status == CertifyStatus::certified) report_.share = 1;
   raise();
+  if (!ahead_ && report_.exhausted && blocking_.empty()) begin_anew_where_far();
   report_.pairs = cells();
   return report_;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "narrowphase/certify.hpp"
 #include "narrowphase/face_pair.hpp"
 #include "narrowphase/patch_tree.hpp"
+#include "narrowphase/piece_counts.hpp"
 
 namespace tegotae {
 
@@ -118,6 +120,8 @@ class CellFront {
   void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
   void tell_nearest();
+  double typical_distance();
+  void begin_anew_where_far();
   CellState state_of(std::uint32_t id);
   Outcome settle(std::uint32_t top);
   CellSearch::Outcome search(std::uint32_t id, bool cells_only);
@@ -129,6 +133,7 @@ class CellFront {
   bool split(std::uint32_t id);
   void enter(std::uint32_t id, std::uint32_t like);
   void enter(std::uint32_t id);
+  void enter_root(std::uint32_t part);
   void leave(std::uint32_t slot);
   std::uint32_t count() const { return static_cast<std::uint32_t>(slots_.size()); }
   std::uint32_t allocate();
@@ -156,6 +161,7 @@ class CellFront {
   std::shared_ptr<const PatchTree> a_;
   Vec3 center_, offset_a_;
   double reach_;  ///< of A about its center of mass, m
+  PieceCounts pieces_;
   std::vector<FixedPart> fixed_;
   std::vector<std::shared_ptr<const PatchBatches>> batches_;  ///< of each part
   std::uint32_t capacity_;
@@ -184,8 +190,10 @@ class CellFront {
   Displacement foresight_;      ///< the motion that cells are looked for, if it is longer than that of the call
   double foreseen_length_ = 0;  ///< how far it carries any point, m
   double carried_ = 0;          ///< how far the motion of the call carries any point at most, m
-  double met_ = 1, kept_ = 1;   ///< see met(); what shortening has left of the foresight
-  std::vector<Sweep> sweeps_;   ///< of each part, valid when stamped with the call
+  double nearest_ = std::numeric_limits<double>::infinity();  ///< typical_distance(), the least since the cut began, m
+  std::uint64_t begun_ = 0;                                   ///< the call in which it began
+  double met_ = 1, kept_ = 1;                                 ///< see met(); what shortening has left of the foresight
+  std::vector<Sweep> sweeps_;                                 ///< of each part, valid when stamped with the call
   std::vector<std::uint64_t> stamped_;
   std::vector<Sweep> foreseen_;  ///< of each part: foresight_, valid when stamped
   std::vector<std::uint64_t> foreseen_stamped_;

@@ -313,6 +313,50 @@ TEST_CASE("a part that comes back to where it was finds cells of before", "[patc
   CHECK(go(seat) > 0.9 * first);
 }
 
+TEST_CASE("what goes off its seat and runs out of work begins anew with the pieces that it needs", "[patch]") {
+  const Scene scene{"sheet on its die",
+                    wave(0.1, 0.002, 0.05, 72),
+                    wave(0.1, 0.002, 0.05, 72),
+                    Vec3::Zero(),
+                    Pose{Quat::Identity(), Vec3(0, 0, 2e-4)},
+                    3e-4,
+                    0.004};
+  const PatchTree a(scene.a), b(scene.b);
+  const Oracle oracle(scene.a, scene.b);
+  constexpr double kSeat = 5e-6, kClearance = 1e-6;
+  CellFront front = cells_of(scene);
+  front.set_near({0});
+  front.set_clearance(kClearance);
+  Pose X = scene.start;
+  // Little work a call on the way down: nothing begins anew while it comes nearer.
+  int calls = 0, fewer = 0;
+  const auto go = [&](double z, double step, int searches) {
+    const double way = z < X.p.z() ? -1 : 1;
+    for (int i = 0; way * (z - X.p.z()) > 1e-6 && i < 4000; ++i, ++calls) {
+      const Displacement d{Vec3(0, 0, way * std::min(step, std::abs(z - X.p.z()))), Vec3::Zero()};
+      const int before = front.cells();
+      const CertifyReport report = front.certify(X, d, {searches});
+      fewer += front.cells() < before / 4;
+      if (i % 40 == 0) REQUIRE(oracle.hits(X, scene.center, report.share * d, 2) == 0);
+      X = displaced(X, scene.center, 0.999999 * report.share * d);
+    }
+    REQUIRE(oracle.distance(X) >= kClearance * (1 - 1e-5));
+    require_cover(front, a, b);
+  };
+  go(kSeat, 2e-5, 200);
+  CHECK(X.p.z() < 2 * kSeat);
+  CHECK(front.cells() > 8000);
+  CHECK(fewer == 0);
+  go(1e-3, 1e-4, 50);
+  CHECK(fewer == 1);
+  CHECK(X.p.z() > 0.99e-3);
+  CHECK(front.cells() < 3000);
+  // What it knows then is what a front knows that was never there.
+  go(kSeat, 2e-5, 1 << 20);
+  CHECK(X.p.z() < 2 * kSeat);
+  CHECK(fewer == 1);
+}
+
 TEST_CASE("a part at rest costs no search", "[patch]") {
   const Scene scene = all_scenes().back();
   CellFront front = cells_of(scene);

@@ -2,6 +2,7 @@
 
 #include "catch.hpp"
 #include "narrowphase/patch_tree.hpp"
+#include "narrowphase/piece_counts.hpp"
 #include "patch_shapes.hpp"
 #include "tegotae/core/error.hpp"
 
@@ -99,6 +100,50 @@ TEST_CASE("patches of a peg are as wide as their sagitta allows", "[patch]") {
   }
   const double ideal = 2 * kPi * R / std::sqrt(8 * R * t);
   REQUIRE(strips <= 3 * ideal + 2);
+}
+
+TEST_CASE("pieces are counted by how thick they may be", "[patch]") {
+  for (const MeshPtr& mesh : {peg(0.01, 0.04, 20000), knot(0.03, 0.004, 5000), box({0.01, 0.02, 0.03})}) {
+    const PatchTree tree(mesh);
+    const PieceCounts counts(tree);
+    const auto thickest = [&](std::uint32_t top) {
+      float most = 0;
+      std::vector<std::uint32_t> stack{top};
+      while (!stack.empty()) {
+        const PatchNode& n = tree.nodes()[stack.back()];
+        stack.pop_back();
+        most = std::max(most, n.half[2]);
+        if (n.leaf()) continue;
+        stack.push_back(n.first);
+        stack.push_back(n.first + 1);
+      }
+      return most;
+    };
+    /// Down from the root to nodes all of which is thin enough, or to leaves.
+    const auto walked = [&](double half_thickness) {
+      int pieces = 0;
+      std::vector<std::uint32_t> stack{0};
+      while (!stack.empty()) {
+        const std::uint32_t node = stack.back();
+        const PatchNode& n = tree.nodes()[node];
+        stack.pop_back();
+        if (n.leaf() || thickest(node) <= half_thickness) {
+          ++pieces;
+        } else {
+          stack.push_back(n.first);
+          stack.push_back(n.first + 1);
+        }
+      }
+      return pieces;
+    };
+    for (double half = 1e-10; half < 1; half *= 7) {
+      CAPTURE(half);
+      // Thicknesses within a fifth of each other count as one.
+      CHECK(counts.at(half) <= walked(half / 1.2));
+      CHECK(counts.at(half) >= walked(half * 1.2));
+    }
+    CHECK(counts.at(1) == 1);
+  }
 }
 
 TEST_CASE("a mesh without triangles has no hierarchy", "[patch]") {
