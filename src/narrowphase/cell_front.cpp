@@ -37,9 +37,8 @@ constexpr int kGrowStride = 4;
 /// Faces nearer than so many clearances are told when time ends before what blocks is found, and so many of them.
 constexpr double kTouch = 10;
 constexpr std::size_t kMostTold = 8;
-/// Cells in a sample; a motion leads away from a plane when it makes less than this cosine with it, and from all when
-/// it does so from this share of the planes.
-constexpr std::uint32_t kSample = 64;
+/// A motion leads away from a plane when it makes more than this cosine with its normal, and from all when it does so
+/// from this share of the planes.
 constexpr double kLeadsAway = 0.2, kMostAway = 0.75;
 /// The memory of a cell is asked for so many cells before it is needed; bytes of memory that come together.
 constexpr std::uint32_t kCellsAhead = 4;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "narrowphase/cell_anchor.hpp"
@@ -81,6 +82,8 @@ class CellFront {
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
+  /// Cells in a sample of all.
+  static constexpr std::uint32_t kSample = 64;
 
   /// A pair of a piece of A and a subtree of a fixed part; those without children have a cell.
   struct Node {
@@ -120,7 +123,7 @@ class CellFront {
   void anchor(std::uint32_t id, const CellGaps& gaps);
   void settle_due();
   void tell_nearest();
-  double typical_distance();
+  std::optional<double> typical_distance();
   void begin_anew_where_far();
   CellState state_of(std::uint32_t id);
   Outcome settle(std::uint32_t top);
@@ -160,8 +163,8 @@ class CellFront {
 
   std::shared_ptr<const PatchTree> a_;
   Vec3 center_, offset_a_;
-  double reach_;  ///< of A about its center of mass, m
-  PieceCounts pieces_;
+  double reach_;        ///< of A about its center of mass, m
+  PieceCounts pieces_;  ///< of `a_`
   std::vector<FixedPart> fixed_;
   std::vector<std::shared_ptr<const PatchBatches>> batches_;  ///< of each part
   std::uint32_t capacity_;

@@ -9,8 +9,6 @@ namespace {
 
 /// So many cells take longer to renew than a hand waits: 30 ms and more.
 constexpr std::uint32_t kManyCells = 8000;
-/// Cells in a sample, a quarter of which may be nearer than what is typical.
-constexpr std::uint32_t kSample = 64;
 /// All begins anew when the part is so many times as far away as it was, and when pieces that are as thick as this part
 /// of the distance would be so many times fewer; not again within so many calls.
 constexpr double kFarther = 8, kThickness = 1.0 / 3;
@@ -18,9 +16,9 @@ constexpr std::uint32_t kFewer = 4, kPause = 100;
 
 }  // namespace
 
-/// Distance from B that three quarters of the cells have, by what their planes lost since they were looked at; less
-/// than zero where few cells are known.
-double CellFront::typical_distance() {
+/// Distance from B that three quarters of a sample of the cells have, by what their planes lost since they were looked
+/// at, where enough of them are of parts that are near.
+std::optional<double> CellFront::typical_distance() {
   std::array<double, kSample> distance{};
   std::ptrdiff_t n = 0;
   const std::uint32_t stride = count() / kSample + 1;
@@ -29,7 +27,7 @@ double CellFront::typical_distance() {
     if (asked_[s.part] != now_) continue;
     distance[static_cast<std::size_t>(n++)] = anchored_gap(s.cell, anchors_[slot], sweep_of(s.part), turned_).start;
   }
-  if (n < static_cast<std::ptrdiff_t>(kSample) / 2) return -1;
+  if (n < static_cast<std::ptrdiff_t>(kSample) / 2) return std::nullopt;
   const auto quarter = distance.begin() + n / 4;
   std::nth_element(distance.begin(), quarter, distance.begin() + n);
   return *quarter;
@@ -40,11 +38,11 @@ double CellFront::typical_distance() {
 /// will be, and faces that come back find theirs.
 void CellFront::begin_anew_where_far() {
   if (count() < kManyCells) return;
-  const double typical = typical_distance();
-  if (!(typical > clearance_ && typical < reach_)) return;
-  nearest_ = std::min(nearest_, typical);
-  if (typical < kFarther * nearest_ || call_ < begun_ + kPause) return;
-  const int pieces = pieces_.at(kThickness * typical);
+  const auto typical = typical_distance();
+  if (!typical || !(*typical > clearance_ && *typical < reach_)) return;
+  nearest_ = std::min(nearest_, *typical);
+  if (*typical < kFarther * nearest_ || call_ < begun_ + kPause) return;
+  const int pieces = pieces_.at(kThickness * *typical);
   if (kFewer * static_cast<std::uint32_t>(pieces) > count()) return;
   forget_cut();
   for (std::uint32_t part = 0; part < fixed_.size(); ++part)

@@ -328,11 +328,10 @@ TEST_CASE("what goes off its seat and runs out of work begins anew with the piec
   front.set_near({0});
   front.set_clearance(kClearance);
   Pose X = scene.start;
-  // Little work a call on the way down: nothing begins anew while it comes nearer.
-  int calls = 0, fewer = 0;
+  int fewer = 0;
   const auto go = [&](double z, double step, int searches) {
     const double way = z < X.p.z() ? -1 : 1;
-    for (int i = 0; way * (z - X.p.z()) > 1e-6 && i < 4000; ++i, ++calls) {
+    for (int i = 0; way * (z - X.p.z()) > 1e-6 && i < 4000; ++i) {
       const Displacement d{Vec3(0, 0, way * std::min(step, std::abs(z - X.p.z()))), Vec3::Zero()};
       const int before = front.cells();
       // On the way down pieces are taken apart for what is ahead: they are smaller than they need to be yet.
@@ -345,6 +344,7 @@ TEST_CASE("what goes off its seat and runs out of work begins anew with the piec
     REQUIRE(oracle.distance(X) >= kClearance * (1 - 1e-5));
     require_cover(front, a, b);
   };
+  // Little work a call on the way down: nothing begins anew while it comes nearer.
   go(kSeat, 2e-5, 200);
   CHECK(X.p.z() < 2 * kSeat);
   CHECK(front.cells() > 8000);
@@ -353,7 +353,6 @@ TEST_CASE("what goes off its seat and runs out of work begins anew with the piec
   CHECK(fewer == 1);
   CHECK(X.p.z() > 0.99e-3);
   CHECK(front.cells() < 3000);
-  // What it knows then is what a front knows that was never there.
   go(kSeat, 2e-5, 1 << 20);
   CHECK(X.p.z() < 2 * kSeat);
   CHECK(fewer == 1);
