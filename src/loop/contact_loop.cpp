@@ -152,7 +152,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   if (near_.empty())
     move_in_air(Y, wanted, travel, report);
   else
-    move_near_parts(Y, travel, pen, report);
+    move_near_parts(Y, travel, pen_moved, report);
   at_.fill_report(margin_ / kMarginShare, report);
   // Where the kept gap has shrunk, contacts may hold the part a little above it.
   if (report.contacts == 0 && wanted > margin_ && report.gap <= *settings_.l_min)
@@ -196,12 +196,14 @@ void ContactLoop::move_in_air(const Pose& Y, double wanted, double travel, TickR
   owed_.reset();
 }
 
-void ContactLoop::move_near_parts(const Pose& Y, double travel, double pen, TickReport& report) {
+void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report) {
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
   at_.check->trust_start();
   if (track()) adapt_margin(Y);
+  at_.check->heads(pen, touches());
   trust_ = std::max(trust_, kMinTrust);
-  if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * pen));
+  if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
+  if (at_.check->prefers_long()) trust_ = substep_cap_;
   int shorter = 0;
   for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
     const double cap = std::min({trust_, substep_cap_, travel - made_});
@@ -273,16 +275,33 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
       return 0;
     }
     free = is_free(trial, report);
-    if (free) break;
+    if (const auto other = at_.check->instead()) {
+      trial.d = *other;
+      Trial part = trial;
+      scale(part, at_.check->free_share());
+      // Contacts turn a long motion into its obstacles where they curve.
+      if (!blocking_.empty()) trust_ = std::max({kProvedGrowth * size(part.d), kShorter * trust_, kMinTrust});
+      if (free) {
+        trial = part;
+        break;
+      }
+      if (size(part.d) > kRest) {
+        if (!leads_nearer(part, goal)) return 0;
+        if (!blocking_.empty()) owed_ = *other;
+        go_to(part);
+        return size(part.d);
+      }
+      if (blocking_.empty()) return 0;
+    } else if (free) {
+      break;
+    }
     if (late() && !blocking_.empty()) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
       // Out of time or work: what is proved of the motion is made, and the next sub-step is not much longer, or as long
       // as all that was proved in this tick.
       scale(trial, at_.check->free_share());
       trust_ = std::max({kProvedGrowth * size(trial.d), made_ + size(trial.d), kMinTrust});
-      X_ = trial.X;
-      tracked_ = false;
-      allowed_ = std::max(0.0, allowed_ - size(trial.d));
+      go_to(trial);
       return size(trial.d);
     }
     if (late()) {
@@ -304,10 +323,15 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
     query_around();
     return 0;
   }
-  X_ = trial.X;
-  tracked_ = queried_ = false;
-  allowed_ = std::max(0.0, allowed_ - size(trial.d));
+  go_to(trial);
+  queried_ = false;
   return size(trial.d);
+}
+
+void ContactLoop::go_to(const Trial& trial) {
+  X_ = trial.X;
+  tracked_ = false;
+  allowed_ = std::max(0.0, allowed_ - size(trial.d));
 }
 
 bool ContactLoop::take_in(const Displacement& d) {
@@ -362,6 +386,18 @@ bool ContactLoop::is_free(const Trial& trial, TickReport& report) {
   const MotionAnswer answer = at_.check->check(X_, trial.d, kGapFloor, blocking_);
   report.flags.timed_out |= answer == MotionAnswer::unknown;
   return answer == MotionAnswer::free;
+}
+
+bool ContactLoop::touches() const {
+  const auto& constraints = at_.contacts->constraints();
+  return std::any_of(constraints.begin(), constraints.end(),
+                     [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= margin_ / kMarginShare; });
+}
+
+/// What was asked for in another tick may lead away by now.
+bool ContactLoop::leads_nearer(const Trial& trial, const Pose& goal) const {
+  return metric_.whiten(displacement(trial.X, goal, center_)).squaredNorm() <
+         metric_.whiten(displacement(X_, goal, center_)).squaredNorm();
 }
 
 void ContactLoop::scale(Trial& trial, double share) const {

@@ -73,6 +73,9 @@ class ContactLoop final : public ProxyLoop {
   bool take_in(const Displacement& d);
   bool shorten(Trial& trial, TickReport& report);
   /// Shortens the trial to `share` of it.
+  void go_to(const Trial& trial);
+  bool touches() const;
+  bool leads_nearer(const Trial& trial, const Pose& goal) const;
   void scale(Trial& trial, double share) const;
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);
@@ -80,7 +83,7 @@ class ContactLoop final : public ProxyLoop {
   /// The motion of a tick in which nothing is near: at most `travel` (m) of the `wanted` (m) to Y.
   void move_in_air(const Pose& Y, double wanted, double travel, TickReport& report);
   /// The sub-steps of a tick among near parts, at most `travel` (m), under a pen that moved by `pen` (m).
-  void move_near_parts(const Pose& Y, double travel, double pen, TickReport& report);
+  void move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report);
   /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);
   /// Adapts the margin of contacts to the clearance of the fit.

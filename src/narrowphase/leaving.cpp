@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "narrowphase/receding.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -10,49 +11,12 @@ namespace {
 
 /// Pairs between two looks at the clock.
 constexpr int kClockStride = 64;
-/// Of velocities, for the rounding of all that they are computed from.
-constexpr double kVelocitySlack = 1e-6;
 /// Half extents are in single precision, and axes are of unit length up to it.
 constexpr double kBoxSlack = 1 + 1e-6;
 
 double radius_of(const PatchNode& n) {
   return kBoxSlack *
          std::sqrt(double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2]);
-}
-
-/// What a face sees of the motion: the velocity of the other part's points, in the face's own frame.
-struct Field {
-  Vec3 dp, dr;
-  double sign;      ///< of the velocity as the face sees it
-  double center;    ///< how far the velocity of the center of mass is off `dp` at most, m
-  double distance;  ///< from which the other part's points count as near, m
-
-  /// Whether all faces under the cone recede from all points within `radius` of `at` (from the center of mass, at the
-  /// start).
-  bool recedes(const NormalCone& cone, const Vec3& at, double radius) const {
-    const Vec3 v = sign * (dp + dr.cross(at));
-    const double slack = kVelocitySlack * (dp.norm() + dr.norm() * (at.norm() + radius));
-    return cone.least(v) > dr.norm() * (radius + distance) + center + slack;
-  }
-};
-
-/// The velocity of the center of mass along the other reading of the path (see Sweep) is off by this at most: it is
-/// the difference of ω × R(s)c and its mean over the motion.
-double other_reading(const Sweep& w) {
-  return 0.5 * w.theta2 * w.center_distance;
-}
-
-/// Seen from B: A's point at x has the velocity dp + dr × (x − c), c = c0 + s dp up to what the other reading leaves.
-Field field_of_b(const Sweep& w) {
-  const double center = other_reading(w) + w.theta * (w.dp.norm() + 0.125 * w.theta2 * w.center_distance);
-  return {w.dp, w.dr, 1, center, w.floor};
-}
-
-/// Seen from A, whose axes turn by s θ: B's point at p has the velocity −(R(s)ᵀ dp + dr × p), where dr keeps its
-/// direction and R(s)ᵀ dp leaves R(0)ᵀ dp by at most θ |dp|.
-Field field_of_a(const Sweep& w) {
-  const double center = other_reading(w) + w.theta * w.dp.norm();
-  return {w.start.R.transpose() * w.dp, w.start.R.transpose() * w.dr, -1, center, w.floor};
 }
 
 }  // namespace
@@ -67,7 +31,7 @@ bool LeavingCheck::leaves(const LeavingSide& a, const Vec3& center, const Leavin
   b_ = b;
   visits_ = 0;
   if (a.facing == nullptr && b.facing == nullptr) return false;
-  const Field from_a = field_of_a(sweep), from_b = field_of_b(sweep);
+  const PassingPoints from_a = PassingPoints::seen_from_a(sweep), from_b = PassingPoints::seen_from_b(sweep);
   const Vec3 offset = a.tree->origin() - center;
   stack_.clear();
   stack_.push_back({0, 0, false, false});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "narrowphase/face_pair.hpp"
@@ -34,6 +35,10 @@ class MotionCheck {
   virtual void trust_start() noexcept {}
   /// A is where no motion that was checked has brought it.
   virtual void jumped() noexcept {}
+  /// Until the next begin(): in a tick the pen goes on by `pen` about, and A `touches` something or not.
+  virtual void heads(const Displacement& pen, bool touches) noexcept {
+    static_cast<void>(pen), static_cast<void>(touches);
+  }
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;
@@ -43,7 +48,13 @@ class MotionCheck {
   virtual void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept {
     static_cast<void>(X), static_cast<void>(next), static_cast<void>(deadline_ns);
   }
-  /// Part of the last check()'s motion, from its start, that may be made whatever the answer; in [0, 1].
+  /// The motion that the last check() answered for instead of the one that it was asked for: an earlier one from the
+  /// same pose, which took it more than a tick. What stops it is to be looked for at its end.
+  virtual std::optional<Displacement> instead() const { return std::nullopt; }
+  /// The next check() takes as long however far the motion goes.
+  virtual bool prefers_long() const { return false; }
+  /// Part of the motion that the last check() answered for, from its start, that may be made whatever the answer; in
+  /// [0, 1].
   virtual double free_share() const = 0;
   /// Whether A at `X` comes no nearer than `clearance` (m) to fixed part `part`, whether that matters or not; unknown
   /// after `deadline_ns`. To be called before begin(), which the next check() needs anew.

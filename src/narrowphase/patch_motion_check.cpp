@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "narrowphase/patch_cache.hpp"
+#include "tegotae/core/clock.hpp"
 
 namespace tegotae {
 namespace {
@@ -81,6 +82,11 @@ constexpr int kStandSearches = 1024;
 constexpr double kLongestShare = 0.1;
 // A share of a motion that was not certified as a whole is taken a little shorter, for rounding.
 constexpr double kShareKept = 0.999;
+// Where cells or fronts were behind, they have this part of a tick before the motion is looked at as a whole, and what
+// they prove of it is made if it is no less than that share.
+constexpr double kShareBehind = 0.3, kSharePays = 0.5;
+// The share of a tick's spare time that goes to the way ahead.
+constexpr double kWayShare = 0.7;
 
 /// Where a motion leaves, few pairs tell (35 in the median of a sheet of 7000 triangles); where it does not, that many
 /// are lost. Walls of many parts take thousands, which is worth it when the cells are behind.
@@ -122,6 +128,8 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       effort_(effort),
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
+      way_(center, radius, fixed.size() + 1),
+      next_way_(center, radius, fixed.size() + 1),
       edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
   if (effort_ == ProofEffort::full) pairing_.emplace(held_);
@@ -157,6 +165,8 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
+  if (effort_ == ProofEffort::full)
+    sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, kMaxBlocking);
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
   choice_.assign(fixed.size(), Certificate::front);
@@ -164,6 +174,12 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   near_.reserve(fixed.size());
   near_fronts_.reserve(fixed.size());
   near_cells_.reserve(fixed.size() + 1);
+  swept_.reserve(fixed.size() + 1);
+  outside_.reserve(fixed.size() + 1);
+  left_out_.assign(fixed.size(), false);
+  for (const std::uint32_t part : left_out) left_out_[part] = true;
+  met_.reserve(kMaxBlocking);
+  next_met_.reserve(kMaxBlocking);
 }
 
 /// For scenes of many parts. Bores and threads are not in it, since their fronts are faster, unless there are far more
@@ -299,34 +315,76 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   return check(X, d, clearance, blocking);
 }
 
-MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& d, double clearance,
+MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, double clearance,
                                    std::vector<FacePair>& blocking) noexcept {
   share_ = 1;
-  ask_fronts(X, d, clearance, blocking);
+  clearance_ = clearance;
+  instead_.reset();
+  count_still(X);
+  if (sweeping_ && sweeps(X, wanted)) return ask_sweep(wanted, blocking);
+  sweeping_ = false;
+  if (goes_along(X, wanted, blocking)) return answer(blocking);
+  instead_ = onto_way(X, wanted);
+  const Displacement d = instead_ ? *instead_ : wanted;
+  const std::int64_t deadline_ns = limit_.deadline_ns;
+  const bool may_sweep = behind_for_ >= kTicksBehind && sweep_ && deadline_ns != kNoDeadline && size(d) > 0;
+  if (may_sweep) {
+    const std::int64_t now_ns = monotonic_ns();
+    limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));
+  }
+  const bool fronts_behind = ask_fronts(X, d, clearance, blocking);
   if (!near_cells_.empty() && effort_ == ProofEffort::quick) {
     share_ = 0;
   } else if (!near_cells_.empty() && only_leaves(X, d, clearance)) {
     forget_small_cells(d);
-  } else if (!near_cells_.empty()) {
-    left_ = 0;
-    limit_.searches = kCellSearches;
-    limit_.blocking = kMaxBlocking;
-    const CertifyReport report =
-        ask_through(limit_.deadline_ns, kMaxRounds, [&] { return ask_cells(X, d, clearance); });
-    overflow_ |= report.overflow;
-    behind_ = report.exhausted && limit_.deadline_ns != kNoDeadline;
-    judge_cells(report);
-    share_ = std::min(share_, report.share);
-    for (const FacePair& pair : cells_->blocking())
-      if (blocking.size() < blocking.capacity())
-        blocking.push_back(pair.part < fixed_.size() ? pair : bundle_->of_part(pair));
+  } else {
+    behind_ = fronts_behind;
+    if (!near_cells_.empty()) behind_ |= ask_all_cells(X, d, clearance, blocking);
   }
+  limit_.deadline_ns = deadline_ns;
+  behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
+  behind_since_ = now_;
+  if (behind_ && may_sweep && (stands_still() || (share_ < kSharePays && blocking.empty()))) {
+    blocking.clear();
+    // What was begun ahead of it may have come to here.
+    if (!looks_ahead_ || !sweeps(X, wanted)) begin_sweep(X, wanted, clearance);
+    sweeping_ = true;
+    looks_ahead_ = false;
+    return ask_sweep(wanted, blocking);
+  }
+  return answer(blocking);
+}
+
+bool PatchMotionCheck::ask_all_cells(const Pose& X, const Displacement& d, double clearance,
+                                     std::vector<FacePair>& blocking) noexcept {
+  limit_.searches = kCellSearches;
+  limit_.blocking = kMaxBlocking;
+  const CertifyReport report = ask_through(limit_.deadline_ns, kMaxRounds, [&] { return ask_cells(X, d, clearance); });
+  overflow_ |= report.overflow;
+  const bool behind = report.exhausted && limit_.deadline_ns != kNoDeadline;
+  if (!behind) left_ = 0;
+  judge_cells(report);
+  share_ = std::min(share_, report.share);
+  tell(cells_->blocking(), blocking);
+  return behind;
+}
+
+MotionAnswer PatchMotionCheck::answer(std::vector<FacePair>& blocking) noexcept {
   if (share_ == 1 && blocking.empty()) return MotionAnswer::free;
   share_ *= kShareKept;
   return blocking.empty() ? MotionAnswer::unknown : MotionAnswer::blocked;
 }
 
+void PatchMotionCheck::tell(const std::vector<FacePair>& pairs, std::vector<FacePair>& blocking) const noexcept {
+  for (const FacePair& pair : pairs)
+    if (blocking.size() < blocking.capacity())
+      blocking.push_back(pair.part < fixed_.size() ? pair : bundle_->of_part(pair));
+}
+
 void PatchMotionCheck::jumped() noexcept {
+  way_.drop();
+  next_way_.drop();
+  sweeping_ = looks_ahead_ = false;
   sides_.assign(sides_.size(), Sides{});
 }
 
@@ -401,9 +459,9 @@ bool PatchMotionCheck::empty_full_front(std::uint32_t part, const CertifyReport&
 }
 
 /// Parts whose fronts are too small or too slow go over to the cells.
-void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
+bool PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double clearance,
                                   std::vector<FacePair>& blocking) noexcept {
-  bool moved = false;
+  bool moved = false, behind = false;
   const bool timed = limit_.deadline_ns != kNoDeadline;
   limit_.searches = kFrontSearches;
   for (const std::uint32_t part : near_fronts_) {
@@ -416,6 +474,7 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
     if (empty_full_front(part, report)) report = ask_all();
     std::uint32_t& exhausted = exhausted_[front_of_[part]];
     exhausted = report.status == CertifyStatus::out_of_budget ? exhausted + 1 : 0;
+    behind = behind || (timed && exhausted > 0);
     const bool slides = !axes_[part]->empty();
     const bool tried = choice_[part] == Certificate::front_for_good;
     if ((exhausted > kMaxExhausted && report.pairs > kManyPairs && !slides && !tried) ||
@@ -434,7 +493,11 @@ void PatchMotionCheck::ask_fronts(const Pose& X, const Displacement& d, double c
       if (blocking.size() < blocking.capacity()) blocking.push_back({part, pair.face_a, pair.face_b});
     if (report.exhausted && past(limit_.deadline_ns)) break;
   }
-  if (!moved) return;
+  if (moved) fronts_left();
+  return behind;
+}
+
+void PatchMotionCheck::fronts_left() noexcept {
   near_fronts_.erase(std::remove_if(near_fronts_.begin(), near_fronts_.end(),
                                     [this](std::uint32_t part) { return choice_[part] == Certificate::cells; }),
                      near_fronts_.end());
@@ -530,6 +593,10 @@ void PatchMotionCheck::prepare(const Pose& X, const Displacement& next, std::int
   limit_.deadline_ns = deadline_ns;
   limit_.blocking = 1;
   prepare_fronts(X);
+  const std::int64_t now_ns = monotonic_ns();
+  limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kWayShare * static_cast<double>(deadline_ns - now_ns));
+  prepare_way(X);
+  limit_.deadline_ns = deadline_ns;
   prepare_cells(X, next);
 }
 

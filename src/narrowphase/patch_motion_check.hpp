@@ -12,6 +12,8 @@
 #include "narrowphase/motion_check.hpp"
 #include "narrowphase/part_bundle.hpp"
 #include "narrowphase/patch_front.hpp"
+#include "narrowphase/proved_way.hpp"
+#include "narrowphase/surface_sweep.hpp"
 
 namespace tegotae {
 
@@ -39,9 +41,15 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   void trust_start() noexcept override { trusted_ = true; }
   void jumped() noexcept override;
+  void heads(const Displacement& pen, bool touches) noexcept override {
+    pen_ = pen;
+    touches_ = touches;
+  }
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
+  std::optional<Displacement> instead() const override { return instead_; }
+  bool prefers_long() const override { return behind_for_ >= kTicksBehind && (!touches_ || stands_still()); }
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -50,6 +58,10 @@ class PatchMotionCheck final : public MotionCheck {
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
+  /// Where cells or fronts were behind in so many ticks in a row, motions through the air are looked at as a whole.
+  static constexpr int kTicksBehind = 2;
+  /// What has not moved for so many ticks meanwhile has to be looked at as a whole.
+  static constexpr int kTicksStill = 8;
 
   /// What a near part is certified by.
   enum class Certificate : std::uint8_t {
@@ -96,8 +108,33 @@ class PatchMotionCheck final : public MotionCheck {
   void take_front(std::uint32_t part) noexcept;
   void move_to_cells(std::uint32_t part) noexcept;
   MotionAnswer ask(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
+  MotionAnswer answer(std::vector<FacePair>& blocking) noexcept;
+  void tell(const std::vector<FacePair>& pairs, std::vector<FacePair>& blocking) const noexcept;
+  /// Whether a motion is looked at as a whole that begins at `X` and is not worse than `d`.
+  bool sweeps(const Pose& X, const Displacement& d) const noexcept;
+  void count_still(const Pose& X) noexcept;
+  bool stands_still() const { return still_for_ >= kTicksStill; }
+  bool may_go_along() const noexcept;
+  /// Whether A goes along the way that is proved, which makes most of `d`.
+  bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
+  void fronts_left() noexcept;
+  bool same_way(const Displacement& a, const Displacement& b) const noexcept;
+  /// From beside the way: most of `d`, onto it.
+  std::optional<Displacement> onto_way(const Pose& X, const Displacement& d) const noexcept;
+  /// How far A is from where `d` leads when it has made another motion, m.
+  double left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept;
+  void begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
+  /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
+  /// else.
+  void find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
+  /// Whether those that a way or a sweep is about are all that are near.
+  bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
+  double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
+  MotionAnswer ask_sweep(const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   bool empty_full_front(std::uint32_t part, const CertifyReport& report) noexcept;
-  void ask_fronts(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
+  /// Whether time was over; the same of ask_all_cells().
+  bool ask_fronts(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
+  bool ask_all_cells(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
   /// Sends parts back to fronts, from the next tick on, where cells do not pay.
   void judge_cells(const CertifyReport& report) noexcept;
   CertifyReport ask_front(std::uint32_t part, const Pose& X, const Displacement& d, double clearance,
@@ -111,6 +148,8 @@ class PatchMotionCheck final : public MotionCheck {
   void forget_small_cells(const Displacement& d) noexcept;
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;
+  void prepare_way(const Pose& X) noexcept;
+  void finish_way() noexcept;
   CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// Asks for ever more clearance at rest by `ask`, until something is nearer or time is over.
   template <typename Ask>
@@ -145,7 +184,25 @@ class PatchMotionCheck final : public MotionCheck {
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part
   LeavingCheck leaving_;
-  bool behind_ = false;                         ///< the cells ran out of time when they were asked last
+  bool behind_ = false;                   ///< the cells ran out of time when they were asked last
+  std::unique_ptr<SurfaceSweep> sweep_;   ///< what takes their place then
+  ProvedWay way_, next_way_;              ///< of it; the next one begins where that ends, or is not known
+  std::vector<std::uint32_t> swept_;      ///< parts
+  std::vector<bool> outside_;             ///< of each of them: see SurfaceSweep::begin()
+  std::vector<bool> left_out_;            ///< of each part: it may be
+  std::vector<FacePair> met_, next_met_;  ///< at their ends
+  double clearance_ = 0;                  ///< of the last check, m
+  bool looks_ahead_ = false;              ///< it is at a way that A has not come to yet
+  double lead_ = 1;                       ///< share of the ticks that it takes that such a way begins ahead
+  Displacement pen_;                      ///< see heads()
+  int behind_for_ = 0;                    ///< ticks in a row, up to
+  std::uint64_t behind_since_ = 0;        ///< the begin() of the last of them
+  int still_for_ = 0;                     ///< ticks in a row in which A stood at still_X_ and they were behind
+  Pose still_X_;
+  std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
+  bool touches_ = false;           ///< see heads()
+  bool sweeping_ = false;          ///< it was begun, and its answer not yet given
+  std::optional<Displacement> instead_;
   std::uint64_t wait_ = 0, retry_leaving_ = 0;  ///< ticks, and the one, until leaving is looked at thoroughly again
   bool trusted_ = false;                        ///< see trust_start()
   double edge_;                                 ///< mean of the held part's, m

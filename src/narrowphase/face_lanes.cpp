@@ -1,0 +1,225 @@
+#include "narrowphase/face_lanes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "narrowphase/wide.hpp"
+
+namespace tegotae {
+namespace {
+
+/// Rounding of a gap in single precision, as a share of the sum of all coordinates that it comes from: a dozen
+/// operations and four numbers that were rounded, of 6e-8 each, along normals that are no axes.
+constexpr float kGapError = 4e-6F;
+
+/// Conditions on vectors longer than a register would go number by number.
+constexpr std::uint32_t kLane = 8;
+typedef float Lane __attribute__((vector_size(kLane * sizeof(float)), may_alias));
+typedef std::int32_t LaneBits __attribute__((vector_size(kLane * sizeof(float)), may_alias));
+static_assert(kBlockFaces == 2 * kLane);
+
+struct Lanes3 {
+  Lane x, y, z;
+};
+
+TEGOTAE_INLINE Lane load(const FaceLanes::Field& field, std::uint32_t first) {
+  return *reinterpret_cast<const Lane*>(field.data() + first);
+}
+TEGOTAE_INLINE Lanes3 load3(const std::array<FaceLanes::Field, 3>& f, std::uint32_t first) {
+  return {load(f[0], first), load(f[1], first), load(f[2], first)};
+}
+TEGOTAE_INLINE Lane lesser(Lane a, Lane b) {
+  return a < b ? a : b;
+}
+TEGOTAE_INLINE Lane greater(Lane a, Lane b) {
+  return a > b ? a : b;
+}
+TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<float, 3>& b) {
+  return a.x * b[0] + a.y * b[1] + a.z * b[2];
+}
+
+/// The greatest of the gaps, along some directions, between `a` and eight faces of `b`.
+TEGOTAE_INLINE Lane gaps(const MovedFace& a, const FaceLanes& b, std::uint32_t first,
+                         const std::array<float, 3>& shift) {
+  Lane gap = greater(load(b.low[0], first) - (a.high[0] + shift[0]), (a.low[0] + shift[0]) - load(b.high[0], first));
+  for (std::size_t i = 1; i < 3; ++i) {
+    gap = greater(gap, load(b.low[i], first) - (a.high[i] + shift[i]));
+    gap = greater(gap, (a.low[i] + shift[i]) - load(b.high[i], first));
+  }
+  const float up = a.normal[0] * shift[0] + a.normal[1] * shift[1] + a.normal[2] * shift[2];
+  const Lane p = dot(load3(b.corner[0], first), a.normal), q = dot(load3(b.corner[1], first), a.normal),
+             r = dot(load3(b.corner[2], first), a.normal);
+  gap = greater(gap, (a.normal_low + up) - greater(greater(p, q), r));
+  gap = greater(gap, lesser(lesser(p, q), r) - (a.normal_high + up));
+  const Lanes3 n = load3(b.normal, first);
+  Lane low = dot(n, a.corner[0]), high = low;
+  for (std::size_t k = 1; k < 6; ++k) {
+    const Lane at = dot(n, a.corner[k]);
+    low = lesser(low, at);
+    high = greater(high, at);
+  }
+  const Lane moved = dot(n, shift);
+  gap = greater(gap, low + moved - load(b.normal_high, first));
+  return greater(gap, load(b.normal_low, first) - (high + moved));
+}
+
+TEGOTAE_WIDE std::uint32_t below(const MovedFace& a, const FaceLanes& b, const std::array<float, 3>& shift,
+                                 float floor) {
+  const LaneBits first = (LaneBits)(gaps(a, b, 0, shift) < floor), last = (LaneBits)(gaps(a, b, kLane, shift) < floor);
+  const LaneBits any = first | last;
+  std::array<std::uint64_t, kLane / 2> in_pairs;
+  std::memcpy(in_pairs.data(), &any, sizeof any);
+  // Mostly none.
+  if ((in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) == 0) return 0;
+  std::uint32_t out = 0;
+  for (std::uint32_t k = 0; k < kLane; ++k)
+    out |= (static_cast<std::uint32_t>(first[k]) & 1U) << k | (static_cast<std::uint32_t>(last[k]) & 1U) << (kLane + k);
+  return out;
+}
+
+/// Directions across edges: of each with each, and across those of both faces in their planes; one is there twice.
+constexpr std::uint32_t kAcross = 16;
+typedef std::array<std::array<float, kAcross>, 3> Across;
+
+/// The greatest of the gaps along eight directions has at least `floor` along its own.
+TEGOTAE_INLINE bool any_apart(const Across& left, const Across& right, std::uint32_t first,
+                              const std::array<std::array<float, 3>, 6>& p,
+                              const std::array<std::array<float, 3>, 3>& q, float floor2) {
+  const auto at = [first](const std::array<float, kAcross>& x) {
+    return *reinterpret_cast<const Lane*>(x.data() + first);
+  };
+  const Lanes3 l = {at(left[0]), at(left[1]), at(left[2])}, r = {at(right[0]), at(right[1]), at(right[2])};
+  const Lanes3 n = {l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
+  Lane low = dot(n, p[0]), high = low;
+  for (std::size_t k = 1; k < 6; ++k) {
+    const Lane x = dot(n, p[k]);
+    low = lesser(low, x);
+    high = greater(high, x);
+  }
+  const Lane x = dot(n, q[0]), y = dot(n, q[1]), z = dot(n, q[2]);
+  const Lane gap = greater(low - greater(greater(x, y), z), lesser(lesser(x, y), z) - high);
+  const Lane positive = greater(gap, Lane{}), square = positive * positive;
+  // Squares below are too near to the least numbers of single precision.
+  const Lane least = greater((n.x * n.x + n.y * n.y + n.z * n.z) * floor2, Lane{} + 1e-36F);
+  const LaneBits apart = square > least;
+  std::array<std::uint64_t, kLane / 2> in_pairs;
+  std::memcpy(in_pairs.data(), &apart, sizeof apart);
+  return (in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) != 0;
+}
+
+TEGOTAE_WIDE bool across_edges(const Across& left, const Across& right, const std::array<std::array<float, 3>, 6>& p,
+                               const std::array<std::array<float, 3>, 3>& q, float floor2) {
+  return any_apart(left, right, 0, p, q, floor2) || any_apart(left, right, kLane, p, q, floor2);
+}
+
+typedef std::array<float, 3> Float3;
+
+Float3 difference(const Float3& x, const Float3& y) {
+  return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+}
+
+/// Of unit length, about; zero for a face without one. Any direction will do that keeps faces apart.
+Float3 normal_of(const Float3& p, const Float3& q, const Float3& r) {
+  const Float3 x = difference(q, p), y = difference(r, p);
+  const Float3 n = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  if (!(square > std::numeric_limits<float>::min())) return {0, 0, 0};
+  const float scale = 1 / std::sqrt(square);
+  return {scale * n[0], scale * n[1], scale * n[2]};
+}
+
+float largest(const Vec3& v) {
+  return static_cast<float>(v.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block) {
+  const AxisBox& box = blocks.boxes(0)[block];
+  for (std::size_t i = 0; i < 3; ++i)
+    origin[static_cast<Eigen::Index>(i)] = 0.5 * (double{box.low[i]} + double{box.high[i]});
+  for (std::uint32_t k = 0; k < kBlockFaces; ++k) {
+    const std::uint32_t face = blocks.face(block, std::min(k, blocks.faces(block) - 1));
+    std::array<Float3, 3> p;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3 at = tree.corner(face, static_cast<int>(c)) - tree.origin() - origin;
+      p[c] = {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())};
+    }
+    const Float3 n = normal_of(p[0], p[1], p[2]);
+    Float3 along{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      normal[i][k] = n[i];
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner[c][i][k] = p[c][i];
+        along[c] += n[i] * p[c][i];
+      }
+      low[i][k] = std::min({p[0][i], p[1][i], p[2][i]});
+      high[i][k] = std::max({p[0][i], p[1][i], p[2][i]});
+      size = std::max({size, -low[i][k], high[i][k]});
+    }
+    normal_low[k] = std::min({along[0], along[1], along[2]});
+    normal_high[k] = std::max({along[0], along[1], along[2]});
+  }
+}
+
+MovedFace::MovedFace(const std::array<Vec3, 3>& start, const std::array<Vec3, 3>& end, const Vec3& origin) {
+  size = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec3 from = start[c] - origin, to = end[c] - origin;
+    corner[c] = {static_cast<float>(from.x()), static_cast<float>(from.y()), static_cast<float>(from.z())};
+    corner[3 + c] = {static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())};
+  }
+  normal = normal_of(corner[0], corner[1], corner[2]);
+  low = high = corner[0];
+  for (std::size_t c = 0; c < 6; ++c) {
+    const float along = normal[0] * corner[c][0] + normal[1] * corner[c][1] + normal[2] * corner[c][2];
+    normal_low = c == 0 ? along : std::min(normal_low, along);
+    normal_high = c == 0 ? along : std::max(normal_high, along);
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], corner[c][i]);
+      high[i] = std::max(high[i], corner[c][i]);
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) size = std::max({size, -low[i], high[i]});
+}
+
+std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
+  const float error = kGapError * (a.size + b.size + largest(shift));
+  return below(a, b, {static_cast<float>(shift.x()), static_cast<float>(shift.y()), static_cast<float>(shift.z())},
+               static_cast<float>(floor) + error);
+}
+
+bool edges_keep_apart(const MovedFace& a, const FaceLanes& b, std::uint32_t k, const Vec3& shift,
+                      double floor) noexcept {
+  std::array<Float3, 6> p = a.corner;
+  for (Float3& corner : p)
+    for (std::size_t i = 0; i < 3; ++i) corner[i] += static_cast<float>(shift[static_cast<Eigen::Index>(i)]);
+  std::array<Float3, 3> q;
+  Float3 normal_b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    normal_b[i] = b.normal[i][k];
+    for (std::size_t c = 0; c < 3; ++c) q[c][i] = b.corner[c][i][k];
+  }
+  alignas(64) Across left, right;
+  std::size_t count = 0;
+  const auto add = [&](const Float3& x, const Float3& y) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      left[i][count] = x[i];
+      right[i][count] = y[i];
+    }
+    ++count;
+  };
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) add(difference(p[(i + 1) % 3], p[i]), difference(q[(j + 1) % 3], q[j]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    add(a.normal, difference(p[(i + 1) % 3], p[i]));
+    add(normal_b, difference(q[(i + 1) % 3], q[i]));
+  }
+  add(a.normal, normal_b);
+  const float least = static_cast<float>(floor) + kGapError * (a.size + b.size + largest(shift));
+  return across_edges(left, right, p, q, least * least);
+}
+
+}  // namespace tegotae

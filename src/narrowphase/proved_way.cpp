@@ -1,0 +1,59 @@
+#include "narrowphase/proved_way.hpp"
+
+#include <algorithm>
+
+namespace tegotae {
+namespace {
+
+// A is on the way where it is off it by less than this share of the size of the scene: a tenth of the rounding that
+// certificates leave room for.
+constexpr double kOnWay = 1e-13;
+// What comes no farther off it than this share of what it goes is beside it.
+constexpr double kOffWay = 0.3;
+
+}  // namespace
+
+void ProvedWay::set(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& parts) noexcept {
+  X_ = X;
+  d_ = d;
+  length2_ = product(d, d);
+  parts_.assign(parts.begin(), parts.end());
+  known_ = length2_ > 0;
+  from_ = 1;
+  to_ = 0;
+}
+
+void ProvedWay::come_to(const Pose& X) noexcept {
+  if (!is_on(X)) return;
+  from_ = std::min(from_, std::clamp(place(X), 0.0, 1.0));
+  to_ = std::max(to_, place(X));
+}
+
+bool ProvedWay::is_on(const Pose& X) const noexcept {
+  if (!known_) return false;
+  const Displacement off = displacement(at(std::clamp(place(X), 0.0, 1.0)), X, center_);
+  return size(off) <= kOnWay * (X.p.norm() + center_.norm() + radius_);
+}
+
+std::optional<Displacement> ProvedWay::toward(const Pose& X, const Displacement& d) const noexcept {
+  if (!is_on(X)) return std::nullopt;
+  return displacement(
+      X, at(std::clamp(place(displaced(X, center_, d)), std::min(from_, std::clamp(place(X), 0.0, 1.0)), 1.0)),
+      center_);
+}
+
+std::optional<Displacement> ProvedWay::join(const Pose& X, const Displacement& d) const noexcept {
+  if (!known_) return std::nullopt;
+  const double to = place(displaced(X, center_, d));
+  if (to < 0 || to > 1) return std::nullopt;
+  return displacement(X, at(to), center_);
+}
+
+bool ProvedWay::leads_on(const Pose& X, const Displacement& d) const noexcept {
+  if (!known_) return false;
+  const Pose to = displaced(X, center_, d);
+  const double share = place(to);
+  return share <= 1 && size(displacement(at(std::max(0.0, share)), to, center_)) <= kOffWay * size(d);
+}
+
+}  // namespace tegotae

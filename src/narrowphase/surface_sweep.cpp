@@ -1,0 +1,292 @@
+#include "narrowphase/surface_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/numbers.hpp"
+#include "narrowphase/cell_slack.hpp"
+#include "narrowphase/moving_plane.hpp"
+#include "tegotae/core/clock.hpp"
+
+namespace tegotae {
+namespace {
+
+/// Blocks of A that are looked at first.
+constexpr std::uint32_t kSample = 32;
+/// What they meet ends the motion this far before it is touched (m): nearer, the planes of faces that lie on each other
+/// keep few of their neighbors apart. Less than contacts keep.
+constexpr double kKept = 12e-6;
+/// How exactly it is found where the motion ends (m), and the halvings that takes at most.
+constexpr double kExact = 5e-7;
+constexpr int kHalvings = 24;
+/// Boxes are grown by this share of the coordinates that they come from, in single precision.
+constexpr float kBoxError = 1e-6F;
+constexpr double kRadiusSlack = 1 + 1e-9;
+
+}  // namespace
+
+SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center,
+                           const std::vector<CellFront::FixedPart>& fixed, std::shared_ptr<const Facing> facing,
+                           std::uint32_t blocking)
+    : a_(std::move(a)),
+      facing_(std::move(facing)),
+      blocks_a_(std::make_shared<FaceBlocks>(*a_)),
+      center_(center),
+      offset_a_(a_->origin() - center),
+      reach_(a_->radius() + offset_a_.norm()),
+      cache_(kCached) {
+  std::map<const PatchTree*, std::shared_ptr<const FaceBlocks>> blocks = {{a_.get(), blocks_a_}};
+  for (const CellFront::FixedPart& part : fixed) {
+    auto& own = blocks[part.tree.get()];
+    if (!own) own = std::make_shared<FaceBlocks>(*part.tree);
+    parts_.push_back({part.tree, own, part.pose});
+  }
+  near_.reserve(fixed.size());
+  outside_.assign(fixed.size(), false);
+  blocking_.reserve(blocking);
+}
+
+void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
+                         const std::vector<bool>& outside, double clearance) noexcept {
+  X_ = X;
+  d_ = d;
+  near_.assign(near.begin(), near.end());
+  for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = facing_ && outside[i];
+  clearance_ = clearance;
+  blocking_.clear();
+  share_ = 1;
+  under_way_ = sampling_ = true;
+  at_ = sampled_ = 0;
+  face_ = faces_ = besides_ = stacked_ = 0;
+  last_plane_ = {Vec3::Zero(), Vec3::Zero()};
+  if (!near_.empty()) set_share(1);
+}
+
+bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
+  while (under_way_) {
+    if (share_ <= 0 || at_ >= near_.size()) {
+      under_way_ = false;
+    } else if (face_ < faces_) {
+      look_at_face(face_++);
+    } else if (!next_beside() && !next_block() && !next_part()) {
+      under_way_ = false;
+    }
+    if (past(deadline_ns)) break;
+  }
+  return !under_way_;
+}
+
+/// The motion up to `share` of it, as the part sees it.
+Sweep SurfaceSweep::sweep_by(double share, double clearance) const {
+  const Part& B = part();
+  const Quat q = B.pose.q.conjugate();
+  return Sweep(B.pose.inverse() * X_, {q * (share * d_.dp), q * (share * d_.dr)}, center_, *B.tree, reach_, clearance);
+}
+
+void SurfaceSweep::set_share(double share) {
+  share_ = share;
+  sweep_ = sweep_by(share, clearance_);
+  // Of both readings of the path; see Bulge. What is kept from a longer motion is kept from the first part of it: its
+  // readings are nearer to each other.
+  passing_ = PassingPoints::seen_from_a(sweep_);
+  floor_ = sweep_.floor + 0.125 * kUnitSlack * sweep_.theta2 * (reach_ + sweep_.center_distance);
+}
+
+bool SurfaceSweep::next_part() {
+  if (++at_ == near_.size()) {
+    if (!sampling_) return false;
+    sampling_ = false;
+    at_ = 0;
+  }
+  sampled_ = 0;
+  if (!sampling_) {
+    stack_[0] = {blocks_a_->levels() - 1, 0};
+    stacked_ = 1;
+  }
+  set_share(share_);
+  return true;
+}
+
+/// Finds the next block of A beside which there may be something of B. False when all were looked at.
+bool SurfaceSweep::next_block() {
+  if (sampling_) {
+    const std::uint32_t stride = std::max(1U, blocks_a_->count() / kSample);
+    const std::uint32_t block = stride / 2 + stride * sampled_;
+    if (block >= blocks_a_->count()) return false;
+    ++sampled_;
+    if (!recedes(block)) place(block);
+    return true;
+  }
+  while (stacked_ > 0) {
+    const Node node = stack_[--stacked_];
+    walk_.start(*part().blocks, swept(blocks_a_->boxes(node.level)[node.index]));
+    if (walk_.next(found_.data(), 1) == 0) continue;
+    if (node.level == 0) {
+      if (recedes(node.index)) continue;
+      place(node.index);
+      return true;
+    }
+    const auto below = static_cast<std::uint32_t>(blocks_a_->boxes(node.level - 1).size());
+    const std::uint32_t first = node.index * FaceBlocks::kFan;
+    for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
+      stack_[stacked_++] = {node.level - 1, i};
+  }
+  return false;
+}
+
+/// What all points of a box of A pass, in B's axes.
+AxisBox SurfaceSweep::swept(const AxisBox& box) const {
+  Vec3 middle, half;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    middle[axis] = 0.5 * (double{box.low[i]} + double{box.high[i]});
+    half[axis] = 0.5 * (double{box.high[i]} - double{box.low[i]});
+  }
+  AxisBox out = AxisBox::empty();
+  for (const Placement* at : {&sweep_.start, &sweep_.end}) {
+    const Vec3 to = at->R * (middle + offset_a_) + at->t;
+    const Vec3 reach = at->R.cwiseAbs() * half + Vec3::Constant(floor_ + kBoxError * (to.norm() + half.norm()));
+    out.add(to - reach, to + reach);
+  }
+  return out;
+}
+
+/// Whether all faces of A's block recede from the part, and so need not be looked at.
+bool SurfaceSweep::recedes(std::uint32_t block) {
+  skipped_ = 0;
+  if (!outside_[at_]) return false;
+  const std::uint32_t faces = blocks_a_->faces(block);
+  for (std::uint32_t k = 0; k < faces; ++k) {
+    const std::uint32_t face = blocks_a_->face(block, k);
+    const Vec3 &p = a_->corner(face, 0), &q = a_->corner(face, 1), &r = a_->corner(face, 2);
+    const Vec3 middle = (p + q + r) / 3;
+    const double radius =
+        std::sqrt(std::max({(p - middle).squaredNorm(), (q - middle).squaredNorm(), (r - middle).squaredNorm()}));
+    if (passing_.recedes(facing_->face(face), middle - center_, kRadiusSlack * radius)) skipped_ |= 1U << k;
+  }
+  return skipped_ == (1U << faces) - 1;
+}
+
+/// A's block where it is, and where it goes.
+void SurfaceSweep::place(std::uint32_t block) {
+  block_ = block;
+  faces_ = blocks_a_->faces(block);
+  Vec3 low = Vec3::Constant(kInfinity), high = -low;
+  for (std::uint32_t k = 0; k < faces_; ++k) {
+    if ((skipped_ >> k & 1) != 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3 p = a_->corner(blocks_a_->face(block, k), c) - center_;
+      const Vec3 &from = from_[k][c] = sweep_.start.R * p + sweep_.start.t,
+                 &to = to_[k][c] = sweep_.end.R * p + sweep_.end.t;
+      low = low.cwiseMin(from.cwiseMin(to));
+      high = high.cwiseMax(from.cwiseMax(to));
+    }
+  }
+  middle_ = 0.5 * (low + high);
+  for (std::uint32_t k = 0; k < faces_; ++k)
+    if ((skipped_ >> k & 1) == 0) moved_[k] = MovedFace(from_[k], to_[k], middle_);
+  AxisBox box = AxisBox::empty();
+  box.add(low - Vec3::Constant(floor_), high + Vec3::Constant(floor_));
+  walk_.start(*part().blocks, box);
+  besides_ = 0;
+  face_ = faces_;
+}
+
+/// The next blocks of B beside that of A, for all faces of it.
+bool SurfaceSweep::next_beside() {
+  if (faces_ == 0) return false;
+  besides_ = walk_.next(found_.data(), kBeside);
+  for (std::uint32_t i = 0; i < besides_; ++i) {
+    const AxisBox& box = part().blocks->boxes(0)[found_[i]];
+    beside_[i].block = found_[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(c)]);
+      const float slack =
+          static_cast<float>(floor_) + kBoxError * (std::abs(at) + std::abs(box.low[c]) + std::abs(box.high[c]));
+      beside_[i].box.low[c] = box.low[c] - at - slack;
+      beside_[i].box.high[c] = box.high[c] - at + slack;
+    }
+  }
+  face_ = 0;
+  if (besides_ == 0) face_ = faces_ = 0;
+  return besides_ > 0;
+}
+
+const FaceLanes& SurfaceSweep::lanes(std::uint32_t block) {
+  Cached& place = cache_[(block + 61 * near_[at_]) % kCached];
+  if (place.part != near_[at_] || place.block != block) {
+    place.lanes = FaceLanes(*part().tree, *part().blocks, block);
+    place.part = near_[at_];
+    place.block = block;
+  }
+  return place.lanes;
+}
+
+void SurfaceSweep::look_at_face(std::uint32_t k) {
+  if ((skipped_ >> k & 1) != 0) return;
+  const MovedFace& moved = moved_[k];
+  const AxisBox box{moved.low, moved.high};
+  for (std::uint32_t i = 0; i < besides_; ++i) {
+    if (!beside_[i].box.overlaps(box)) continue;
+    const FaceLanes& b = lanes(beside_[i].block);
+    std::uint32_t open = not_kept_apart(moved, b, middle_ - b.origin, floor_);
+    for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
+      if ((open & 1) == 0 || lane >= part().blocks->faces(beside_[i].block)) continue;
+      const std::uint32_t face = blocks_a_->face(block_, k), face_b = part().blocks->face(beside_[i].block, lane);
+      if (edges_keep_apart(moved, b, lane, middle_ - b.origin, floor_) || keeps_apart(face, face_b)) continue;
+      meet(face, face_b);
+      // Over a shorter way from here on.
+      place(block_);
+      return;
+    }
+  }
+}
+
+bool SurfaceSweep::keeps_apart(std::uint32_t face, std::uint32_t face_b) {
+  std::array<Vec3, 3> a, b;
+  double reach = 0;
+  for (int c = 0; c < 3; ++c) {
+    a[c] = a_->corner(face, c) - center_;
+    b[c] = part().tree->corner(face_b, c) - part().tree->origin();
+    reach = std::max(reach, a[c].norm());
+  }
+  MovingPlane plane = last_plane_.n0.isZero(0) ? MovingPlane{Vec3::UnitX(), Vec3::UnitX()} : last_plane_;
+  if (!separate_triangles(a, b, sweep_, reach, nullptr, plane)) return false;
+  last_plane_ = plane;
+  return true;
+}
+
+/// Something is in the way: the motion ends before it.
+void SurfaceSweep::meet(std::uint32_t face, std::uint32_t face_b) {
+  std::array<Vec3, 3> a, b;
+  double reach = 0;
+  for (int c = 0; c < 3; ++c) {
+    a[c] = a_->corner(face, c) - center_;
+    b[c] = part().tree->corner(face_b, c) - part().tree->origin();
+    reach = std::max(reach, a[c].norm());
+  }
+  double until = free_until(a, b, reach, sampling_ ? std::max(kKept, clearance_) : clearance_);
+  // It was nearer at the start.
+  if (until == 0 && sampling_) until = free_until(a, b, reach, clearance_);
+  if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
+  blocking_.push_back({near_[at_], face, face_b});
+  set_share(until);
+}
+
+double SurfaceSweep::free_until(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double reach,
+                                double clearance) const {
+  const double length = d_.dp.norm() + reach_ * d_.dr.norm();
+  const double start_floor = sweep_.start_floor;
+  double free = 0, met = share_;
+  for (int i = 0; i < kHalvings && (met - free) * length > kExact; ++i) {
+    const double s = 0.5 * (free + met);
+    Sweep sweep = sweep_by(s, clearance);
+    sweep.start_floor = start_floor;
+    MovingPlane plane{Vec3::UnitX(), Vec3::UnitX()};
+    (separate_triangles(a, b, sweep, reach, nullptr, plane) ? free : met) = s;
+  }
+  return free;
+}
+
+}  // namespace tegotae

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "narrowphase/cell_front.hpp"
+#include "narrowphase/face_blocks.hpp"
+#include "narrowphase/face_lanes.hpp"
+#include "narrowphase/face_pair.hpp"
+#include "narrowphase/patch_separate.hpp"
+#include "narrowphase/patch_tree.hpp"
+#include "narrowphase/receding.hpp"
+
+namespace tegotae {
+
+/// The path certificate of one motion of A by a look at all of its faces, with nothing kept for the next one: where
+/// surfaces lie on each other and A moves far, a tenth of what new cells for all faces take, however far it goes. It
+/// takes many ticks for a large part and goes on where it was. Mutable scratch; no call but the constructor allocates.
+class SurfaceSweep {
+ public:
+  /// `center` (m, file frame) is A's center of mass; `facing` of A, if it bounds a solid. At most `blocking` triangle
+  /// pairs are told.
+  SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center, const std::vector<CellFront::FixedPart>& fixed,
+               std::shared_ptr<const Facing> facing, std::uint32_t blocking);
+
+  /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
+  /// between the same two poses whose file-frame origin moves linearly (see Sweep). Separations below `clearance` (m)
+  /// do not count. `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
+  /// and the answer is about an A that is apart from them at `X`.
+  void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
+             const std::vector<bool>& outside, double clearance) noexcept;
+  /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
+  bool go_on(std::int64_t deadline_ns) noexcept;
+  /// Begun and not done.
+  bool under_way() const { return under_way_; }
+  void drop() noexcept { under_way_ = false; }
+
+  const Pose& start() const { return X_; }
+  const Displacement& motion() const { return d_; }
+  const std::vector<std::uint32_t>& near() const { return near_; }
+  /// When done: the part of the motion, from its start, that is free. What is met ends it, a little before it is
+  /// touched where that can be.
+  double share() const { return share_; }
+  /// When done: what was met, the nearest last; at most as many as the constructor was told.
+  const std::vector<FacePair>& blocking() const { return blocking_; }
+
+ private:
+  struct Part {
+    std::shared_ptr<const PatchTree> tree;
+    std::shared_ptr<const FaceBlocks> blocks;
+    Pose pose;
+  };
+  /// Of the blocks of B that were looked at of late.
+  struct Cached {
+    std::uint32_t part = 0xffffffffu, block = 0;
+    FaceLanes lanes;
+  };
+  struct Node {
+    std::uint32_t level, index;
+  };
+  /// A block of B beside that of A.
+  struct Beside {
+    std::uint32_t block;
+    AxisBox box;  ///< from the middle of A's block
+  };
+  static constexpr std::size_t kCached = 512;
+  static constexpr std::uint32_t kBeside = 32;
+
+  Sweep sweep_by(double share, double clearance) const;
+  void set_share(double share);
+  bool next_part();
+  bool next_block();
+  bool recedes(std::uint32_t block);
+  void place(std::uint32_t block);
+  bool next_beside();
+  AxisBox swept(const AxisBox& box) const;
+  void look_at_face(std::uint32_t k);
+  bool keeps_apart(std::uint32_t face, std::uint32_t face_b);
+  void meet(std::uint32_t face, std::uint32_t face_b);
+  double free_until(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double reach, double clearance) const;
+  const FaceLanes& lanes(std::uint32_t block);
+  const Part& part() const { return parts_[near_[at_]]; }
+
+  std::shared_ptr<const PatchTree> a_;
+  std::shared_ptr<const Facing> facing_;
+  std::shared_ptr<const FaceBlocks> blocks_a_;
+  Vec3 center_, offset_a_;
+  double reach_;  ///< of A about its center of mass, m
+  std::vector<Part> parts_;
+  std::vector<Cached> cache_;
+  std::vector<FacePair> blocking_;
+
+  bool under_way_ = false;
+  Pose X_;
+  Displacement d_;
+  double clearance_ = 0, share_ = 1;
+  std::vector<std::uint32_t> near_;
+  std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
+  bool sampling_ = false;      ///< a few blocks of A tell first about how far the motion goes
+  std::uint32_t at_ = 0;       ///< of near_
+  std::uint32_t sampled_ = 0;  ///< the next block of the sample
+  std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy
+  std::uint32_t stacked_ = 0;
+  Sweep sweep_;  ///< of the share of the motion, past the part
+  PassingPoints passing_;
+  double floor_ = 0;  ///< of straight ways: the clearance and what arcs may leave of them, m
+
+  std::uint32_t block_ = 0, face_ = 0, faces_ = 0;  ///< of A, which is looked at
+  std::uint32_t skipped_ = 0;                       ///< a bit for each face of it that recedes
+  std::array<std::array<Vec3, 3>, kBlockFaces> from_, to_;
+  std::array<MovedFace, kBlockFaces> moved_;
+  Vec3 middle_ = Vec3::Zero();
+  BlockWalk walk_;
+  std::array<std::uint32_t, kBeside> found_;
+  std::array<Beside, kBeside> beside_;
+  std::uint32_t besides_ = 0;
+  MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};  ///< that kept two faces apart
+};
+
+}  // namespace tegotae

@@ -1,0 +1,299 @@
+// Motions that are looked at as a whole: what is said to be free or met against exact tests of triangles and FCL.
+#include <set>
+
+#include "alloc_guard.hpp"
+#include "catch.hpp"
+#include "narrowphase/facing.hpp"
+#include "narrowphase/patch_motion_check.hpp"
+#include "narrowphase/surface_sweep.hpp"
+#include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
+#include "tegotae/core/clock.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+constexpr double kClearance = 1.1e-6;
+/// What is met ends a motion so much before it is touched, at most (m), with what finding the place leaves.
+constexpr double kEndsBefore = 14e-6;
+
+std::shared_ptr<const PatchTree> tree_of(const MeshPtr& mesh) {
+  return std::make_shared<const PatchTree>(mesh);
+}
+
+/// A sweep past one part whose file frame is the world's.
+SurfaceSweep sweep_past(const MeshPtr& a, const MeshPtr& b, const Vec3& center,
+                        std::shared_ptr<const Facing> facing = nullptr) {
+  return SurfaceSweep(tree_of(a), center, {{tree_of(b), Pose{}}}, std::move(facing), 24);
+}
+
+double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outside = false) {
+  const std::vector<std::uint32_t> near = {0};
+  const std::vector<bool> nothing_inside = {outside};
+  const AllocGuard guard;
+  sweep.begin(X, d, near, nothing_inside, kClearance);
+  sweep.go_on(kNoDeadline);
+  CHECK(guard.count() == 0);
+  CHECK(!sweep.under_way());
+  return sweep.share();
+}
+
+Corners corners(const TriangleMesh& m, std::uint32_t face, const Pose& X) {
+  const auto& t = m.triangles[face];
+  return {X * m.vertices[t[0]], X * m.vertices[t[1]], X * m.vertices[t[2]]};
+}
+
+MeshPtr single(const TriangleMesh& m, std::uint32_t face) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const std::uint32_t v : m.triangles[face]) mesh->vertices.push_back(m.vertices[v]);
+  mesh->triangles.push_back({0, 1, 2});
+  return mesh;
+}
+
+/// An upper bound of the distance of two triangles: of many points of both.
+double nearly(const Corners& a, const Corners& b, int n) {
+  const auto at = [n](const Corners& t, int i, int k) -> Vec3 {
+    return t[0] + (1.0 * i / n) * (t[1] - t[0]) + (1.0 * k / n) * (t[2] - t[0]);
+  };
+  double least = 1e9;
+  for (int i = 0; i <= n; ++i)
+    for (int k = 0; i + k <= n; ++k)
+      for (int j = 0; j <= n; ++j)
+        for (int l = 0; j + l <= n; ++l) least = std::min(least, (at(a, i, k) - at(b, j, l)).norm());
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("blocks have all faces once, and a walk finds the blocks that a box meets") {
+  std::mt19937 rng(31);
+  for (const MeshPtr& mesh : {wave(0.1, 0.01, 0.04, 40), knot(0.05, 0.006, 900), box({0.01, 0.02, 0.03})}) {
+    const PatchTree tree(mesh);
+    const FaceBlocks blocks(tree);
+    std::set<std::uint32_t> seen;
+    for (std::uint32_t b = 0; b < blocks.count(); ++b) {
+      for (std::uint32_t k = 0; k < blocks.faces(b); ++k) {
+        const std::uint32_t face = blocks.face(b, k);
+        CHECK(seen.insert(face).second);
+        for (int c = 0; c < 3; ++c)
+          for (std::size_t i = 0; i < 3; ++i) {
+            const double x = (tree.corner(face, c) - tree.origin())[static_cast<Eigen::Index>(i)];
+            CHECK((x >= blocks.boxes(0)[b].low[i] && x <= blocks.boxes(0)[b].high[i]));
+          }
+      }
+    }
+    CHECK(seen.size() == mesh->triangles.size());
+    for (int n = 0; n < 50; ++n) {
+      AxisBox box = AxisBox::empty();
+      box.add(random_in_ball(rng, 0.06), random_in_ball(rng, 0.06));
+      std::set<std::uint32_t> expected, found;
+      for (std::uint32_t b = 0; b < blocks.count(); ++b)
+        if (blocks.boxes(0)[b].overlaps(box)) expected.insert(b);
+      BlockWalk walk;
+      walk.start(blocks, box);
+      std::array<std::uint32_t, 3> some;
+      for (std::uint32_t count = 3; count == 3;) {
+        count = walk.next(some.data(), 3);
+        for (std::uint32_t i = 0; i < count; ++i) CHECK(found.insert(some[i]).second);
+      }
+      CHECK(found == expected);
+    }
+  }
+}
+
+TEST_CASE("faces that are kept apart do not meet on their straight ways, however small or far from the origin") {
+  std::mt19937 rng(32);
+  int apart = 0, by_edges = 0, wrong = 0, near = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const double size = std::pow(10.0, uniform(rng, -4, -1));
+    const Vec3 far = random_in_ball(rng, 2);
+    auto mesh = std::make_shared<TriangleMesh>(*soup(rng, 16, 1.5 * size, size));
+    for (Vec3& v : mesh->vertices) v += far;
+    const PatchTree tree(mesh);
+    const FaceBlocks blocks(tree);
+    const FaceLanes lanes(tree, blocks, 0);
+    const Vec3 origin = tree.origin() + random_in_ball(rng, size) - tree.origin();
+    std::array<Vec3, 3> from, to;
+    for (int c = 0; c < 3; ++c) {
+      from[static_cast<std::size_t>(c)] = random_in_ball(rng, 1.5 * size);
+      to[static_cast<std::size_t>(c)] = from[static_cast<std::size_t>(c)] + random_in_ball(rng, 0.5 * size);
+    }
+    const MovedFace moved(from, to, origin);
+    const Vec3 shift = origin - lanes.origin;
+    const std::uint32_t open = not_kept_apart(moved, lanes, shift, kClearance);
+    for (std::uint32_t k = 0; k < blocks.faces(0); ++k) {
+      const bool planes = (open >> k & 1) == 0, edges = edges_keep_apart(moved, lanes, k, shift, kClearance);
+      apart += planes;
+      by_edges += edges && !planes;
+      if (!planes && !edges) continue;
+      const Corners b = corners(*mesh, blocks.face(0, k), Pose{Quat::Identity(), -tree.origin()});
+      for (int i = 0; i <= 8; ++i) {
+        Corners a;
+        for (std::size_t c = 0; c < 3; ++c) a[c] = from[c] + (i / 8.0) * (to[c] - from[c]);
+        wrong += triangles_meet(a, b);
+        // A face that is kept apart is no nearer than that.
+        if (i % 8 == 0 && n % 50 == 0) near += nearly(a, b, 6) < kClearance;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(near == 0);
+  CHECK(apart > 20000);
+  CHECK(by_edges > 1000);
+}
+
+TEST_CASE("the first part of a motion is free as far as is said, and what was met is met soon after it") {
+  std::mt19937 rng(33);
+  int whole = 0, cut = 0;
+  for (const Scene& scene : scenes()) {
+    INFO(scene.name);
+    const Oracle oracle(scene.a, scene.b);
+    SurfaceSweep sweep = sweep_past(scene.a, scene.b, scene.center);
+    for (int n = 0; n < 60; ++n) {
+      const Pose X =
+          displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+      if (oracle.meet(X) || oracle.distance(X) < 2 * kClearance) continue;
+      const Displacement d{random_in_ball(rng, 8 * scene.move),
+                           n % 3 == 0 ? Vec3::Zero() : random_in_ball(rng, scene.turn)};
+      const double share = run(sweep, X, d);
+      CHECK(oracle.hits(X, scene.center, share * d, 20) == 0);
+      (share == 1 ? whole : cut) += 1;
+      if (share == 1) {
+        CHECK(sweep.blocking().empty());
+        continue;
+      }
+      REQUIRE(!sweep.blocking().empty());
+      if (n % 3 != 0) continue;
+      // Straight ways end where there is something, and it is told.
+      const FacePair met = sweep.blocking().back();
+      const Pose end = displaced(X, scene.center, share * d);
+      CHECK(Oracle(single(*scene.a, met.a), single(*scene.b, met.b)).distance(end) < kEndsBefore);
+      CHECK(oracle.distance(end) < kEndsBefore);
+    }
+  }
+  CHECK(whole > 20);
+  CHECK(cut > 20);
+}
+
+TEST_CASE("a sheet comes down on its die to where FCL finds touching") {
+  const MeshPtr sheet = wave(0.1, 0.01, 0.05, 40), die = wave(0.1, 0.01, 0.05, 57);
+  const Oracle oracle(sheet, die);
+  SurfaceSweep sweep = sweep_past(sheet, die, Vec3::Zero());
+  for (const double turn : {0.0, 0.003}) {
+    const Pose X{rotation(Vec3(0, turn, turn)), Vec3(0.001, 0, 0.01)};
+    const Displacement down{{0, 0, -0.02}, {0, 0, 0}};
+    REQUIRE(!oracle.meet(X));
+    const double share = run(sweep, X, down);
+    REQUIRE(share < 1);
+    CHECK(oracle.hits(X, Vec3::Zero(), share * down, 40) == 0);
+    CHECK(oracle.distance(displaced(X, Vec3::Zero(), share * down)) < kEndsBefore);
+  }
+}
+
+TEST_CASE("a sweep that is interrupted at every step ends like one that is not") {
+  const MeshPtr sheet = wave(0.1, 0.01, 0.05, 30), die = wave(0.1, 0.01, 0.05, 41);
+  SurfaceSweep at_once = sweep_past(sheet, die, Vec3::Zero()), in_steps = sweep_past(sheet, die, Vec3::Zero());
+  const Pose X{rotation(Vec3(0, 0.01, 0)), Vec3(0, 0, 0.012)};
+  const Displacement down{{0.001, 0, -0.02}, {0, 0, 0.02}};
+  const double share = run(at_once, X, down);
+  in_steps.begin(X, down, {0}, {false}, kClearance);
+  int calls = 1;
+  while (!in_steps.go_on(1)) ++calls;
+  CHECK(calls > 100);
+  CHECK(in_steps.share() == share);
+  REQUIRE(in_steps.blocking().size() == at_once.blocking().size());
+  for (std::size_t i = 0; i < at_once.blocking().size(); ++i) {
+    CHECK(in_steps.blocking()[i].a == at_once.blocking()[i].a);
+    CHECK(in_steps.blocking()[i].b == at_once.blocking()[i].b);
+  }
+}
+
+TEST_CASE("of a solid the faces that recede need not be looked at") {
+  std::mt19937 rng(34);
+  const MeshPtr a = box({0.02, 0.015, 0.01}), b = knot(0.05, 0.006, 800);
+  const auto tree = tree_of(a);
+  const auto facing = Facing::of(a, tree);
+  REQUIRE(facing);
+  const Oracle oracle(a, b);
+  SurfaceSweep some(tree, Vec3::Zero(), {{tree_of(b), Pose{}}}, facing, 24);
+  SurfaceSweep all = sweep_past(a, b, Vec3::Zero());
+  int cut = 0;
+  for (int n = 0; n < 60; ++n) {
+    const Pose X{rotation(random_in_ball(rng, 3)), 0.085 * random_in_ball(rng, 1).normalized()};
+    if (oracle.meet(X)) continue;
+    const Displacement d{random_in_ball(rng, 0.1), n % 2 == 0 ? Vec3::Zero() : random_in_ball(rng, 0.2)};
+    const double share = run(some, X, d, true);
+    CHECK(share == Approx(run(all, X, d)).margin(kEndsBefore / d.dp.norm()));
+    CHECK(oracle.hits(X, Vec3::Zero(), share * d, 20) == 0);
+    cut += share < 1;
+  }
+  CHECK(cut > 10);
+}
+
+TEST_CASE("a way is gone along in both directions, but not back before where it was come to") {
+  const Vec3 center(0.01, 0, 0);
+  ProvedWay way(center, 0.05, 4);
+  const Pose X{rotation(Vec3(0.1, 0.2, 0.3)), Vec3(1, 2, 3)};
+  const Displacement d{{0.01, 0, 0}, {0, 0, 0.1}};
+  CHECK(!way.toward(X, d));
+  way.set(X, d, {2, 3});
+  const auto at = [&](double s) { return displaced(X, center, s * d); };
+  const auto size = [](const Displacement& by) { return by.dp.norm() + 0.05 * by.dr.norm(); };
+  const Pose half = at(0.5);
+  way.come_to(half);
+  REQUIRE(way.toward(half, 0.25 * d));
+  CHECK(size(displacement(displaced(half, center, *way.toward(half, 0.25 * d)), at(0.75), center)) < 1e-12);
+  // What leads beyond the end ends there, and what leads back where it was come to.
+  CHECK(size(displacement(displaced(half, center, *way.toward(half, 2.0 * d)), at(1), center)) < 1e-12);
+  const Pose later = at(0.8);
+  CHECK(size(displacement(displaced(later, center, *way.toward(later, -1.0 * d)), half, center)) < 1e-12);
+  CHECK(way.ends_at(at(1)));
+  CHECK(!way.done());
+  way.come_to(at(1));
+  CHECK(way.done());
+  // Beside the way there is no proof, only a motion onto it.
+  const Pose beside{half.q, half.p + Vec3(0, 1e-9, 0)};
+  CHECK(!way.is_on(beside));
+  CHECK(!way.toward(beside, d));
+  REQUIRE(way.join(beside, 0.25 * d));
+  CHECK(way.is_on(displaced(beside, center, *way.join(beside, 0.25 * d))));
+  way.drop();
+  CHECK(!way.toward(half, d));
+}
+
+TEST_CASE("with little time a tick, a fine sheet comes down on its die by motions that are looked at as a whole") {
+  const MeshPtr sheet = wave(0.1, 0.01, 0.05, 60), die = wave(0.1, 0.01, 0.05, 83);
+  const Oracle oracle(sheet, die);
+  PatchMotionCheck check(sheet, Vec3::Zero(), 0.075, {die}, {Pose{}}, {});
+  std::vector<FacePair> blocking;
+  blocking.reserve(64);
+  Pose X{Quat::Identity(), Vec3(0, 0, 0.02)}, Y = X;
+  const Displacement pen{{0, 0, -1e-4}, {0, 0, 0}};
+  const std::vector<std::uint32_t> near = {0};
+  int instead = 0, met = 0, hits = 0;
+  for (int tick = 0; tick < 3000 && met == 0; ++tick) {
+    if (tick < 250) Y.p += pen.dp;
+    const Displacement d = displacement(X, Y, Vec3::Zero());
+    const AllocGuard guard;
+    const std::int64_t deadline_ns = monotonic_ns() + 100000;
+    check.begin(near, deadline_ns, OtherParts::far);
+    check.trust_start();
+    check.heads(tick < 250 ? pen : Displacement{}, false);
+    blocking.clear();
+    check.check(X, d, kClearance, blocking);
+    const auto other = check.instead();
+    instead += other.has_value();
+    const Displacement made = check.free_share() * (other ? *other : d);
+    const Pose next = displaced(X, Vec3::Zero(), made);
+    if (blocking.empty()) check.prepare(next, pen, deadline_ns + 50000);
+    CHECK(guard.count() == 0);
+    if (tick % 20 == 0 || !blocking.empty()) hits += oracle.hits(X, Vec3::Zero(), made, 5);
+    X = next;
+    met += !blocking.empty() && oracle.distance(X) < 1e-4;
+  }
+  CHECK(hits == 0);
+  CHECK(instead > 0);
+  CHECK(met == 1);
+}
