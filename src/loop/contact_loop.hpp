@@ -72,10 +72,11 @@ class ContactLoop final : public ProxyLoop {
   /// Makes contacts or cutting planes of what blocks `d`. Returns whether there are new ones.
   bool take_in(const Displacement& d);
   bool shorten(Trial& trial, TickReport& report);
-  /// Shortens the trial to `share` of it.
   void go_to(const Trial& trial);
+  /// Whether a contact is within reach.
   bool touches() const;
   bool leads_nearer(const Trial& trial, const Pose& goal) const;
+  /// Shortens the trial to `share` of it.
   void scale(Trial& trial, double share) const;
   /// Whether the trial brings X nearer to Y; adapts the trust region.
   bool worth_it(const Vec6& error, const Trial& trial, const Pose& Y);

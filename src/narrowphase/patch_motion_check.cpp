@@ -165,7 +165,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
-  if (effort_ == ProofEffort::full)
+  if (effort_ == ProofEffort::full && held->triangles.size() <= SurfaceSweep::kMostFaces)
     sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, kMaxBlocking);
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
@@ -327,8 +327,8 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   instead_ = onto_way(X, wanted);
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
-  const bool may_sweep = behind_for_ >= kTicksBehind && sweep_ && deadline_ns != kNoDeadline && size(d) > 0;
-  if (may_sweep) {
+  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && size(d) > 0;
+  if (sweeps_now) {
     const std::int64_t now_ns = monotonic_ns();
     limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));
   }
@@ -344,13 +344,11 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   limit_.deadline_ns = deadline_ns;
   behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
   behind_since_ = now_;
-  if (behind_ && may_sweep && (stands_still() || (share_ < kSharePays && blocking.empty()))) {
-    blocking.clear();
+  if (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty()))) {
     // What was begun ahead of it may have come to here.
-    if (!looks_ahead_ || !sweeps(X, wanted)) begin_sweep(X, wanted, clearance);
-    sweeping_ = true;
+    sweeping_ = (looks_ahead_ && sweeps(X, wanted)) || begin_sweep(X, wanted, clearance);
     looks_ahead_ = false;
-    return ask_sweep(wanted, blocking);
+    if (sweeping_) return ask_sweep(wanted, blocking);
   }
   return answer(blocking);
 }

@@ -114,6 +114,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
   bool stands_still() const { return still_for_ >= kTicksStill; }
+  bool may_sweep() const noexcept;
   bool may_go_along() const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
@@ -123,10 +124,10 @@ class PatchMotionCheck final : public MotionCheck {
   std::optional<Displacement> onto_way(const Pose& X, const Displacement& d) const noexcept;
   /// How far A is from where `d` leads when it has made another motion, m.
   double left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept;
-  void begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
+  bool begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
-  /// else.
-  void find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
+  /// else. False where one of them is too large.
+  bool find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
   /// Whether those that a way or a sweep is about are all that are near.
   bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }

@@ -16,6 +16,8 @@ constexpr double kWayLeaves = 0.5;
 // Poses are the same that differ by less than this share of the size of the scene: a tenth of the rounding that
 // certificates leave room for.
 constexpr double kSamePlace = 1e-13;
+// Near parts that are no bundle, at most: all lists are gone through for each of them.
+constexpr std::size_t kMostSwept = 256;
 // What a face takes at most, in ticks of which the spare time goes to ways ahead.
 constexpr double kTicksPerFace = 1e-3;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
@@ -41,9 +43,13 @@ void PatchMotionCheck::count_still(const Pose& X) noexcept {
   if (!still) still_X_ = X;
 }
 
+bool PatchMotionCheck::may_sweep() const noexcept {
+  return sweep_ && limit_.deadline_ns != kNoDeadline && (bundled_ || near_.size() <= kMostSwept);
+}
+
 /// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind.
 bool PatchMotionCheck::may_go_along() const noexcept {
-  return limit_.deadline_ns != kNoDeadline && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
+  return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
 }
 
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
@@ -85,7 +91,7 @@ bool PatchMotionCheck::covers_near(const std::vector<std::uint32_t>& parts) cons
                      [&](std::uint32_t part) { return (all && bundle_->has(part)) || has(part); });
 }
 
-void PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept {
+bool PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept {
   const auto nothing_inside = [&](std::uint32_t part) {
     return trusted_ && (sides_[part].known || !past(limit_.deadline_ns)) && sides_of(part, X).b_outside;
   };
@@ -107,6 +113,7 @@ void PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displac
     swept_.push_back(part);
     outside_.push_back(nothing_inside(part));
   }
+  return std::all_of(swept_.begin(), swept_.end(), [this](std::uint32_t part) { return sweep_->knows(part); });
 }
 
 bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) const noexcept {
@@ -116,14 +123,15 @@ bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) co
   return product(a, b) > kSameWay * std::sqrt(product(a, a) * product(b, b));
 }
 
-void PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept {
+bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept {
   // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that.
   const double ticks = !touches_ && same_way(d, pen_)
                            ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands))
                            : 0;
   const Displacement all = {d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
-  find_swept(X, X, all);
+  if (!find_swept(X, X, all)) return false;
   sweep_->begin(X, all, swept_, outside_, clearance);
+  return true;
 }
 
 void PatchMotionCheck::finish_way() noexcept {
@@ -140,13 +148,11 @@ void PatchMotionCheck::finish_way() noexcept {
 
 /// A way ahead of A is looked at as a whole in the time that is left: it begins where A will be by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
-  if (!may_go_along() || sweeping_ || !sweep_ || !(size(pen_) > kStands)) return;
+  if (!may_go_along() || sweeping_ || !(size(pen_) > kStands)) return;
   const double faces = static_cast<double>(held_->mesh().triangles.size());
   const double ticks = std::max(2.0, lead_ * kTicksPerFace * faces);
   const bool on_way = way_.is_on(X);
-  if (looks_ahead_) {
-    looks_ahead_ = same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
-  }
+  looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
   if (!looks_ahead_) {
     const bool covered = covers_near(way_.parts());
     if (covered && (next_way_.known() || way_.leads_on(X, ticks * pen_) || (on_way && !met_.empty()))) return;
@@ -154,7 +160,7 @@ void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
     const double far = std::min(kSweptTicks + ticks, kLongestSweep * radius_ / length);
     if (ticks > far) return;
     const Pose from = on_way ? way_.end() : displaced(X, center_, ticks * pen_);
-    find_swept(X, from, far * pen_);
+    if (!find_swept(X, from, far * pen_)) return;
     sweep_->begin(from, far * pen_, swept_, outside_, clearance_);
     looks_ahead_ = true;
   }
@@ -162,6 +168,7 @@ void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
 }
 
 MotionAnswer PatchMotionCheck::ask_sweep(const Displacement& d, std::vector<FacePair>& blocking) noexcept {
+  blocking.clear();
   instead_ = d;
   if (!sweep_->go_on(limit_.deadline_ns) || past(limit_.deadline_ns)) {
     share_ = 0;

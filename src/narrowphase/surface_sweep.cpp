@@ -39,7 +39,7 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
   std::map<const PatchTree*, std::shared_ptr<const FaceBlocks>> blocks = {{a_.get(), blocks_a_}};
   for (const CellFront::FixedPart& part : fixed) {
     auto& own = blocks[part.tree.get()];
-    if (!own) own = std::make_shared<FaceBlocks>(*part.tree);
+    if (!own && part.tree->mesh().triangles.size() <= kMostFaces) own = std::make_shared<FaceBlocks>(*part.tree);
     parts_.push_back({part.tree, own, part.pose});
   }
   near_.reserve(fixed.size());

@@ -20,6 +20,9 @@ namespace tegotae {
 /// takes many ticks for a large part and goes on where it was. Mutable scratch; no call but the constructor allocates.
 class SurfaceSweep {
  public:
+  /// Larger surfaces are not looked at as a whole: blocks of a million faces would take 0.2 s at every start.
+  static constexpr std::size_t kMostFaces = 1U << 18;
+
   /// `center` (m, file frame) is A's center of mass; `facing` of A, if it bounds a solid. At most `blocking` triangle
   /// pairs are told.
   SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center, const std::vector<CellFront::FixedPart>& fixed,
@@ -33,6 +36,8 @@ class SurfaceSweep {
              const std::vector<bool>& outside, double clearance) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
+  /// Whether begin() may name the part.
+  bool knows(std::uint32_t part) const { return parts_[part].blocks != nullptr; }
   /// Begun and not done.
   bool under_way() const { return under_way_; }
   void drop() noexcept { under_way_ = false; }
@@ -49,7 +54,7 @@ class SurfaceSweep {
  private:
   struct Part {
     std::shared_ptr<const PatchTree> tree;
-    std::shared_ptr<const FaceBlocks> blocks;
+    std::shared_ptr<const FaceBlocks> blocks;  ///< null: too large
     Pose pose;
   };
   /// Of the blocks of B that were looked at of late.
