@@ -28,7 +28,8 @@ constexpr double kStill = 1e-6;
 }  // namespace
 
 bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexcept {
-  if (size(displacement(sweep_->start(), X, center_)) > kSamePlace * (X.p.norm() + center_.norm() + radius_) ||
+  if (!may_sweep() ||
+      size(displacement(sweep_->start(), X, center_)) > kSamePlace * (X.p.norm() + center_.norm() + radius_) ||
       !covers_near(sweep_->near()))
     return false;
   const Displacement& other = sweep_->motion();
@@ -44,7 +45,8 @@ void PatchMotionCheck::count_still(const Pose& X) noexcept {
 }
 
 bool PatchMotionCheck::may_sweep() const noexcept {
-  return sweep_ && limit_.deadline_ns != kNoDeadline && (bundled_ || near_.size() <= kMostSwept);
+  return sweep_ && limit_.deadline_ns != kNoDeadline && others_ == OtherParts::far &&
+         (bundled_ || near_.size() <= kMostSwept);
 }
 
 /// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind.

@@ -263,6 +263,23 @@ TEST_CASE("a way is gone along in both directions, but not back before where it 
   CHECK(!way.toward(half, d));
 }
 
+TEST_CASE("who asks about some of the parts is answered about the motion that was asked for") {
+  const MeshPtr sheet = wave(0.1, 0.01, 0.05, 60), die = wave(0.1, 0.01, 0.05, 83);
+  PatchMotionCheck check(sheet, Vec3::Zero(), 0.075, {die}, {Pose{}}, {});
+  std::vector<FacePair> blocking;
+  blocking.reserve(64);
+  int unknown = 0, instead = 0;
+  for (int i = 0; i < 40; ++i) {
+    check.begin({0}, monotonic_ns() + 50000, OtherParts::ignored);
+    blocking.clear();
+    unknown += check.check(Pose{Quat::Identity(), Vec3(0, 0, 2e-4)}, {{0, 0, -1e-4}, {}}, kClearance, blocking) ==
+               MotionAnswer::unknown;
+    instead += check.instead().has_value();
+  }
+  CHECK(unknown > 5);
+  CHECK(instead == 0);
+}
+
 TEST_CASE("with little time a tick, a fine sheet comes down on its die by motions that are looked at as a whole") {
   const MeshPtr sheet = wave(0.1, 0.01, 0.05, 60), die = wave(0.1, 0.01, 0.05, 83);
   const Oracle oracle(sheet, die);
