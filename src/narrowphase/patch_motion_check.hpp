@@ -114,6 +114,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
   bool stands_still() const { return still_for_ >= kTicksStill; }
+  bool rests(const Displacement& d) noexcept;
   bool may_sweep() const noexcept;
   bool may_go_along() const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
@@ -201,6 +202,7 @@ class PatchMotionCheck final : public MotionCheck {
   int still_for_ = 0;                     ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
+  bool brought_nothing_ = false;   ///< the last sweep, and the pen has stood since
   bool touches_ = false;           ///< see heads()
   bool sweeping_ = false;          ///< it was begun, and its answer not yet given
   std::optional<Displacement> instead_;

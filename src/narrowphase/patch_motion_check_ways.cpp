@@ -44,6 +44,12 @@ void PatchMotionCheck::count_still(const Pose& X) noexcept {
   if (!still) still_X_ = X;
 }
 
+/// At rest cells are to have the time: the last sweep brought nothing, and the pen stands.
+bool PatchMotionCheck::rests(const Displacement& d) noexcept {
+  if (size(pen_) > kStands) brought_nothing_ = false;
+  return size(d) < kStill || (touches_ && brought_nothing_);
+}
+
 bool PatchMotionCheck::may_sweep() const noexcept {
   return sweep_ && limit_.deadline_ns != kNoDeadline && others_ == OtherParts::far &&
          (bundled_ || near_.size() <= kMostSwept);
@@ -187,6 +193,7 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Displacement& d, std::vector<Face
   instead_ = along ? *along : Displacement{};
   met_ = sweep_->blocking();
   if (way_.ends_at(displaced(X, center_, *instead_))) tell(met_, blocking);
+  brought_nothing_ = size(*instead_) < kStill;
   forget_small_cells(*instead_);
   return answer(blocking);
 }
