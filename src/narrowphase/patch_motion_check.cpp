@@ -62,9 +62,6 @@ constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
 // for contact have too many others in reach.
 constexpr double kHeadwayEdges = 1.0;
-// Where A has left by this part of it, cells from before are too small: with a whole edge, what comes back renews them
-// all.
-constexpr double kLeftEdges = 0.3;
 // Cells (about 1160 bytes each) for the held part: for every triangle of it, where surfaces lie on each other, and for
 // every part.
 constexpr std::size_t kMinCells = 1u << 13;
@@ -87,12 +84,6 @@ constexpr double kShareKept = 0.999;
 constexpr double kShareBehind = 0.3, kSharePays = 0.5;
 // The share of a tick's spare time that goes to the way ahead.
 constexpr double kWayShare = 0.7;
-
-/// Where a motion leaves, few pairs tell (35 in the median of a sheet of 7000 triangles); where it does not, that many
-/// are lost. Walls of many parts take thousands, which is worth it when the cells are behind.
-constexpr int kFewPairs = 128;
-/// Ticks after which what was too much is tried again, at most.
-constexpr std::uint64_t kLongestWait = 32;
 
 /// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done or `idle_rounds` in
 /// a row have taken nothing apart.
@@ -377,70 +368,6 @@ void PatchMotionCheck::tell(const std::vector<FacePair>& pairs, std::vector<Face
   for (const FacePair& pair : pairs)
     if (blocking.size() < blocking.capacity())
       blocking.push_back(pair.part < fixed_.size() ? pair : bundle_->of_part(pair));
-}
-
-void PatchMotionCheck::jumped() noexcept {
-  way_.drop();
-  next_way_.drop();
-  sweeping_ = looks_ahead_ = false;
-  sides_.assign(sides_.size(), Sides{});
-}
-
-const PatchMotionCheck::Sides& PatchMotionCheck::sides_of(std::uint32_t part, const Pose& X) noexcept {
-  Sides& sides = sides_[part];
-  if (sides.known) return sides;
-  const Body &A = held_body_, &B = bodies_[part];
-  const Pose X_BA = poses_[part].inverse() * X, X_AB = X_BA.inverse();
-  sides = {true, B.facing && !A.points.empty(), A.facing && !B.points.empty()};
-  for (const Vec3& p : A.points) sides.a_outside = sides.a_outside && B.facing->outside(X_BA * p);
-  for (const Vec3& p : B.points) sides.b_outside = sides.b_outside && A.facing->outside(X_AB * p);
-  return sides;
-}
-
-bool PatchMotionCheck::only_leaves(const Pose& X, const Displacement& d, double clearance) noexcept {
-  if (!trusted_ || (d.dp.isZero(0) && d.dr.isZero(0))) return false;
-  const bool thorough = behind_ && now_ >= retry_leaving_ && cells_->leads_away(d.dp);
-  const int most = thorough ? LeavingCheck::kMostVisits : kFewPairs;
-  // Of many parts as one, all that are near.
-  bool a_outside = true, b_outside = true;
-  for (const std::uint32_t part : near_) {
-    if (!bundled_ || !bundle_->has(part)) continue;
-    if (!sides_[part].known && past(limit_.deadline_ns)) return false;
-    const Sides& sides = sides_of(part, X);
-    a_outside = a_outside && sides.a_outside;
-    b_outside = b_outside && sides.b_outside;
-  }
-  for (const std::uint32_t part : near_cells_) {
-    if (past(limit_.deadline_ns)) return false;
-    const bool single = part < fixed_.size();
-    const Sides sides = single ? sides_of(part, X) : Sides{true, a_outside && bundle_facing_, b_outside};
-    const PatchTree& tree = single ? *fixed_[part] : *bundle_->tree();
-    const Facing* facing = single ? bodies_[part].facing.get() : bundle_facing_.get();
-    const Pose pose = single ? poses_[part] : Pose{};
-    const Quat q = pose.q.conjugate();
-    const Sweep sweep(pose.inverse() * X, {q * d.dp, q * d.dr}, center_, tree,
-                      held_->radius() + (held_->origin() - center_).norm(), clearance);
-    if (!leaving_.leaves({held_.get(), sides.b_outside ? held_body_.facing.get() : nullptr}, center_,
-                         {&tree, sides.a_outside ? facing : nullptr}, sweep, most, limit_.deadline_ns)) {
-      if (thorough && leaving_.visits() > kFewPairs) {
-        wait_ = std::min(2 * wait_ + 2, kLongestWait);
-        retry_leaving_ = now_ + wait_;
-      }
-      return false;
-    }
-  }
-  wait_ = 0;
-  return true;
-}
-
-void PatchMotionCheck::forget_small_cells(const Displacement& d) noexcept {
-  const double before = left_;
-  left_ += d.dp.norm() + radius_ * d.dr.norm();
-  const double far = kLeftEdges * edge_;
-  if (before > far || left_ <= far) return;
-  cells_->forget_cut();
-  cells_->set_near(near_cells_);
-  headway_.restart();
 }
 
 /// The front of parts that slide along each other holds what was taken apart and not put together again: where it is

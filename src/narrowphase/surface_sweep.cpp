@@ -234,8 +234,12 @@ void SurfaceSweep::look_at_face(std::uint32_t k) {
     for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
       if ((open & 1) == 0 || lane >= part().blocks->faces(beside_[i].block)) continue;
       const std::uint32_t face = blocks_a_->face(block_, k), face_b = part().blocks->face(beside_[i].block, lane);
-      if (edges_keep_apart(moved, b, lane, middle_ - b.origin, floor_) || keeps_apart(face, face_b)) continue;
-      meet(face, face_b);
+      if (edges_keep_apart(moved, b, lane, middle_ - b.origin, floor_)) continue;
+      const Faces faces = faces_of(face, face_b);
+      if (keeps_apart(faces)) continue;
+      if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
+      blocking_.push_back({near_[at_], face, face_b});
+      meet(faces);
       // Over a shorter way from here on.
       place(block_);
       return;
@@ -243,39 +247,32 @@ void SurfaceSweep::look_at_face(std::uint32_t k) {
   }
 }
 
-bool SurfaceSweep::keeps_apart(std::uint32_t face, std::uint32_t face_b) {
-  std::array<Vec3, 3> a, b;
-  double reach = 0;
+SurfaceSweep::Faces SurfaceSweep::faces_of(std::uint32_t face, std::uint32_t face_b) const {
+  Faces out;
   for (int c = 0; c < 3; ++c) {
-    a[c] = a_->corner(face, c) - center_;
-    b[c] = part().tree->corner(face_b, c) - part().tree->origin();
-    reach = std::max(reach, a[c].norm());
+    out.a[c] = a_->corner(face, c) - center_;
+    out.b[c] = part().tree->corner(face_b, c) - part().tree->origin();
+    out.reach = std::max(out.reach, out.a[c].norm());
   }
+  return out;
+}
+
+bool SurfaceSweep::keeps_apart(const Faces& faces) {
   MovingPlane plane = last_plane_.n0.isZero(0) ? MovingPlane{Vec3::UnitX(), Vec3::UnitX()} : last_plane_;
-  if (!separate_triangles(a, b, sweep_, reach, nullptr, plane)) return false;
+  if (!separate_triangles(faces.a, faces.b, sweep_, faces.reach, nullptr, plane)) return false;
   last_plane_ = plane;
   return true;
 }
 
 /// Something is in the way: the motion ends before it.
-void SurfaceSweep::meet(std::uint32_t face, std::uint32_t face_b) {
-  std::array<Vec3, 3> a, b;
-  double reach = 0;
-  for (int c = 0; c < 3; ++c) {
-    a[c] = a_->corner(face, c) - center_;
-    b[c] = part().tree->corner(face_b, c) - part().tree->origin();
-    reach = std::max(reach, a[c].norm());
-  }
-  double until = free_until(a, b, reach, sampling_ ? std::max(kKept, clearance_) : clearance_);
+void SurfaceSweep::meet(const Faces& faces) {
+  double until = free_until(faces, sampling_ ? std::max(kKept, clearance_) : clearance_);
   // It was nearer at the start.
-  if (until == 0 && sampling_) until = free_until(a, b, reach, clearance_);
-  if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
-  blocking_.push_back({near_[at_], face, face_b});
+  if (until == 0 && sampling_) until = free_until(faces, clearance_);
   set_share(until);
 }
 
-double SurfaceSweep::free_until(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double reach,
-                                double clearance) const {
+double SurfaceSweep::free_until(const Faces& faces, double clearance) const {
   const double length = d_.dp.norm() + reach_ * d_.dr.norm();
   const double start_floor = sweep_.start_floor;
   double free = 0, met = share_;
@@ -284,7 +281,7 @@ double SurfaceSweep::free_until(const std::array<Vec3, 3>& a, const std::array<V
     Sweep sweep = sweep_by(s, clearance);
     sweep.start_floor = start_floor;
     MovingPlane plane{Vec3::UnitX(), Vec3::UnitX()};
-    (separate_triangles(a, b, sweep, reach, nullptr, plane) ? free : met) = s;
+    (separate_triangles(faces.a, faces.b, sweep, faces.reach, nullptr, plane) ? free : met) = s;
   }
   return free;
 }

@@ -65,6 +65,11 @@ class SurfaceSweep {
   struct Node {
     std::uint32_t level, index;
   };
+  /// A face of A, from its center of mass, and one of B, from its origin.
+  struct Faces {
+    std::array<Vec3, 3> a, b;
+    double reach = 0;  ///< of A's, m
+  };
   /// A block of B beside that of A.
   struct Beside {
     std::uint32_t block;
@@ -82,9 +87,10 @@ class SurfaceSweep {
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
   void look_at_face(std::uint32_t k);
-  bool keeps_apart(std::uint32_t face, std::uint32_t face_b);
-  void meet(std::uint32_t face, std::uint32_t face_b);
-  double free_until(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double reach, double clearance) const;
+  Faces faces_of(std::uint32_t face, std::uint32_t face_b) const;
+  bool keeps_apart(const Faces& faces);
+  void meet(const Faces& faces);
+  double free_until(const Faces& faces, double clearance) const;
   const FaceLanes& lanes(std::uint32_t block);
   const Part& part() const { return parts_[near_[at_]]; }
 
