@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "narrowphase/wide.hpp"
 
 namespace tegotae {
 namespace {
@@ -84,6 +87,22 @@ std::vector<std::uint32_t> beside_each_other(const PatchTree& tree) {
   return order;
 }
 
+typedef float Lane __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
+typedef std::int32_t LaneBits __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
+
+TEGOTAE_WIDE std::uint32_t overlap(const BoxLanes& boxes, const AxisBox& box) {
+  LaneBits all = LaneBits{1, 2, 4, 8, 16, 32, 64, 128};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Lane low = *reinterpret_cast<const Lane*>(boxes.low[i].data());
+    const Lane high = *reinterpret_cast<const Lane*>(boxes.high[i].data());
+    all &= (LaneBits)(low <= box.high[i]) & (LaneBits)(high >= box.low[i]);
+  }
+  std::array<std::uint64_t, BoxLanes::kBoxes / 2> in_pairs;
+  std::memcpy(in_pairs.data(), &all, sizeof all);
+  const std::uint64_t pair = in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3];
+  return static_cast<std::uint32_t>(pair | pair >> 32);
+}
+
 }  // namespace
 
 AxisBox AxisBox::empty() {
@@ -108,23 +127,50 @@ void AxisBox::add(const AxisBox& other) {
 }
 
 FaceBlocks::FaceBlocks(const PatchTree& tree) : order_(beside_each_other(tree)) {
-  boxes_.emplace_back((order_.size() + kBlockFaces - 1) / kBlockFaces, AxisBox::empty());
+  std::vector<AxisBox> boxes((order_.size() + kBlockFaces - 1) / kBlockFaces, AxisBox::empty());
   for (std::size_t i = 0; i < order_.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const Vec3 corner = tree.corner(order_[i], k) - tree.origin();
-      boxes_[0][i / kBlockFaces].add(corner, corner);
+      boxes[i / kBlockFaces].add(corner, corner);
     }
   }
-  while (boxes_.back().size() > 1) {
-    const std::vector<AxisBox>& below = boxes_.back();
-    std::vector<AxisBox> level((below.size() + kFan - 1) / kFan, AxisBox::empty());
-    for (std::size_t i = 0; i < below.size(); ++i) level[i / kFan].add(below[i]);
-    boxes_.push_back(std::move(level));
+  levels_.push_back(level_of(boxes));
+  while (boxes.size() > 1) {
+    std::vector<AxisBox> above((boxes.size() + kFan - 1) / kFan, AxisBox::empty());
+    for (std::size_t i = 0; i < boxes.size(); ++i) above[i / kFan].add(boxes[i]);
+    boxes.swap(above);
+    levels_.push_back(level_of(boxes));
   }
+}
+
+FaceBlocks::Level FaceBlocks::level_of(const std::vector<AxisBox>& boxes) {
+  Level level{static_cast<std::uint32_t>(boxes.size()), std::vector<BoxLanes>((boxes.size() + kFan - 1) / kFan)};
+  for (std::size_t n = 0; n < kFan * level.boxes.size(); ++n) {
+    const AxisBox box = n < boxes.size() ? boxes[n] : AxisBox::empty();
+    for (std::size_t i = 0; i < 3; ++i) {
+      level.boxes[n / kFan].low[i][n % kFan] = box.low[i];
+      level.boxes[n / kFan].high[i][n % kFan] = box.high[i];
+    }
+  }
+  return level;
+}
+
+AxisBox FaceBlocks::box(std::uint32_t level, std::uint32_t node) const {
+  const BoxLanes& lanes = levels_[level].boxes[node / kFan];
+  AxisBox out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.low[i] = lanes.low[i][node % kFan];
+    out.high[i] = lanes.high[i][node % kFan];
+  }
+  return out;
 }
 
 std::uint32_t FaceBlocks::faces(std::uint32_t block) const {
   return std::min(kBlockFaces, static_cast<std::uint32_t>(order_.size()) - block * kBlockFaces);
+}
+
+std::uint32_t BoxLanes::overlapping(const AxisBox& box) const noexcept {
+  return overlap(*this, box);
 }
 
 void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box) {
@@ -132,7 +178,7 @@ void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box) {
   box_ = box;
   stacked_ = 0;
   const std::uint32_t top = blocks.levels() - 1;
-  if (blocks.boxes(top)[0].overlaps(box)) stack_[stacked_++] = {top, 0};
+  if (blocks.box(top, 0).overlaps(box)) stack_[stacked_++] = {top, 0};
 }
 
 std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {
@@ -143,11 +189,9 @@ std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {
       out[found++] = node.index;
       continue;
     }
-    const std::vector<AxisBox>& below = blocks_->boxes(node.level - 1);
-    const std::uint32_t first = node.index * FaceBlocks::kFan;
-    const std::uint32_t end = std::min(first + FaceBlocks::kFan, static_cast<std::uint32_t>(below.size()));
-    for (std::uint32_t i = first; i < end; ++i)
-      if (below[i].overlaps(box_)) stack_[stacked_++] = {node.level - 1, i};
+    std::uint32_t bits = blocks_->boxes_below(node.level - 1, node.index).overlapping(box_);
+    for (std::uint32_t i = FaceBlocks::kFan * node.index; bits != 0; ++i, bits >>= 1)
+      if ((bits & 1) != 0) stack_[stacked_++] = {node.level - 1, i};
   }
   return found;
 }

@@ -21,9 +21,18 @@ struct AxisBox {
   void add(const Vec3& from, const Vec3& to);
   void add(const AxisBox& other);
   bool overlaps(const AxisBox& other) const {
-    return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
-           (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    const auto along = [&](std::size_t i) { return low[i] <= other.high[i] && other.low[i] <= high[i]; };
+    return along(0) && along(1) && along(2);
   }
+};
+
+/// Eight boxes, field after field. Places without a box have an empty one, which overlaps nothing.
+struct alignas(32) BoxLanes {
+  static constexpr std::uint32_t kBoxes = 8;
+  std::array<std::array<float, kBoxes>, 3> low, high;
+
+  /// Those that overlap `box`: a bit each.
+  std::uint32_t overlapping(const AxisBox& box) const noexcept;
 };
 
 /// The faces of a surface in blocks of sixteen that lie beside each other, and a hierarchy of upright boxes over the
@@ -32,21 +41,30 @@ struct AxisBox {
 class FaceBlocks {
  public:
   /// Levels of a hierarchy over any number of faces, and nodes that go together.
-  static constexpr std::uint32_t kMostLevels = 11, kFan = 8;
+  static constexpr std::uint32_t kMostLevels = 11, kFan = BoxLanes::kBoxes;
 
   explicit FaceBlocks(const PatchTree& tree);
 
-  std::uint32_t count() const { return static_cast<std::uint32_t>(boxes_[0].size()); }
+  std::uint32_t count() const { return nodes(0); }
   /// Faces of a block: fewer than kBlockFaces in the last one alone.
   std::uint32_t faces(std::uint32_t block) const;
   std::uint32_t face(std::uint32_t block, std::uint32_t k) const { return order_[block * kBlockFaces + k]; }
   /// The highest level has one node, level 0 the blocks; node `i` is over those from kFan · i on, one level below.
-  std::uint32_t levels() const { return static_cast<std::uint32_t>(boxes_.size()); }
-  const std::vector<AxisBox>& boxes(std::uint32_t level) const { return boxes_[level]; }
+  std::uint32_t levels() const { return static_cast<std::uint32_t>(levels_.size()); }
+  std::uint32_t nodes(std::uint32_t level) const { return levels_[level].nodes; }
+  AxisBox box(std::uint32_t level, std::uint32_t node) const;
+  /// Those that node `i` of the level above is over.
+  const BoxLanes& boxes_below(std::uint32_t level, std::uint32_t i) const { return levels_[level].boxes[i]; }
 
  private:
+  struct Level {
+    std::uint32_t nodes;
+    std::vector<BoxLanes> boxes;
+  };
+  static Level level_of(const std::vector<AxisBox>& boxes);
+
   std::vector<std::uint32_t> order_;
-  std::vector<std::vector<AxisBox>> boxes_;  ///< of each level
+  std::vector<Level> levels_;
 };
 
 /// The blocks that meet a box, one by one.

@@ -137,7 +137,7 @@ float largest(const Vec3& v) {
 }  // namespace
 
 FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block) {
-  const AxisBox& box = blocks.boxes(0)[block];
+  const AxisBox box = blocks.box(0, block);
   for (std::size_t i = 0; i < 3; ++i)
     origin[static_cast<Eigen::Index>(i)] = 0.5 * (double{box.low[i]} + double{box.high[i]});
   for (std::uint32_t k = 0; k < kBlockFaces; ++k) {

@@ -120,14 +120,14 @@ bool SurfaceSweep::next_block() {
   }
   while (stacked_ > 0) {
     const Node node = stack_[--stacked_];
-    walk_.start(*part().blocks, swept(blocks_a_->boxes(node.level)[node.index]));
+    walk_.start(*part().blocks, swept(blocks_a_->box(node.level, node.index)));
     if (walk_.next(found_.data(), 1) == 0) continue;
     if (node.level == 0) {
       if (recedes(node.index)) continue;
       place(node.index);
       return true;
     }
-    const auto below = static_cast<std::uint32_t>(blocks_a_->boxes(node.level - 1).size());
+    const std::uint32_t below = blocks_a_->nodes(node.level - 1);
     const std::uint32_t first = node.index * FaceBlocks::kFan;
     for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
       stack_[stacked_++] = {node.level - 1, i};
@@ -198,7 +198,7 @@ bool SurfaceSweep::next_beside() {
   if (faces_ == 0) return false;
   besides_ = walk_.next(found_.data(), kBeside);
   for (std::uint32_t i = 0; i < besides_; ++i) {
-    const AxisBox& box = part().blocks->boxes(0)[found_[i]];
+    const AxisBox box = part().blocks->box(0, found_[i]);
     beside_[i].block = found_[i];
     for (std::size_t c = 0; c < 3; ++c) {
       const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(c)]);

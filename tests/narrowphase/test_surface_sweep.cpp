@@ -80,7 +80,7 @@ TEST_CASE("blocks have all faces once, and a walk finds the blocks that a box me
         for (int c = 0; c < 3; ++c)
           for (std::size_t i = 0; i < 3; ++i) {
             const double x = (tree.corner(face, c) - tree.origin())[static_cast<Eigen::Index>(i)];
-            CHECK((x >= blocks.boxes(0)[b].low[i] && x <= blocks.boxes(0)[b].high[i]));
+            CHECK((x >= blocks.box(0, b).low[i] && x <= blocks.box(0, b).high[i]));
           }
       }
     }
@@ -90,7 +90,7 @@ TEST_CASE("blocks have all faces once, and a walk finds the blocks that a box me
       box.add(random_in_ball(rng, 0.06), random_in_ball(rng, 0.06));
       std::set<std::uint32_t> expected, found;
       for (std::uint32_t b = 0; b < blocks.count(); ++b)
-        if (blocks.boxes(0)[b].overlaps(box)) expected.insert(b);
+        if (blocks.box(0, b).overlaps(box)) expected.insert(b);
       BlockWalk walk;
       walk.start(blocks, box);
       std::array<std::uint32_t, 3> some;
