@@ -13,6 +13,19 @@ namespace {
 /// Bits of a place along each axis, sorted by one at a time.
 constexpr unsigned kPlaceBits = 11;
 constexpr std::uint32_t kPlaces = 1u << kPlaceBits;
+/// Kinds of faces by size, each this many times as long as the last.
+constexpr std::uint64_t kSizes = 8;
+constexpr double kLonger = 4;
+/// Faces that look the other way than most, or than the first where there is no such way, by these cosines.
+constexpr float kOneWay = 0.4F, kOtherWay = -0.2F;
+/// A block has fewer faces than there is room for where more would make it longer than so many times the root of their
+/// squared lengths,
+constexpr float kLongest = 2;
+/// where they lie in layers that are farther apart than their normals tell, with this share of its length besides,
+constexpr float kLayers = 0.02F;
+/// and where they look in two directions, each of them exact to this share of what both are, which is no less than so
+/// much.
+constexpr float kOneOfTwo = 0.3F, kTwoDirections = 0.2F;
 /// Faces of a stretch of the curve.
 constexpr std::size_t kStretch = 256 * std::size_t{kBlockFaces};
 
@@ -26,15 +39,16 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 struct Placed {
-  std::uint64_t place;
-  std::array<float, 3> middle;
+  std::uint64_t place;  ///< along the curve, after the size
+  std::array<float, 3> middle, normal;
+  float length2;  ///< of the longest edge
   std::uint32_t face;
 };
 
 /// Sorts by the places, digit by digit.
 void sort_by_place(std::vector<Placed>& faces) {
   std::vector<Placed> sorted(faces.size());
-  for (unsigned shift = 0; shift < 3 * kPlaceBits; shift += kPlaceBits) {
+  for (unsigned shift = 0; shift < 4 * kPlaceBits; shift += kPlaceBits) {
     std::vector<std::size_t> first(kPlaces + 1, 0);
     for (const Placed& f : faces) ++first[(f.place >> shift) % kPlaces + 1];
     for (std::size_t i = 1; i <= kPlaces; ++i) first[i] += first[i - 1];
@@ -43,48 +57,147 @@ void sort_by_place(std::vector<Placed>& faces) {
   }
 }
 
-/// Halves the faces across their longest extent, over and over, down to whole blocks.
-void halve(Placed* faces, std::size_t count) {
-  if (count <= kBlockFaces) return;
-  std::array<float, 3> low = faces[0].middle, high = low;
-  for (std::size_t i = 1; i < count; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], faces[i].middle[k]);
-      high[k] = std::max(high[k], faces[i].middle[k]);
-    }
-  }
-  std::size_t axis = 0;
-  for (std::size_t k = 1; k < 3; ++k)
-    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-  const std::size_t blocks = (count + kBlockFaces - 1) / kBlockFaces, half = (blocks + 1) / 2 * kBlockFaces;
-  std::nth_element(faces, faces + half, faces + count,
-                   [axis](const Placed& a, const Placed& b) { return a.middle[axis] < b.middle[axis]; });
-  halve(faces, half);
-  halve(faces + half, count - half);
+/// Of the length of its longest edge, the longest first.
+std::uint64_t size_class(double length2, double size) {
+  const double shorter = std::log(std::max(size * size / length2, 1.0)) / (2 * std::log(kLonger));
+  return static_cast<std::uint64_t>(std::min(shorter, kSizes - 1.0));
 }
 
-/// Faces that are beside each other one after the other: along a curve that fills space, and within each stretch of it,
-/// which may jump, by halves. Halves alone take five times as long for a million, and the curve alone makes blocks that
-/// overlap three times as many others.
-std::vector<std::uint32_t> beside_each_other(const PatchTree& tree) {
+float dot(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+struct Extent {
+  std::array<float, 3> low, high;
+  std::size_t longest = 0;
+  float diagonal2 = 0, lengths2 = 0;
+};
+
+Extent extent_of(const Placed* faces, std::size_t count) {
+  Extent e{faces[0].middle, faces[0].middle};
+  for (std::size_t i = 0; i < count; ++i) {
+    e.lengths2 += faces[i].length2;
+    for (std::size_t k = 0; k < 3; ++k) {
+      e.low[k] = std::min(e.low[k], faces[i].middle[k]);
+      e.high[k] = std::max(e.high[k], faces[i].middle[k]);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float length = e.high[k] - e.low[k];
+    e.diagonal2 += length * length;
+    if (length > e.high[e.longest] - e.low[e.longest]) e.longest = k;
+  }
+  return e;
+}
+
+/// The mean direction of faces, and what it lacks of unit length, as the sine of how far they are off it.
+struct Way {
+  std::array<float, 3> mean;
+  float length, spread;
+};
+
+Way way_of(const Placed* faces, std::size_t count) {
+  Way way{};
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) way.mean[k] += faces[i].normal[k];
+  for (float& x : way.mean) x /= static_cast<float>(count);
+  way.length = std::sqrt(dot(way.mean, way.mean));
+  way.spread = std::sqrt(std::max(0.0F, 1 - way.length * way.length));
+  return way;
+}
+
+/// Where faces look the other way than others, those come last; returns how many come first.
+std::size_t part_by_side(Placed* faces, std::size_t count) {
+  Way way = way_of(faces, count);
+  if (way.length < kOneWay) way.mean = faces[0].normal;
+  const auto along = [&](const Placed& f) { return dot(f.normal, way.mean); };
+  if (std::none_of(faces, faces + count, [&](const Placed& f) { return along(f) < kOtherWay; })) return count;
+  return static_cast<std::size_t>(std::partition(faces, faces + count, [&](const Placed& f) { return along(f) >= 0; }) -
+                                  faces);
+}
+
+/// The same where the faces of a block look in two directions.
+std::size_t part_by_direction(Placed* faces, std::size_t count, const Way& way) {
+  if (way.spread < kTwoDirections) return count;
+  const auto farthest_from = [&](const std::array<float, 3>& n) {
+    return std::min_element(faces, faces + count, [&](const Placed& a, const Placed& b) {
+             return dot(a.normal, n) < dot(b.normal, n);
+           })->normal;
+  };
+  const std::array<float, 3> one = farthest_from(way.mean), other = farthest_from(one);
+  const auto half = static_cast<std::size_t>(
+      std::partition(faces, faces + count,
+                     [&](const Placed& f) { return dot(f.normal, one) >= dot(f.normal, other); }) -
+      faces);
+  if (half == 0 || half == count) return count;
+  const float most = kOneOfTwo * way.spread;
+  return way_of(faces, half).spread < most && way_of(faces + half, count - half).spread < most ? half : count;
+}
+
+/// The same where they lie in layers.
+std::size_t part_by_layer(Placed* faces, std::size_t count, const Way& way, float diagonal) {
+  const auto depth = [&](const Placed& f) { return dot(f.middle, way.mean); };
+  std::sort(faces, faces + count, [&](const Placed& a, const Placed& b) { return depth(a) < depth(b); });
+  if (!(depth(faces[count - 1]) - depth(faces[0]) > (way.spread + kLayers) * way.length * diagonal)) return count;
+  std::size_t half = 1;
+  for (std::size_t i = 2; i < count; ++i)
+    if (depth(faces[i]) - depth(faces[i - 1]) > depth(faces[half]) - depth(faces[half - 1])) half = i;
+  return half;
+}
+
+/// How many faces come first where they are no block, in an order in which they are parted: by the side that they look
+/// to, and in the middle of their longest extent.
+std::size_t part(Placed* faces, std::size_t count) {
+  if (count == 1) return 1;
+  std::size_t half = part_by_side(faces, count);
+  if (half < count) return half;
+  const Extent e = extent_of(faces, count);
+  if (count <= kBlockFaces) {
+    const Way way = way_of(faces, count);
+    half = part_by_direction(faces, count, way);
+    if (half == count) half = part_by_layer(faces, count, way, std::sqrt(e.diagonal2));
+    if (half < count || e.diagonal2 < kLongest * kLongest * e.lengths2) return half;
+  }
+  const std::size_t blocks = (count + kBlockFaces - 1) / kBlockFaces;
+  half = blocks == 1 ? (count + 1) / 2 : (blocks + 1) / 2 * kBlockFaces;
+  std::nth_element(faces, faces + half, faces + count, [axis = e.longest](const Placed& a, const Placed& b) {
+    return a.middle[axis] < b.middle[axis];
+  });
+  return half;
+}
+
+/// Puts faces that are near each other in order, block after block. `begins` with the number of faces before them.
+void arrange(Placed* faces, std::size_t count, std::uint32_t begins, std::vector<std::uint32_t>& first_of_blocks) {
+  const std::size_t half = part(faces, count);
+  if (half == count) {
+    first_of_blocks.push_back(begins);
+    return;
+  }
+  arrange(faces, half, begins, first_of_blocks);
+  arrange(faces + half, count - half, begins + static_cast<std::uint32_t>(half), first_of_blocks);
+}
+
+/// Faces that are beside each other one after the other: size by size along a curve that fills space, and within each
+/// stretch of it, which may jump, by halves. Halves alone take five times as long for a million, and the curve alone
+/// makes blocks that overlap three times as many others.
+std::vector<Placed> beside_each_other(const PatchTree& tree) {
   const auto count = static_cast<std::uint32_t>(tree.mesh().triangles.size());
-  const double scale = 0.5 * (kPlaces - 1) / std::max(tree.radius(), std::numeric_limits<double>::min());
+  const double size = std::max(tree.radius(), std::numeric_limits<double>::min());
   std::vector<Placed> placed(count);
   for (std::uint32_t f = 0; f < count; ++f) {
-    const Vec3 middle = (tree.corner(f, 0) + tree.corner(f, 1) + tree.corner(f, 2)) / 3 - tree.origin();
-    placed[f] = {0, {}, f};
+    const Vec3 &p = tree.corner(f, 0), &q = tree.corner(f, 1), &r = tree.corner(f, 2);
+    const Vec3 middle = (p + q + r) / 3 - tree.origin(), normal = (q - p).cross(r - p).stableNormalized();
+    const double length2 = std::max({(q - p).squaredNorm(), (r - p).squaredNorm(), (r - q).squaredNorm()});
+    placed[f] = {size_class(length2, size) << (3 * kPlaceBits), {}, {}, static_cast<float>(length2), f};
     for (int i = 0; i < 3; ++i) {
-      const double at = std::clamp(scale * (middle[i] + tree.radius()), 0.0, kPlaces - 1.0);
+      const double at = std::clamp(0.5 * (kPlaces - 1) / size * (middle[i] + size), 0.0, kPlaces - 1.0);
       placed[f].place |= spread(static_cast<std::uint64_t>(at)) << i;
       placed[f].middle[static_cast<std::size_t>(i)] = static_cast<float>(middle[i]);
+      placed[f].normal[static_cast<std::size_t>(i)] = static_cast<float>(normal[i]);
     }
   }
   sort_by_place(placed);
-  for (std::size_t first = 0; first < count; first += kStretch)
-    halve(placed.data() + first, std::min(kStretch, count - first));
-  std::vector<std::uint32_t> order(count);
-  std::transform(placed.begin(), placed.end(), order.begin(), [](const Placed& p) { return p.face; });
-  return order;
+  return placed;
 }
 
 typedef float Lane __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
@@ -126,12 +239,23 @@ void AxisBox::add(const AxisBox& other) {
   }
 }
 
-FaceBlocks::FaceBlocks(const PatchTree& tree) : order_(beside_each_other(tree)) {
-  std::vector<AxisBox> boxes((order_.size() + kBlockFaces - 1) / kBlockFaces, AxisBox::empty());
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 corner = tree.corner(order_[i], k) - tree.origin();
-      boxes[i / kBlockFaces].add(corner, corner);
+FaceBlocks::FaceBlocks(const PatchTree& tree) {
+  std::vector<Placed> placed = beside_each_other(tree);
+  const auto size = [&](std::size_t i) { return placed[i].place >> (3 * kPlaceBits); };
+  for (std::size_t first = 0, end = 0; first < placed.size(); first = end) {
+    while (end < placed.size() && end - first < kStretch && size(end) == size(first)) ++end;
+    arrange(placed.data() + first, end - first, static_cast<std::uint32_t>(first), first_);
+  }
+  first_.push_back(static_cast<std::uint32_t>(placed.size()));
+  order_.resize(placed.size());
+  std::transform(placed.begin(), placed.end(), order_.begin(), [](const Placed& p) { return p.face; });
+  std::vector<AxisBox> boxes(first_.size() - 1, AxisBox::empty());
+  for (std::uint32_t block = 0; block < boxes.size(); ++block) {
+    for (std::uint32_t i = first_[block]; i < first_[block + 1]; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 corner = tree.corner(order_[i], k) - tree.origin();
+        boxes[block].add(corner, corner);
+      }
     }
   }
   levels_.push_back(level_of(boxes));
@@ -165,16 +289,13 @@ AxisBox FaceBlocks::box(std::uint32_t level, std::uint32_t node) const {
   return out;
 }
 
-std::uint32_t FaceBlocks::faces(std::uint32_t block) const {
-  return std::min(kBlockFaces, static_cast<std::uint32_t>(order_.size()) - block * kBlockFaces);
-}
-
 std::uint32_t BoxLanes::overlapping(const AxisBox& box) const noexcept {
   return overlap(*this, box);
 }
 
-void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box) {
+void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level) {
   blocks_ = &blocks;
+  level_ = level;
   box_ = box;
   stacked_ = 0;
   const std::uint32_t top = blocks.levels() - 1;
@@ -185,7 +306,7 @@ std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {
   std::uint32_t found = 0;
   while (stacked_ > 0 && found < most) {
     const Node node = stack_[--stacked_];
-    if (node.level == 0) {
+    if (node.level == level_) {
       out[found++] = node.index;
       continue;
     }

@@ -35,8 +35,8 @@ struct alignas(32) BoxLanes {
   std::uint32_t overlapping(const AxisBox& box) const noexcept;
 };
 
-/// The faces of a surface in blocks of sixteen that lie beside each other, and a hierarchy of upright boxes over the
-/// blocks. For questions that are asked once and of all faces: a PatchTree's boxes fit closer and take ten times as
+/// The faces of a surface in blocks of up to sixteen that lie beside each other and face about the same way, and a
+/// hierarchy of upright boxes over the blocks. For questions that are asked once and of all faces: a PatchTree's boxes fit closer and take ten times as
 /// long. Immutable; 6 bytes a triangle.
 class FaceBlocks {
  public:
@@ -46,9 +46,9 @@ class FaceBlocks {
   explicit FaceBlocks(const PatchTree& tree);
 
   std::uint32_t count() const { return nodes(0); }
-  /// Faces of a block: fewer than kBlockFaces in the last one alone.
-  std::uint32_t faces(std::uint32_t block) const;
-  std::uint32_t face(std::uint32_t block, std::uint32_t k) const { return order_[block * kBlockFaces + k]; }
+  /// Faces of a block, up to kBlockFaces.
+  std::uint32_t faces(std::uint32_t block) const { return first_[block + 1] - first_[block]; }
+  std::uint32_t face(std::uint32_t block, std::uint32_t k) const { return order_[first_[block] + k]; }
   /// The highest level has one node, level 0 the blocks; node `i` is over those from kFan · i on, one level below.
   std::uint32_t levels() const { return static_cast<std::uint32_t>(levels_.size()); }
   std::uint32_t nodes(std::uint32_t level) const { return levels_[level].nodes; }
@@ -64,13 +64,14 @@ class FaceBlocks {
   static Level level_of(const std::vector<AxisBox>& boxes);
 
   std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> first_;  ///< of each block, in order_; the end after the last
   std::vector<Level> levels_;
 };
 
-/// The blocks that meet a box, one by one.
+/// The nodes of one level that meet a box, one by one.
 class BlockWalk {
  public:
-  void start(const FaceBlocks& blocks, const AxisBox& box);
+  void start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level = 0);
   /// Up to `most` more of them to `out`; returns how many. Fewer than asked are the last.
   std::uint32_t next(std::uint32_t* out, std::uint32_t most);
 
@@ -80,6 +81,7 @@ class BlockWalk {
   };
   const FaceBlocks* blocks_ = nullptr;
   AxisBox box_{};
+  std::uint32_t level_ = 0;
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;
   std::uint32_t stacked_ = 0;
 };

@@ -41,7 +41,8 @@ TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<float, 3>& b) {
 }
 
 /// The greatest of the gaps, along some directions, between `a` and eight faces of `b`.
-TEGOTAE_INLINE Lane gaps(const MovedFace& a, const FaceLanes& b, std::uint32_t first,
+template <std::size_t points>
+TEGOTAE_INLINE Lane gaps(const MovedHull<points>& a, const FaceLanes& b, std::uint32_t first,
                          const std::array<float, 3>& shift) {
   Lane gap = greater(load(b.low[0], first) - (a.high[0] + shift[0]), (a.low[0] + shift[0]) - load(b.high[0], first));
   for (std::size_t i = 1; i < 3; ++i) {
@@ -55,7 +56,7 @@ TEGOTAE_INLINE Lane gaps(const MovedFace& a, const FaceLanes& b, std::uint32_t f
   gap = greater(gap, lesser(lesser(p, q), r) - (a.normal_high + up));
   const Lanes3 n = load3(b.normal, first);
   Lane low = dot(n, a.corner[0]), high = low;
-  for (std::size_t k = 1; k < 6; ++k) {
+  for (std::size_t k = 1; k < 2 * points; ++k) {
     const Lane at = dot(n, a.corner[k]);
     low = lesser(low, at);
     high = greater(high, at);
@@ -65,8 +66,9 @@ TEGOTAE_INLINE Lane gaps(const MovedFace& a, const FaceLanes& b, std::uint32_t f
   return greater(gap, load(b.normal_low, first) - (high + moved));
 }
 
-TEGOTAE_WIDE std::uint32_t below(const MovedFace& a, const FaceLanes& b, const std::array<float, 3>& shift,
-                                 float floor) {
+template <std::size_t points>
+TEGOTAE_INLINE std::uint32_t gaps_below(const MovedHull<points>& a, const FaceLanes& b,
+                                        const std::array<float, 3>& shift, float floor) {
   const LaneBits first = (LaneBits)(gaps(a, b, 0, shift) < floor), last = (LaneBits)(gaps(a, b, kLane, shift) < floor);
   const LaneBits any = first | last;
   std::array<std::uint64_t, kLane / 2> in_pairs;
@@ -77,6 +79,16 @@ TEGOTAE_WIDE std::uint32_t below(const MovedFace& a, const FaceLanes& b, const s
   for (std::uint32_t k = 0; k < kLane; ++k)
     out |= (static_cast<std::uint32_t>(first[k]) & 1U) << k | (static_cast<std::uint32_t>(last[k]) & 1U) << (kLane + k);
   return out;
+}
+
+TEGOTAE_WIDE std::uint32_t below(const MovedFace& a, const FaceLanes& b, const std::array<float, 3>& shift,
+                                 float floor) {
+  return gaps_below(a, b, shift, floor);
+}
+
+TEGOTAE_WIDE std::uint32_t below(const MovedBox& a, const FaceLanes& b, const std::array<float, 3>& shift,
+                                 float floor) {
+  return gaps_below(a, b, shift, floor);
 }
 
 /// Directions across edges: of each with each, and across those of both faces in their planes; one is there twice.
@@ -164,16 +176,18 @@ FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint3
   }
 }
 
-MovedFace::MovedFace(const std::array<Vec3, 3>& start, const std::array<Vec3, 3>& end, const Vec3& origin) {
+template <std::size_t points>
+MovedHull<points>::MovedHull(const std::array<Vec3, points>& start, const std::array<Vec3, points>& end,
+                             const Vec3& origin) {
   size = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < points; ++c) {
     const Vec3 from = start[c] - origin, to = end[c] - origin;
     corner[c] = {static_cast<float>(from.x()), static_cast<float>(from.y()), static_cast<float>(from.z())};
-    corner[3 + c] = {static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())};
+    corner[points + c] = {static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())};
   }
   normal = normal_of(corner[0], corner[1], corner[2]);
   low = high = corner[0];
-  for (std::size_t c = 0; c < 6; ++c) {
+  for (std::size_t c = 0; c < 2 * points; ++c) {
     const float along = normal[0] * corner[c][0] + normal[1] * corner[c][1] + normal[2] * corner[c][2];
     normal_low = c == 0 ? along : std::min(normal_low, along);
     normal_high = c == 0 ? along : std::max(normal_high, along);
@@ -185,10 +199,26 @@ MovedFace::MovedFace(const std::array<Vec3, 3>& start, const std::array<Vec3, 3>
   for (std::size_t i = 0; i < 3; ++i) size = std::max({size, -low[i], high[i]});
 }
 
-std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
+template struct MovedHull<3>;
+template struct MovedHull<8>;
+
+namespace {
+
+template <std::size_t points>
+std::uint32_t open_faces(const MovedHull<points>& a, const FaceLanes& b, const Vec3& shift, double floor) {
   const float error = kGapError * (a.size + b.size + largest(shift));
   return below(a, b, {static_cast<float>(shift.x()), static_cast<float>(shift.y()), static_cast<float>(shift.z())},
                static_cast<float>(floor) + error);
+}
+
+}  // namespace
+
+std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
+  return open_faces(a, b, shift, floor);
+}
+
+std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
+  return open_faces(a, b, shift, floor);
 }
 
 bool edges_keep_apart(const MovedFace& a, const FaceLanes& b, std::uint32_t k, const Vec3& shift,

@@ -22,22 +22,26 @@ struct alignas(64) FaceLanes {
   FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block);
 };
 
-/// A face of A at the two ends of a motion, from a point near it (m, axes of B's tree).
-struct MovedFace {
-  std::array<std::array<float, 3>, 6> corner;  ///< at the start, then at the end
-  std::array<float, 3> normal;                 ///< at the start, as that of FaceLanes
-  float normal_low, normal_high;               ///< of the six corners along it
-  std::array<float, 3> low, high;              ///< of them along the axes
-  float size;                                  ///< largest coordinate, m
+/// What A's hull of some points is at the two ends of a motion, from a point near it (m, axes of B's tree).
+template <std::size_t points>
+struct MovedHull {
+  std::array<std::array<float, 3>, 2 * points> corner;  ///< at the start, then at the end
+  std::array<float, 3> normal;                          ///< of the first three at the start, as that of FaceLanes
+  float normal_low, normal_high;                        ///< of all corners along it
+  std::array<float, 3> low, high;                       ///< of them along the axes
+  float size;                                           ///< largest coordinate, m
 
-  MovedFace() = default;
-  MovedFace(const std::array<Vec3, 3>& start, const std::array<Vec3, 3>& end, const Vec3& origin);
+  MovedHull() = default;
+  MovedHull(const std::array<Vec3, points>& start, const std::array<Vec3, points>& end, const Vec3& origin);
 };
+typedef MovedHull<3> MovedFace;
+typedef MovedHull<8> MovedBox;
 
-/// Of the faces of `b`, those that neither the axes nor the planes of the two faces keep `floor` (m) apart from `a` at
+/// Of the faces of `b`, those that neither the axes nor the planes of the faces, or A's first one, keep `floor` (m) apart from `a` at
 /// both ends of its motion, and with that on the straight ways between: a bit each. `shift` is the origin of `a` from
 /// that of `b`, m. The rounding in single precision is taken off.
 std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept;
+std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept;
 
 /// Whether a direction across two edges, or across an edge in the plane of its face, keeps face `k` of `b` apart in the
 /// same way.

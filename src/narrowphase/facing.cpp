@@ -177,6 +177,19 @@ Facing::Facing(std::shared_ptr<const PatchTree> tree) : tree_(std::move(tree)), 
   }
 }
 
+NormalCone Facing::around(const std::vector<std::uint32_t>& faces) const {
+  const auto axis_of = [this](std::uint32_t face) -> Vec3 {
+    return Eigen::Map<const Eigen::Vector3f>(faces_[face].axis.data()).cast<double>();
+  };
+  Vec3 sum = Vec3::Zero();
+  for (const std::uint32_t face : faces) sum += axis_of(face);
+  if (!(sum.norm() > 0)) return {};
+  const Vec3 axis = sum.normalized();
+  double least = 1;
+  for (const std::uint32_t face : faces) least = std::min(least, axis.dot(axis_of(face)));
+  return cone(axis, least);
+}
+
 bool Facing::outside(const Vec3& p) const noexcept {
   // Directions without meaning; from the second on only where a ray grazes an edge.
   static const std::array<Vec3, 4> kDirections = {Vec3(0.36, 0.48, 0.8), Vec3(-0.6, 0.64, 0.48),

@@ -36,6 +36,8 @@ class Facing {
   const PatchTree& tree() const { return *tree_; }
   const NormalCone& node(std::uint32_t i) const { return nodes_[i]; }
   const NormalCone& face(std::uint32_t i) const { return faces_[i]; }
+  /// Around those of some faces.
+  NormalCone around(const std::vector<std::uint32_t>& faces) const;
   /// Whether `p` (m, file frame), which is on no face, is outside for sure. No allocation.
   bool outside(const Vec3& p) const noexcept;
 

@@ -126,6 +126,8 @@ class PatchMotionCheck final : public MotionCheck {
   /// How far A is from where `d` leads when it has made another motion, m.
   double left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept;
   bool begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
+  /// How far (m) a motion has to be free for whole blocks of faces to be enough.
+  double worth() const noexcept;
   /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
   /// else. False where one of them is too large.
   bool find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
@@ -193,6 +195,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<bool> outside_;             ///< of each of them: see SurfaceSweep::begin()
   std::vector<bool> left_out_;            ///< of each part: it may be
   std::vector<FacePair> met_, next_met_;  ///< at their ends
+  bool rough_end_ = false;                ///< of the way that was proved last: see SurfaceSweep::ended_by_blocks()
   double clearance_ = 0;                  ///< of the last check, m
   bool looks_ahead_ = false;              ///< it is at a way that A has not come to yet
   double lead_ = 1;                       ///< share of the ticks that it takes that such a way begins ahead

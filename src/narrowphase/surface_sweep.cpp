@@ -1,3 +1,5 @@
+
+
 #include "narrowphase/surface_sweep.hpp"
 
 #include <algorithm>
@@ -23,6 +25,27 @@ constexpr int kHalvings = 24;
 /// Boxes are grown by this share of the coordinates that they come from, in single precision.
 constexpr float kBoxError = 1e-6F;
 constexpr double kRadiusSlack = 1 + 1e-9;
+/// What is free that blocks tell is taken a little shorter: they are looked at again.
+constexpr double kShareKept = 0.999;
+/// Blocks that may be looked at face by face before all are: so many, and one for so many of A's.
+constexpr double kGoodShare = 0.5;
+constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 16;
+
+/// Of the nodes of the lowest levels.
+std::vector<std::vector<NormalCone>> cones_of(const Facing& facing, const FaceBlocks& blocks, std::uint32_t levels) {
+  std::vector<std::vector<NormalCone>> cones;
+  std::uint32_t each = 1;
+  for (std::uint32_t level = 0; level < levels; ++level, each *= FaceBlocks::kFan) {
+    cones.emplace_back();
+    for (std::uint32_t first = 0; first < blocks.count(); first += each) {
+      std::vector<std::uint32_t> faces;
+      for (std::uint32_t block = first; block < std::min(first + each, blocks.count()); ++block)
+        for (std::uint32_t k = 0; k < blocks.faces(block); ++k) faces.push_back(blocks.face(block, k));
+      cones.back().push_back(facing.around(faces));
+    }
+  }
+  return cones;
+}
 
 }  // namespace
 
@@ -32,15 +55,24 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
     : a_(std::move(a)),
       facing_(std::move(facing)),
       blocks_a_(std::make_shared<FaceBlocks>(*a_)),
+      slabs_a_(std::make_shared<BlockSlabs>(*a_, *blocks_a_)),
       center_(center),
       offset_a_(a_->origin() - center),
       reach_(a_->radius() + offset_a_.norm()),
       cache_(kCached) {
-  std::map<const PatchTree*, std::shared_ptr<const FaceBlocks>> blocks = {{a_.get(), blocks_a_}};
+  if (facing_) cones_a_ = cones_of(*facing_, *blocks_a_, slabs_a_->levels());
+  struct Known {
+    std::shared_ptr<const FaceBlocks> blocks;
+    std::shared_ptr<const BlockSlabs> slabs;
+  };
+  std::map<const PatchTree*, Known> known = {{a_.get(), {blocks_a_, slabs_a_}}};
   for (const CellFront::FixedPart& part : fixed) {
-    auto& own = blocks[part.tree.get()];
-    if (!own && part.tree->mesh().triangles.size() <= kMostFaces) own = std::make_shared<FaceBlocks>(*part.tree);
-    parts_.push_back({part.tree, own, part.pose});
+    Known& own = known[part.tree.get()];
+    if (!own.blocks && part.tree->mesh().triangles.size() <= kMostFaces) {
+      own.blocks = std::make_shared<FaceBlocks>(*part.tree);
+      own.slabs = std::make_shared<BlockSlabs>(*part.tree, *own.blocks);
+    }
+    parts_.push_back({part.tree, own.blocks, own.slabs, part.pose});
   }
   near_.reserve(fixed.size());
   outside_.assign(fixed.size(), false);
@@ -48,33 +80,49 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
 }
 
 void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-                         const std::vector<bool>& outside, double clearance) noexcept {
+                         const std::vector<bool>& outside, double clearance, double worth) noexcept {
   X_ = X;
   d_ = d;
   near_.assign(near.begin(), near.end());
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = facing_ && outside[i];
   clearance_ = clearance;
+  worth_ = worth / (d.dp.norm() + reach_ * d.dr.norm());
   blocking_.clear();
   share_ = 1;
-  under_way_ = sampling_ = true;
-  at_ = sampled_ = 0;
-  face_ = faces_ = besides_ = stacked_ = 0;
+  under_way_ = true;
+  ended_by_blocks_ = false;
+  searched_blocks_ = 0;
   last_plane_ = {Vec3::Zero(), Vec3::Zero()};
-  if (!near_.empty()) set_share(1);
+  if (!near_.empty()) start_look(Look::sample);
 }
 
 bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
   while (under_way_) {
-    if (share_ <= 0 || at_ >= near_.size()) {
+    if (share_ <= 0 || near_.empty()) {
       under_way_ = false;
     } else if (face_ < faces_) {
       look_at_face(face_++);
-    } else if (!next_beside() && !next_block() && !next_part()) {
+    } else if (!next_beside() && !(look_ == Look::blocks ? next_node() : next_block()) && !next_part()) {
       under_way_ = false;
     }
     if (past(deadline_ns)) break;
   }
   return !under_way_;
+}
+
+void SurfaceSweep::start_look(Look look) {
+  look_ = look;
+  at_ = sampled_ = 0;
+  face_ = faces_ = besides_ = 0;
+  start_part();
+}
+
+/// Begins with the part `at_`, at A's root.
+void SurfaceSweep::start_part() {
+  sampled_ = 0;
+  stack_[0] = {blocks_a_->levels() - 1, 0};
+  stacked_ = 1;
+  set_share(share_);
 }
 
 /// The motion up to `share` of it, as the part sees it.
@@ -93,46 +141,123 @@ void SurfaceSweep::set_share(double share) {
   floor_ = sweep_.floor + 0.125 * kUnitSlack * sweep_.theta2 * (reach_ + sweep_.center_distance);
 }
 
+/// The next part, or the first one once more. False when all is done.
 bool SurfaceSweep::next_part() {
-  if (++at_ == near_.size()) {
-    if (!sampling_) return false;
-    sampling_ = false;
-    at_ = 0;
+  if (++at_ < near_.size()) {
+    start_part();
+    return true;
   }
-  sampled_ = 0;
-  if (!sampling_) {
-    stack_[0] = {blocks_a_->levels() - 1, 0};
-    stacked_ = 1;
-  }
-  set_share(share_);
+  if (look_ == Look::blocks && ended_by_blocks_) blocking_.clear();
+  if (look_ != Look::sample) return false;
+  sampled_share_ = share_;
+  start_look(worth_ <= share_ ? Look::blocks : Look::faces);
   return true;
 }
 
 /// Finds the next block of A beside which there may be something of B. False when all were looked at.
 bool SurfaceSweep::next_block() {
-  if (sampling_) {
+  if (look_ == Look::sample) {
     const std::uint32_t stride = std::max(1U, blocks_a_->count() / kSample);
     const std::uint32_t block = stride / 2 + stride * sampled_;
     if (block >= blocks_a_->count()) return false;
     ++sampled_;
-    if (!recedes(block)) place(block);
+    if (!all_recede(block)) place(block);
     return true;
   }
   while (stacked_ > 0) {
     const Node node = stack_[--stacked_];
+    if (recedes(node)) continue;
     walk_.start(*part().blocks, swept(blocks_a_->box(node.level, node.index)));
     if (walk_.next(found_.data(), 1) == 0) continue;
     if (node.level == 0) {
-      if (recedes(node.index)) continue;
+      if (all_recede(node.index)) continue;
       place(node.index);
       return true;
     }
-    const std::uint32_t below = blocks_a_->nodes(node.level - 1);
-    const std::uint32_t first = node.index * FaceBlocks::kFan;
-    for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
-      stack_[stacked_++] = {node.level - 1, i};
+    push_below(node);
   }
   return false;
+}
+
+void SurfaceSweep::push_below(const Node& node) {
+  const std::uint32_t below = blocks_a_->nodes(node.level - 1), first = node.index * FaceBlocks::kFan;
+  for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
+    stack_[stacked_++] = {node.level - 1, i};
+}
+
+/// Looks at the next node of A's hierarchy as a whole; a block's faces one by one where that is not enough. False when
+/// there is none.
+bool SurfaceSweep::next_node() {
+  if (stacked_ == 0) return false;
+  const Node node = stack_[--stacked_];
+  if (recedes(node)) return true;
+  const double apart = node_apart_for(node);
+  if (apart == 1 || (node.level == 0 && all_recede(node.index))) return true;
+  if (node.level > 0) {
+    push_below(node);
+    return true;
+  }
+  const double kept = kShareKept * apart;
+  const bool may_search = searched_blocks_ < kFewBlocks + blocks_a_->count() / kBlocksShare;
+  if (kept * share_ >= worth_ && (kept >= kGoodShare || !may_search)) {
+    // Over a shorter way from here on; this one once more.
+    set_share(kept * share_);
+    ended_by_blocks_ = true;
+    ++stacked_;
+  } else if (may_search) {
+    ++searched_blocks_;
+    place(node.index);
+  } else {
+    look_at_all_faces();
+  }
+  return true;
+}
+
+void SurfaceSweep::look_at_all_faces() {
+  share_ = sampled_share_;
+  ended_by_blocks_ = false;
+  start_look(Look::faces);
+}
+
+/// The share of the motion in which all faces under A's node are apart from B, or less.
+double SurfaceSweep::node_apart_for(const Node& node) {
+  const std::uint32_t level = std::min(node.level, part().blocks->levels() - 1);
+  walk_.start(*part().blocks, swept(blocks_a_->box(node.level, node.index)), level);
+  const bool flat = node.level < slabs_a_->levels() && level < part().slabs->levels();
+  MovedSlab slab;
+  if (flat) slab = moved(slabs_a_->slab(node.level, node.index));
+  double apart = 1;
+  for (std::uint32_t count = kBeside; count == kBeside;) {
+    count = walk_.next(found_.data(), kBeside);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!flat) return 0;
+      const double share = apart_for(slab, part().slabs->slab(level, found_[i]), floor_);
+      if (share == 1) continue;
+      if (node.level > 0) return 0;
+      if (!apart_from_faces(slab, found_[i])) apart = std::min(apart, share);
+      if (kShareKept * apart * share_ < worth_) return 0;
+    }
+  }
+  return apart;
+}
+
+/// Whether the faces of a block of B are each apart from what A's block is in.
+bool SurfaceSweep::apart_from_faces(const MovedSlab& slab, std::uint32_t block) {
+  const FaceLanes& b = lanes(block);
+  const Vec3 middle = 0.5 * (slab.from + slab.to);
+  return not_kept_apart(slab.corners(middle), b, middle - b.origin, floor_) == 0;
+}
+
+MovedSlab SurfaceSweep::moved(const Slab& slab) const {
+  MovedSlab out;
+  const Vec3 center = slab.center + offset_a_;
+  const Mat3 axes = slab.axes * slab.half.asDiagonal();
+  out.from = sweep_.start.R * center + sweep_.start.t;
+  out.to = sweep_.end.R * center + sweep_.end.t;
+  out.from_axes = sweep_.start.R * axes;
+  out.to_axes = sweep_.end.R * axes;
+  out.axes = sweep_.start.R * slab.axes;
+  return out;
 }
 
 /// What all points of a box of A pass, in B's axes.
@@ -152,8 +277,15 @@ AxisBox SurfaceSweep::swept(const AxisBox& box) const {
   return out;
 }
 
+/// Whether all faces under A's node recede from the part, by what is known of them together.
+bool SurfaceSweep::recedes(const Node& node) const {
+  if (!outside_[at_] || node.level >= cones_a_.size()) return false;
+  const Slab& slab = slabs_a_->slab(node.level, node.index);
+  return passing_.recedes(cones_a_[node.level][node.index], slab.center + offset_a_, kRadiusSlack * slab.half.norm());
+}
+
 /// Whether all faces of A's block recede from the part, and so need not be looked at.
-bool SurfaceSweep::recedes(std::uint32_t block) {
+bool SurfaceSweep::all_recede(std::uint32_t block) {
   skipped_ = 0;
   if (!outside_[at_]) return false;
   const std::uint32_t faces = blocks_a_->faces(block);
@@ -240,6 +372,8 @@ void SurfaceSweep::look_at_face(std::uint32_t k) {
       if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
       blocking_.push_back({near_[at_], face, face_b});
       meet(faces);
+      ended_by_blocks_ = false;
+      if (look_ == Look::blocks && share_ < worth_) return look_at_all_faces();
       // Over a shorter way from here on.
       place(block_);
       return;
@@ -266,9 +400,9 @@ bool SurfaceSweep::keeps_apart(const Faces& faces) {
 
 /// Something is in the way: the motion ends before it.
 void SurfaceSweep::meet(const Faces& faces) {
-  double until = free_until(faces, sampling_ ? std::max(kKept, clearance_) : clearance_);
+  double until = free_until(faces, look_ == Look::sample ? std::max(kKept, clearance_) : clearance_);
   // It was nearer at the start.
-  if (until == 0 && sampling_) until = free_until(faces, clearance_);
+  if (until == 0 && look_ == Look::sample) until = free_until(faces, clearance_);
   set_share(until);
 }
 

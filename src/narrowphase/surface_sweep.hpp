@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
+#include "narrowphase/block_slabs.hpp"
 #include "narrowphase/cell_front.hpp"
 #include "narrowphase/face_blocks.hpp"
 #include "narrowphase/face_lanes.hpp"
@@ -31,9 +33,10 @@ class SurfaceSweep {
   /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
   /// between the same two poses whose file-frame origin moves linearly (see Sweep). Separations below `clearance` (m)
   /// do not count. `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
-  /// and the answer is about an A that is apart from them at `X`.
+  /// and the answer is about an A that is apart from them at `X`. Where `worth` (m) of the motion or more are free
+  /// that whole blocks of faces tell, a tenth of the work, no more is looked for.
   void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-             const std::vector<bool>& outside, double clearance) noexcept;
+             const std::vector<bool>& outside, double clearance, double worth = std::numeric_limits<double>::infinity()) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
@@ -48,13 +51,17 @@ class SurfaceSweep {
   /// When done: the part of the motion, from its start, that is free. What is met ends it, a little before it is
   /// touched where that can be.
   double share() const { return share_; }
-  /// When done: what was met, the nearest last; at most as many as the constructor was told.
+  /// When done: what was met, the nearest last; at most as many as the constructor was told. Nothing where only whole
+  /// blocks met.
   const std::vector<FacePair>& blocking() const { return blocking_; }
+  /// When done: whole blocks ended the motion, and more of it may be free.
+  bool ended_by_blocks() const { return ended_by_blocks_; }
 
  private:
   struct Part {
     std::shared_ptr<const PatchTree> tree;
     std::shared_ptr<const FaceBlocks> blocks;  ///< null: too large
+    std::shared_ptr<const BlockSlabs> slabs;
     Pose pose;
   };
   /// Of the blocks of B that were looked at of late.
@@ -75,14 +82,26 @@ class SurfaceSweep {
     std::uint32_t block;
     AxisBox box;  ///< from the middle of A's block
   };
+  /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks, if
+  /// that may be enough, and all faces, if it was not.
+  enum class Look : std::uint8_t { sample, blocks, faces };
   static constexpr std::size_t kCached = 512;
   static constexpr std::uint32_t kBeside = 32;
 
   Sweep sweep_by(double share, double clearance) const;
   void set_share(double share);
+  void start_look(Look look);
+  void start_part();
   bool next_part();
   bool next_block();
-  bool recedes(std::uint32_t block);
+  bool next_node();
+  double node_apart_for(const Node& node);
+  bool apart_from_faces(const MovedSlab& slab, std::uint32_t block);
+  void look_at_all_faces();
+  MovedSlab moved(const Slab& slab) const;
+  void push_below(const Node& node);
+  bool recedes(const Node& node) const;
+  bool all_recede(std::uint32_t block);
   void place(std::uint32_t block);
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
@@ -97,6 +116,8 @@ class SurfaceSweep {
   std::shared_ptr<const PatchTree> a_;
   std::shared_ptr<const Facing> facing_;
   std::shared_ptr<const FaceBlocks> blocks_a_;
+  std::shared_ptr<const BlockSlabs> slabs_a_;
+  std::vector<std::vector<NormalCone>> cones_a_;  ///< of the levels that have slabs, if A bounds a solid
   Vec3 center_, offset_a_;
   double reach_;  ///< of A about its center of mass, m
   std::vector<Part> parts_;
@@ -106,10 +127,13 @@ class SurfaceSweep {
   bool under_way_ = false;
   Pose X_;
   Displacement d_;
-  double clearance_ = 0, share_ = 1;
+  double clearance_ = 0, worth_ = 0, share_ = 1;
+  double sampled_share_ = 1;           ///< that the sample left
+  bool ended_by_blocks_ = false;       ///< of what was met last, no more is known
+  std::uint32_t searched_blocks_ = 0;  ///< of A, face by face, while whole ones were looked at
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
-  bool sampling_ = false;      ///< a few blocks of A tell first about how far the motion goes
+  Look look_ = Look::sample;
   std::uint32_t at_ = 0;       ///< of near_
   std::uint32_t sampled_ = 0;  ///< the next block of the sample
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy
