@@ -83,7 +83,7 @@ constexpr double kShareKept = 0.999;
 // they prove of it is made if it is no less than that share.
 constexpr double kShareBehind = 0.3, kSharePays = 0.5;
 // The share of a tick's spare time that goes to the way ahead.
-constexpr double kWayShare = 0.7;
+constexpr double kWayShare = 0.9;
 
 /// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done or `idle_rounds` in
 /// a row have taken nothing apart.
@@ -121,6 +121,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
       way_(center, radius, fixed.size() + 1),
       next_way_(center, radius, fixed.size() + 1),
+      line_(center, radius, fixed.size() + 1),
       edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
   if (effort_ == ProofEffort::full) pairing_.emplace(held_);
@@ -312,13 +313,13 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   clearance_ = clearance;
   instead_.reset();
   count_still(X);
-  if (sweeping_ && sweeps(X, wanted)) return ask_sweep(wanted, blocking);
+  if (sweeping_ && sweeps(X, wanted)) return ask_sweep(X, wanted, blocking);
   sweeping_ = false;
   if (goes_along(X, wanted, blocking)) return answer(blocking);
   instead_ = onto_way(X, wanted);
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
-  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(d);
+  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(X, d);
   if (sweeps_now) {
     const std::int64_t now_ns = monotonic_ns();
     limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));
@@ -335,11 +336,12 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   limit_.deadline_ns = deadline_ns;
   behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
   behind_since_ = now_;
-  if (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty()))) {
-    // What was begun ahead of it may have come to here.
-    sweeping_ = (looks_ahead_ && sweeps(X, wanted)) || begin_sweep(X, wanted, clearance);
+  // What was begun ahead of it may have come to here.
+  const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted);
+  if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
+    sweeping_ = begun || begin_sweep(X, wanted, clearance);
     looks_ahead_ = false;
-    if (sweeping_) return ask_sweep(wanted, blocking);
+    if (sweeping_) return ask_sweep(X, wanted, blocking);
   }
   return answer(blocking);
 }

@@ -110,13 +110,14 @@ class PatchMotionCheck final : public MotionCheck {
   MotionAnswer ask(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
   MotionAnswer answer(std::vector<FacePair>& blocking) noexcept;
   void tell(const std::vector<FacePair>& pairs, std::vector<FacePair>& blocking) const noexcept;
-  /// Whether a motion is looked at as a whole that begins at `X` and is not worse than `d`.
+  /// Whether a motion is looked at as a whole that `X` is on, and that leads where `d` does.
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
   bool stands_still() const { return still_for_ >= kTicksStill; }
-  bool rests(const Displacement& d) noexcept;
+  bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
   bool may_go_along() const noexcept;
+  bool may_look_ahead() const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   void fronts_left() noexcept;
@@ -126,15 +127,16 @@ class PatchMotionCheck final : public MotionCheck {
   /// How far A is from where `d` leads when it has made another motion, m.
   double left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept;
   bool begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
-  /// How far (m) a motion has to be free for whole blocks of faces to be enough.
-  double worth() const noexcept;
+  /// How far (m) a motion has to be free for whole blocks of faces to be enough, where so much is wanted of it.
+  double worth(const Displacement& wanted, const Displacement& all) const noexcept;
   /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
   /// else. False where one of them is too large.
   bool find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
   /// Whether those that a way or a sweep is about are all that are near.
   bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
-  MotionAnswer ask_sweep(const Displacement& d, std::vector<FacePair>& blocking) noexcept;
+  MotionAnswer ask_sweep(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
+  void look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept;
   bool empty_full_front(std::uint32_t part, const CertifyReport& report) noexcept;
   /// Whether time was over; the same of ask_all_cells().
   bool ask_fronts(const Pose& X, const Displacement& d, double clearance, std::vector<FacePair>& blocking) noexcept;
@@ -153,6 +155,7 @@ class PatchMotionCheck final : public MotionCheck {
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;
   void prepare_way(const Pose& X) noexcept;
+  bool begin_ahead(const Pose& X) noexcept;
   void finish_way() noexcept;
   CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// Asks for ever more clearance at rest by `ask`, until something is nearer or time is over.
@@ -191,6 +194,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool behind_ = false;                   ///< the cells ran out of time when they were asked last
   std::unique_ptr<SurfaceSweep> sweep_;   ///< what takes their place then
   ProvedWay way_, next_way_;              ///< of it; the next one begins where that ends, or is not known
+  ProvedWay line_;                        ///< what is looked at, as if it were proved
   std::vector<std::uint32_t> swept_;      ///< parts
   std::vector<bool> outside_;             ///< of each of them: see SurfaceSweep::begin()
   std::vector<bool> left_out_;            ///< of each part: it may be
@@ -205,7 +209,8 @@ class PatchMotionCheck final : public MotionCheck {
   int still_for_ = 0;                     ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
-  bool brought_nothing_ = false;   ///< the last sweep, and the pen has stood since
+  std::uint64_t swept_since_ = 0, swept_until_ = 0;  ///< the begin() of the last sweep's start and of its end
+  std::uint64_t swept_for_ = 0;                      ///< and the ticks that it took
   bool touches_ = false;           ///< see heads()
   bool sweeping_ = false;          ///< it was begun, and its answer not yet given
   std::optional<Displacement> instead_;

@@ -14,18 +14,22 @@ namespace {
 constexpr double kSweptTicks = 50, kLongestSweep = 0.5;
 // A goes along a way that is proved where that leaves no more than this share of what is wanted.
 constexpr double kWayLeaves = 0.5;
+// Where fronts are asked about each motion, it keeps to the way where that leaves no more than this.
+constexpr double kBesideWay = 0.1;
 // Poses are the same that differ by less than this share of the size of the scene: a tenth of the rounding that
 // certificates leave room for.
 constexpr double kSamePlace = 1e-13;
 // Near parts that are no bundle, at most: all lists are gone through for each of them.
 constexpr std::size_t kMostSwept = 256;
-// What a face takes at most, in ticks of which the spare time goes to ways ahead.
-constexpr double kTicksPerFace = 1e-3;
+// What a face takes at most, in ticks of which the spare time goes to ways ahead; and where whole blocks are enough.
+constexpr double kTicksPerFace = 1e-3, kRoughTicksPerFace = 2e-4;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
 constexpr double kSameWay = 0.95, kStands = 1e-7;
 // The ticks that the pen takes to come as far as whole blocks of faces are to prove at least, of a part of no more than
-// some faces and for each face: half as much again as the look at them takes. Fewer faces are looked at one by one.
-constexpr double kWorthTicks = 3, kWorthTicksPerFace = 1.5e-4;
+// some faces and for each face: about as long as the look at them takes. No less than this share of what is wanted, and
+// no more than that of all that is looked at. Fewer faces are looked at one by one.
+constexpr double kWorthTicks = 2, kWorthTicksPerFace = 3e-5;
+constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
 // What has come less far (m) stands.
 constexpr double kStill = 1e-6;
@@ -33,12 +37,14 @@ constexpr double kStill = 1e-6;
 }  // namespace
 
 bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexcept {
-  if (!may_sweep() ||
-      size(displacement(sweep_->start(), X, center_)) > kSamePlace * (X.p.norm() + center_.norm() + radius_) ||
-      !covers_near(sweep_->near()))
-    return false;
-  const Displacement& other = sweep_->motion();
+  if (!may_sweep() || !line_.is_on(X) || !covers_near(line_.parts())) return false;
+  const Displacement& other = line_.motion();
   return d.dp.dot(other.dp) + radius_ * radius_ * d.dr.dot(other.dr) > 0;
+}
+
+void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
+  sweep_->begin(X, d, swept_, outside_, clearance, worth);
+  line_.set(X, d, swept_);
 }
 
 void PatchMotionCheck::count_still(const Pose& X) noexcept {
@@ -49,10 +55,13 @@ void PatchMotionCheck::count_still(const Pose& X) noexcept {
   if (!still) still_X_ = X;
 }
 
-/// At rest cells are to have the time: the last sweep brought nothing, and the pen stands.
-bool PatchMotionCheck::rests(const Displacement& d) noexcept {
-  if (size(pen_) > kStands) brought_nothing_ = false;
-  return size(d) < kStill || (touches_ && brought_nothing_);
+/// Where what touches still stands after it was looked at as a whole, cells are to have the time: until the pen moves, or
+/// for as long as that took where the pen moves on.
+bool PatchMotionCheck::rests(const Pose& X, const Displacement& d) const noexcept {
+  if (size(d) < kStill) return true;
+  if (!touches_ || size(displacement(sweep_->start(), X, center_)) > kStill) return false;
+  if (!(size(pen_) > kStands)) return true;
+  return now_ < swept_until_ + swept_for_ && same_way(d, sweep_->motion());
 }
 
 bool PatchMotionCheck::may_sweep() const noexcept {
@@ -65,8 +74,13 @@ bool PatchMotionCheck::may_go_along() const noexcept {
   return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
 }
 
+/// Of large parts, fronts may be behind as soon as they touch.
+bool PatchMotionCheck::may_look_ahead() const noexcept {
+  return may_sweep() && trusted_ && !touches_ && (may_go_along() || held_->mesh().triangles.size() >= kManyFaces);
+}
+
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
-  if (!may_go_along()) return false;
+  if (!may_look_ahead()) return false;
   way_.come_to(X);
   if (next_way_.is_on(X)) {
     way_ = next_way_;
@@ -74,11 +88,14 @@ bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vec
     next_way_.drop();
     way_.come_to(X);
   }
+  if (!may_go_along()) return false;
   const auto along = way_.toward(X, d);
   if (!along || !covers_near(way_.parts())) return false;
-  // Near the end, what nearly touches turns a motion away from the way: it is come to all the same.
+  // Near the end, what nearly touches turns a motion away from the way: it is come to all the same, and where the next
+  // way is looked at that begins there.
+  const bool leads_on = !met_.empty() || (looks_ahead_ && line_.is_on(way_.end()));
   const bool arrives =
-      !met_.empty() && !way_.done() && size(*along) > kStands && way_.ends_at(displaced(X, center_, *along));
+      leads_on && !way_.done() && size(*along) > kStands && way_.ends_at(displaced(X, center_, *along));
   if (left_of(X, d, *along) > kWayLeaves * size(d) && !arrives) return false;
   if (way_.ends_at(displaced(X, center_, *along))) tell(met_, blocking);
   forget_small_cells(*along);
@@ -87,10 +104,14 @@ bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vec
 }
 
 std::optional<Displacement> PatchMotionCheck::onto_way(const Pose& X, const Displacement& d) const noexcept {
-  if (!may_go_along() || !covers_near(way_.parts())) return std::nullopt;
-  const auto onto = way_.join(X, d);
-  if (!onto || left_of(X, d, *onto) > kWayLeaves * size(d)) return std::nullopt;
-  return onto;
+  if (!may_look_ahead()) return std::nullopt;
+  const double most = may_go_along() ? kWayLeaves : kBesideWay;
+  for (const ProvedWay* way : {&way_, &line_}) {
+    if ((way == &line_ && !looks_ahead_) || !covers_near(way->parts())) continue;
+    const auto onto = way->join(X, d);
+    if (onto && left_of(X, d, *onto) <= most * size(d)) return onto;
+  }
+  return std::nullopt;
 }
 
 double PatchMotionCheck::left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept {
@@ -142,15 +163,17 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
                            ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands))
                            : 0;
   const Displacement all = {d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
+  swept_since_ = now_;
   if (!find_swept(X, X, all)) return false;
-  sweep_->begin(X, all, swept_, outside_, clearance, worth());
+  look_at(X, all, clearance, worth(d, all));
   return true;
 }
 
-double PatchMotionCheck::worth() const noexcept {
+double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& all) const noexcept {
   const std::size_t faces = held_->mesh().triangles.size();
-  if (touches_ || faces < kManyFaces || !(size(pen_) > kStands)) return std::numeric_limits<double>::infinity();
-  return (kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces)) * size(pen_);
+  if (touches_ || faces < kManyFaces) return std::numeric_limits<double>::infinity();
+  const double ticks = kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces);
+  return std::min(std::max(ticks * size(pen_), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
 }
 
 void PatchMotionCheck::finish_way() noexcept {
@@ -168,28 +191,32 @@ void PatchMotionCheck::finish_way() noexcept {
 
 /// A way ahead of A is looked at as a whole in the time that is left: it begins where A will be by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
-  if (!may_go_along() || sweeping_ || !(size(pen_) > kStands)) return;
-  const double faces = static_cast<double>(held_->mesh().triangles.size());
-  const double ticks = std::max(2.0, lead_ * kTicksPerFace * faces);
-  const bool on_way = way_.is_on(X);
+  if (!may_look_ahead() || sweeping_ || !(size(pen_) > kStands)) return;
   looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
-  if (!looks_ahead_) {
-    const bool covered = covers_near(way_.parts());
-    if (covered && (next_way_.known() || way_.leads_on(X, ticks * pen_) || (on_way && !met_.empty()))) return;
-    const double length = size(pen_);
-    const double far = std::min(kSweptTicks + ticks, kLongestSweep * radius_ / length);
-    if (ticks > far) return;
-    const Pose from = on_way ? way_.end() : displaced(X, center_, ticks * pen_);
-    if (!find_swept(X, from, far * pen_)) return;
-    // Blocks of faces that ended a way would end the next one at once.
-    sweep_->begin(from, far * pen_, swept_, outside_, clearance_,
-                  on_way && rough_end_ ? std::numeric_limits<double>::infinity() : worth());
-    looks_ahead_ = true;
-  }
+  if (!looks_ahead_ && !begin_ahead(X)) return;
+  looks_ahead_ = true;
   if (sweep_->go_on(limit_.deadline_ns)) finish_way();
 }
 
-MotionAnswer PatchMotionCheck::ask_sweep(const Displacement& d, std::vector<FacePair>& blocking) noexcept {
+bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
+  const double faces = static_cast<double>(held_->mesh().triangles.size());
+  const double rough_ticks = std::max(2.0, lead_ * kRoughTicksPerFace * faces);
+  const bool on_way = covers_near(way_.parts()) &&
+                      (way_.is_on(X) || way_.leads_on(X, pen_) || way_.leads_on(X, rough_ticks * pen_));
+  // What is met there, and blocks of faces that ended a way would end the next one at once.
+  if (on_way && (next_way_.known() || !met_.empty() || !same_way(way_.motion(), pen_))) return false;
+  const bool rough = faces >= static_cast<double>(kManyFaces) && !(on_way && rough_end_);
+  const double ticks = rough ? rough_ticks : std::max(2.0, lead_ * kTicksPerFace * faces);
+  const double far = std::min(kSweptTicks + ticks, kLongestSweep * radius_ / size(pen_));
+  if (ticks > far) return false;
+  const Pose from = on_way ? way_.end() : displaced(X, center_, ticks * pen_);
+  if (!find_swept(X, from, far * pen_)) return false;
+  look_at(from, far * pen_, clearance_, rough ? worth({}, far * pen_) : std::numeric_limits<double>::infinity());
+  return true;
+}
+
+MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
+                                         std::vector<FacePair>& blocking) noexcept {
   blocking.clear();
   instead_ = d;
   if (!sweep_->go_on(limit_.deadline_ns) || past(limit_.deadline_ns)) {
@@ -198,9 +225,8 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Displacement& d, std::vector<Face
   }
   sweeping_ = false;
   next_way_.drop();
-  const Pose& X = sweep_->start();
-  const Displacement free = sweep_->share() * sweep_->motion();
-  way_.set(X, free, sweep_->near());
+  way_.set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
+  way_.come_to(X);
   share_ = 1;
   // What was met is told where the pen has come to it.
   const auto along = way_.toward(X, d);
@@ -208,7 +234,8 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Displacement& d, std::vector<Face
   met_ = sweep_->blocking();
   rough_end_ = sweep_->ended_by_blocks();
   if (way_.ends_at(displaced(X, center_, *instead_))) tell(met_, blocking);
-  brought_nothing_ = size(*instead_) < kStill;
+  swept_for_ = now_ - swept_since_ + 1;
+  swept_until_ = now_;
   forget_small_cells(*instead_);
   return answer(blocking);
 }

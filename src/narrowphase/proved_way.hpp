@@ -37,6 +37,7 @@ class ProvedWay {
   bool ends_at(const Pose& X) const { return place(X) >= kNearlyAll; }
   /// A has been at its end.
   bool done() const { return to_ >= kNearlyAll; }
+  const Displacement& motion() const { return d_; }
   Pose end() const { return displaced(X_, center_, d_); }
 
  private:
