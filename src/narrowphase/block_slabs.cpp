@@ -84,10 +84,10 @@ MovedBox MovedSlab::corners(const Vec3& origin) const {
   std::array<Vec3, 8> start, end;
   for (unsigned i = 0; i < 8; ++i) {
     const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-    start[i] = from + from_axes * side;
-    end[i] = to + to_axes * side;
+    start[i] = from + from_axes * side - origin;
+    end[i] = to + to_axes * side - origin;
   }
-  return MovedBox(start, end, origin);
+  return MovedBox(start, end);
 }
 
 double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept {

@@ -10,9 +10,9 @@
 namespace tegotae {
 namespace {
 
-/// Rounding of a gap in single precision, as a share of the sum of all coordinates that it comes from: a dozen
-/// operations and four numbers that were rounded, of 6e-8 each, along normals that are no axes.
-constexpr float kGapError = 4e-6F;
+/// Rounding of a gap in single precision, as a share of the sum of all coordinates that it comes from: two dozen
+/// operations and numbers that were rounded, of 6e-8 each, along normals that are no axes.
+constexpr float kGapError = 5e-6F;
 
 /// Conditions on vectors longer than a register would go number by number.
 constexpr std::uint32_t kLane = 8;
@@ -40,35 +40,72 @@ TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<float, 3>& b) {
   return a.x * b[0] + a.y * b[1] + a.z * b[2];
 }
 
+TEGOTAE_INLINE void store(FaceLanes::Field& field, std::uint32_t first, Lane x) {
+  *reinterpret_cast<Lane*>(field.data() + first) = x;
+}
+
+TEGOTAE_INLINE void store3(std::array<FaceLanes::Field, 3>& f, std::uint32_t first, const Lanes3& x) {
+  store(f[0], first, x.x);
+  store(f[1], first, x.y);
+  store(f[2], first, x.z);
+}
+
+/// One of the faces, as it is asked about.
+struct OneFace {
+  static constexpr std::size_t kCorners = 6;
+  const MovedLanes& of;
+  std::uint32_t k;
+
+  TEGOTAE_INLINE float corner(std::size_t c, std::size_t i) const { return of.corner[c][i][k]; }
+  TEGOTAE_INLINE float normal(std::size_t i) const { return of.normal[i][k]; }
+  TEGOTAE_INLINE float normal_low() const { return of.normal_low[k]; }
+  TEGOTAE_INLINE float normal_high() const { return of.normal_high[k]; }
+  TEGOTAE_INLINE float low(std::size_t i) const { return of.low[i][k]; }
+  TEGOTAE_INLINE float high(std::size_t i) const { return of.high[i][k]; }
+};
+
+struct OneBox {
+  static constexpr std::size_t kCorners = 16;
+  const MovedBox& of;
+
+  TEGOTAE_INLINE float corner(std::size_t c, std::size_t i) const { return of.corner[c][i]; }
+  TEGOTAE_INLINE float normal(std::size_t i) const { return of.normal[i]; }
+  TEGOTAE_INLINE float normal_low() const { return of.normal_low; }
+  TEGOTAE_INLINE float normal_high() const { return of.normal_high; }
+  TEGOTAE_INLINE float low(std::size_t i) const { return of.low[i]; }
+  TEGOTAE_INLINE float high(std::size_t i) const { return of.high[i]; }
+};
+
 /// The greatest of the gaps, along some directions, between `a` and eight faces of `b`.
-template <std::size_t points>
-TEGOTAE_INLINE Lane gaps(const MovedHull<points>& a, const FaceLanes& b, std::uint32_t first,
-                         const std::array<float, 3>& shift) {
-  Lane gap = greater(load(b.low[0], first) - (a.high[0] + shift[0]), (a.low[0] + shift[0]) - load(b.high[0], first));
+template <typename One>
+TEGOTAE_INLINE Lane gaps(const One& a, const FaceLanes& b, std::uint32_t first, const std::array<float, 3>& shift) {
+  Lane gap = greater(load(b.low[0], first) - (a.high(0) + shift[0]), (a.low(0) + shift[0]) - load(b.high[0], first));
   for (std::size_t i = 1; i < 3; ++i) {
-    gap = greater(gap, load(b.low[i], first) - (a.high[i] + shift[i]));
-    gap = greater(gap, (a.low[i] + shift[i]) - load(b.high[i], first));
+    gap = greater(gap, load(b.low[i], first) - (a.high(i) + shift[i]));
+    gap = greater(gap, (a.low(i) + shift[i]) - load(b.high[i], first));
   }
-  const float up = a.normal[0] * shift[0] + a.normal[1] * shift[1] + a.normal[2] * shift[2];
-  const Lane p = dot(load3(b.corner[0], first), a.normal), q = dot(load3(b.corner[1], first), a.normal),
-             r = dot(load3(b.corner[2], first), a.normal);
-  gap = greater(gap, (a.normal_low + up) - greater(greater(p, q), r));
-  gap = greater(gap, lesser(lesser(p, q), r) - (a.normal_high + up));
+  const std::array<float, 3> along = {a.normal(0), a.normal(1), a.normal(2)};
+  const float up = along[0] * shift[0] + along[1] * shift[1] + along[2] * shift[2];
+  const Lane p = dot(load3(b.corner[0], first), along), q = dot(load3(b.corner[1], first), along),
+             r = dot(load3(b.corner[2], first), along);
+  gap = greater(gap, (a.normal_low() + up) - greater(greater(p, q), r));
+  gap = greater(gap, lesser(lesser(p, q), r) - (a.normal_high() + up));
   const Lanes3 n = load3(b.normal, first);
-  Lane low = dot(n, a.corner[0]), high = low;
-  for (std::size_t k = 1; k < 2 * points; ++k) {
-    const Lane at = dot(n, a.corner[k]);
-    low = lesser(low, at);
-    high = greater(high, at);
+  const auto at = [&](std::size_t c) { return n.x * a.corner(c, 0) + n.y * a.corner(c, 1) + n.z * a.corner(c, 2); };
+  Lane low = at(0), high = low;
+  for (std::size_t c = 1; c < One::kCorners; ++c) {
+    const Lane x = at(c);
+    low = lesser(low, x);
+    high = greater(high, x);
   }
   const Lane moved = dot(n, shift);
   gap = greater(gap, low + moved - load(b.normal_high, first));
   return greater(gap, load(b.normal_low, first) - (high + moved));
 }
 
-template <std::size_t points>
-TEGOTAE_INLINE std::uint32_t gaps_below(const MovedHull<points>& a, const FaceLanes& b,
-                                        const std::array<float, 3>& shift, float floor) {
+template <typename One>
+TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const FaceLanes& b, const std::array<float, 3>& shift,
+                                        float floor) {
   const LaneBits first = (LaneBits)(gaps(a, b, 0, shift) < floor), last = (LaneBits)(gaps(a, b, kLane, shift) < floor);
   const LaneBits any = first | last;
   std::array<std::uint64_t, kLane / 2> in_pairs;
@@ -81,14 +118,53 @@ TEGOTAE_INLINE std::uint32_t gaps_below(const MovedHull<points>& a, const FaceLa
   return out;
 }
 
-TEGOTAE_WIDE std::uint32_t below(const MovedFace& a, const FaceLanes& b, const std::array<float, 3>& shift,
-                                 float floor) {
+TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
   return gaps_below(a, b, shift, floor);
 }
 
-TEGOTAE_WIDE std::uint32_t below(const MovedBox& a, const FaceLanes& b, const std::array<float, 3>& shift,
-                                 float floor) {
+TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
   return gaps_below(a, b, shift, floor);
+}
+
+/// A Placement in single precision.
+struct Moved {
+  std::array<std::array<float, 3>, 3> R;  ///< rows
+  std::array<float, 3> t;
+};
+
+Moved in_single(const Placement& at) {
+  Moved out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t k = 0; k < 3; ++k) out.R[i][k] = static_cast<float>(at.R(row, static_cast<Eigen::Index>(k)));
+    out.t[i] = static_cast<float>(at.t[row]);
+  }
+  return out;
+}
+
+TEGOTAE_WIDE void move_lanes(const FaceLanes& faces, const Moved& start, const Moved& end, MovedLanes& out) {
+  for (std::uint32_t first = 0; first < kBlockFaces; first += kLane) {
+    const Lanes3 n = load3(faces.normal, first);
+    const Lanes3 normal = {dot(n, start.R[0]), dot(n, start.R[1]), dot(n, start.R[2])};
+    store3(out.normal, first, normal);
+    Lanes3 low{}, high{};
+    Lane along_low{}, along_high{};
+    for (std::size_t c = 0; c < 6; ++c) {
+      const Moved& at = c < 3 ? start : end;
+      const Lanes3 p = load3(faces.corner[c % 3], first);
+      const Lanes3 x = {dot(p, at.R[0]) + at.t[0], dot(p, at.R[1]) + at.t[1], dot(p, at.R[2]) + at.t[2]};
+      const Lane along = normal.x * x.x + normal.y * x.y + normal.z * x.z;
+      along_low = c == 0 ? along : lesser(along_low, along);
+      along_high = c == 0 ? along : greater(along_high, along);
+      low = c == 0 ? x : Lanes3{lesser(low.x, x.x), lesser(low.y, x.y), lesser(low.z, x.z)};
+      high = c == 0 ? x : Lanes3{greater(high.x, x.x), greater(high.y, x.y), greater(high.z, x.z)};
+      store3(out.corner[c], first, x);
+    }
+    store(out.normal_low, first, along_low);
+    store(out.normal_high, first, along_high);
+    store3(out.low, first, low);
+    store3(out.high, first, high);
+  }
 }
 
 /// Directions across edges: of each with each, and across those of both faces in their planes; one is there twice.
@@ -142,8 +218,13 @@ Float3 normal_of(const Float3& p, const Float3& q, const Float3& r) {
   return {scale * n[0], scale * n[1], scale * n[2]};
 }
 
-float largest(const Vec3& v) {
-  return static_cast<float>(v.cwiseAbs().maxCoeff());
+Float3 in_single(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// With room for the rounding of all that is asked about.
+float floor_in_single(float size, const FaceLanes& b, const Vec3& shift, double floor) {
+  return static_cast<float>(floor) + kGapError * (size + b.size + static_cast<float>(shift.cwiseAbs().maxCoeff()));
 }
 
 }  // namespace
@@ -176,18 +257,24 @@ FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint3
   }
 }
 
-template <std::size_t points>
-MovedHull<points>::MovedHull(const std::array<Vec3, points>& start, const std::array<Vec3, points>& end,
-                             const Vec3& origin) {
+void MovedLanes::set(const FaceLanes& faces, const Placement& start, const Placement& end) noexcept {
+  move_lanes(faces, in_single(start), in_single(end), *this);
   size = 0;
-  for (std::size_t c = 0; c < points; ++c) {
-    const Vec3 from = start[c] - origin, to = end[c] - origin;
-    corner[c] = {static_cast<float>(from.x()), static_cast<float>(from.y()), static_cast<float>(from.z())};
-    corner[points + c] = {static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < kBlockFaces; ++k) size = std::max({size, -low[i][k], high[i][k]});
+  // What they were before counts as well.
+  size = std::max(size, faces.size);
+}
+
+MovedBox::MovedBox(const std::array<Vec3, 8>& start, const std::array<Vec3, 8>& end) {
+  size = 0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    corner[c] = {static_cast<float>(start[c].x()), static_cast<float>(start[c].y()), static_cast<float>(start[c].z())};
+    corner[8 + c] = {static_cast<float>(end[c].x()), static_cast<float>(end[c].y()), static_cast<float>(end[c].z())};
   }
   normal = normal_of(corner[0], corner[1], corner[2]);
   low = high = corner[0];
-  for (std::size_t c = 0; c < 2 * points; ++c) {
+  for (std::size_t c = 0; c < 16; ++c) {
     const float along = normal[0] * corner[c][0] + normal[1] * corner[c][1] + normal[2] * corner[c][2];
     normal_low = c == 0 ? along : std::min(normal_low, along);
     normal_high = c == 0 ? along : std::max(normal_high, along);
@@ -199,38 +286,26 @@ MovedHull<points>::MovedHull(const std::array<Vec3, points>& start, const std::a
   for (std::size_t i = 0; i < 3; ++i) size = std::max({size, -low[i], high[i]});
 }
 
-template struct MovedHull<3>;
-template struct MovedHull<8>;
-
-namespace {
-
-template <std::size_t points>
-std::uint32_t open_faces(const MovedHull<points>& a, const FaceLanes& b, const Vec3& shift, double floor) {
-  const float error = kGapError * (a.size + b.size + largest(shift));
-  return below(a, b, {static_cast<float>(shift.x()), static_cast<float>(shift.y()), static_cast<float>(shift.z())},
-               static_cast<float>(floor) + error);
-}
-
-}  // namespace
-
-std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
-  return open_faces(a, b, shift, floor);
+std::uint32_t not_kept_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, const Vec3& shift,
+                             double floor) noexcept {
+  return below(OneFace{a, k}, b, in_single(shift), floor_in_single(a.size, b, shift, floor));
 }
 
 std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept {
-  return open_faces(a, b, shift, floor);
+  return below(OneBox{a}, b, in_single(shift), floor_in_single(a.size, b, shift, floor));
 }
 
-bool edges_keep_apart(const MovedFace& a, const FaceLanes& b, std::uint32_t k, const Vec3& shift,
+bool edges_keep_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, std::uint32_t k_b, const Vec3& shift,
                       double floor) noexcept {
-  std::array<Float3, 6> p = a.corner;
-  for (Float3& corner : p)
-    for (std::size_t i = 0; i < 3; ++i) corner[i] += static_cast<float>(shift[static_cast<Eigen::Index>(i)]);
+  std::array<Float3, 6> p;
   std::array<Float3, 3> q;
-  Float3 normal_b;
+  Float3 normal_a, normal_b;
   for (std::size_t i = 0; i < 3; ++i) {
-    normal_b[i] = b.normal[i][k];
-    for (std::size_t c = 0; c < 3; ++c) q[c][i] = b.corner[c][i][k];
+    normal_a[i] = a.normal[i][k];
+    normal_b[i] = b.normal[i][k_b];
+    for (std::size_t c = 0; c < 6; ++c)
+      p[c][i] = a.corner[c][i][k] + static_cast<float>(shift[static_cast<Eigen::Index>(i)]);
+    for (std::size_t c = 0; c < 3; ++c) q[c][i] = b.corner[c][i][k_b];
   }
   alignas(64) Across left, right;
   std::size_t count = 0;
@@ -244,11 +319,11 @@ bool edges_keep_apart(const MovedFace& a, const FaceLanes& b, std::uint32_t k, c
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) add(difference(p[(i + 1) % 3], p[i]), difference(q[(j + 1) % 3], q[j]));
   for (std::size_t i = 0; i < 3; ++i) {
-    add(a.normal, difference(p[(i + 1) % 3], p[i]));
+    add(normal_a, difference(p[(i + 1) % 3], p[i]));
     add(normal_b, difference(q[(i + 1) % 3], q[i]));
   }
-  add(a.normal, normal_b);
-  const float least = static_cast<float>(floor) + kGapError * (a.size + b.size + largest(shift));
+  add(normal_a, normal_b);
+  const float least = floor_in_single(a.size, b, shift, floor);
   return across_edges(left, right, p, q, least * least);
 }
 

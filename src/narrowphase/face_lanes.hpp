@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "narrowphase/face_blocks.hpp"
+#include "narrowphase/patch_separate.hpp"
 
 namespace tegotae {
 
@@ -22,30 +23,42 @@ struct alignas(64) FaceLanes {
   FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block);
 };
 
-/// What A's hull of some points is at the two ends of a motion, from a point near it (m, axes of B's tree).
-template <std::size_t points>
-struct MovedHull {
-  std::array<std::array<float, 3>, 2 * points> corner;  ///< at the start, then at the end
-  std::array<float, 3> normal;                          ///< of the first three at the start, as that of FaceLanes
-  float normal_low, normal_high;                        ///< of all corners along it
-  std::array<float, 3> low, high;                       ///< of them along the axes
-  float size;                                           ///< largest coordinate, m
+/// A block of A's faces at the two ends of a motion, field after field, from a point near it (m, axes of B's tree).
+struct alignas(64) MovedLanes {
+  typedef FaceLanes::Field Field;
+  std::array<std::array<Field, 3>, 6> corner;  ///< at the start, then at the end
+  std::array<Field, 3> normal;                 ///< at the start, as that of FaceLanes
+  Field normal_low, normal_high;               ///< of the six corners along it
+  std::array<Field, 3> low, high;              ///< of them along the axes
+  float size = 0;                              ///< largest coordinate, m
 
-  MovedHull() = default;
-  MovedHull(const std::array<Vec3, points>& start, const std::array<Vec3, points>& end, const Vec3& origin);
+  /// `start` and `end` bring the faces, from their own origin, to where they are from the common one.
+  void set(const FaceLanes& faces, const Placement& start, const Placement& end) noexcept;
 };
-typedef MovedHull<3> MovedFace;
-typedef MovedHull<8> MovedBox;
 
-/// Of the faces of `b`, those that neither the axes nor the planes of the faces, or A's first one, keep `floor` (m) apart from `a` at
-/// both ends of its motion, and with that on the straight ways between: a bit each. `shift` is the origin of `a` from
-/// that of `b`, m. The rounding in single precision is taken off.
-std::uint32_t not_kept_apart(const MovedFace& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept;
+/// A box at the two ends of a motion, from a point near it (m, axes of B's tree).
+struct MovedBox {
+  std::array<std::array<float, 3>, 16> corner;  ///< at the start, then at the end
+  std::array<float, 3> normal;                  ///< across one of its sides at the start
+  float normal_low, normal_high;                ///< of all corners along it
+  std::array<float, 3> low, high;               ///< of them along the axes
+  float size;                                   ///< largest coordinate, m
+
+  /// The first three of `start` are of one side.
+  MovedBox(const std::array<Vec3, 8>& start, const std::array<Vec3, 8>& end);
+};
+
+/// Of the faces of `b`, those that neither the axes nor the planes of the two faces keep `floor` (m) apart from face
+/// `k` of `a` at both ends of its motion, and with that on the straight ways between: a bit each. `shift` is the origin
+/// of `a` from that of `b`, m. The rounding in single precision is taken off.
+std::uint32_t not_kept_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, const Vec3& shift,
+                             double floor) noexcept;
+/// The same of a box; of its sides the one that has a normal.
 std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept;
 
-/// Whether a direction across two edges, or across an edge in the plane of its face, keeps face `k` of `b` apart in the
-/// same way.
-bool edges_keep_apart(const MovedFace& a, const FaceLanes& b, std::uint32_t k, const Vec3& shift,
+/// Whether a direction across two edges, or across an edge in the plane of its face, keeps face `k_b` of `b` apart from
+/// face `k` of `a` in the same way.
+bool edges_keep_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, std::uint32_t k_b, const Vec3& shift,
                       double floor) noexcept;
 
 }  // namespace tegotae

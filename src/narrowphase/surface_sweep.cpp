@@ -49,30 +49,25 @@ std::vector<std::vector<NormalCone>> cones_of(const Facing& facing, const FaceBl
 
 }  // namespace
 
+SurfaceSweep::Surface::Surface(const PatchTree& tree) : blocks(tree), slabs(tree, blocks) {
+  for (std::uint32_t block = 0; block < blocks.count(); ++block) lanes.emplace_back(tree, blocks, block);
+}
+
 SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center,
                            const std::vector<CellFront::FixedPart>& fixed, std::shared_ptr<const Facing> facing,
                            std::uint32_t blocking)
     : a_(std::move(a)),
       facing_(std::move(facing)),
-      blocks_a_(std::make_shared<FaceBlocks>(*a_)),
-      slabs_a_(std::make_shared<BlockSlabs>(*a_, *blocks_a_)),
+      surface_a_(std::make_shared<Surface>(*a_)),
       center_(center),
       offset_a_(a_->origin() - center),
-      reach_(a_->radius() + offset_a_.norm()),
-      cache_(kCached) {
-  if (facing_) cones_a_ = cones_of(*facing_, *blocks_a_, slabs_a_->levels());
-  struct Known {
-    std::shared_ptr<const FaceBlocks> blocks;
-    std::shared_ptr<const BlockSlabs> slabs;
-  };
-  std::map<const PatchTree*, Known> known = {{a_.get(), {blocks_a_, slabs_a_}}};
+      reach_(a_->radius() + offset_a_.norm()) {
+  if (facing_) cones_a_ = cones_of(*facing_, surface_a_->blocks, surface_a_->slabs.levels());
+  std::map<const PatchTree*, std::shared_ptr<const Surface>> known = {{a_.get(), surface_a_}};
   for (const CellFront::FixedPart& part : fixed) {
-    Known& own = known[part.tree.get()];
-    if (!own.blocks && part.tree->mesh().triangles.size() <= kMostFaces) {
-      own.blocks = std::make_shared<FaceBlocks>(*part.tree);
-      own.slabs = std::make_shared<BlockSlabs>(*part.tree, *own.blocks);
-    }
-    parts_.push_back({part.tree, own.blocks, own.slabs, part.pose});
+    auto& own = known[part.tree.get()];
+    if (!own && part.tree->mesh().triangles.size() <= kMostFaces) own = std::make_shared<Surface>(*part.tree);
+    parts_.push_back({part.tree, own, part.pose});
   }
   near_.reserve(fixed.size());
   outside_.assign(fixed.size(), false);
@@ -120,7 +115,7 @@ void SurfaceSweep::start_look(Look look) {
 /// Begins with the part `at_`, at A's root.
 void SurfaceSweep::start_part() {
   sampled_ = 0;
-  stack_[0] = {blocks_a_->levels() - 1, 0};
+  stack_[0] = {surface_a_->blocks.levels() - 1, 0};
   stacked_ = 1;
   set_share(share_);
 }
@@ -157,9 +152,9 @@ bool SurfaceSweep::next_part() {
 /// Finds the next block of A beside which there may be something of B. False when all were looked at.
 bool SurfaceSweep::next_block() {
   if (look_ == Look::sample) {
-    const std::uint32_t stride = std::max(1U, blocks_a_->count() / kSample);
+    const std::uint32_t stride = std::max(1U, surface_a_->blocks.count() / kSample);
     const std::uint32_t block = stride / 2 + stride * sampled_;
-    if (block >= blocks_a_->count()) return false;
+    if (block >= surface_a_->blocks.count()) return false;
     ++sampled_;
     if (!all_recede(block)) place(block);
     return true;
@@ -167,7 +162,7 @@ bool SurfaceSweep::next_block() {
   while (stacked_ > 0) {
     const Node node = stack_[--stacked_];
     if (recedes(node)) continue;
-    walk_.start(*part().blocks, swept(blocks_a_->box(node.level, node.index)));
+    walk_.start(surface_b().blocks, swept(surface_a_->blocks.box(node.level, node.index)));
     if (walk_.next(found_.data(), 1) == 0) continue;
     if (node.level == 0) {
       if (all_recede(node.index)) continue;
@@ -180,7 +175,7 @@ bool SurfaceSweep::next_block() {
 }
 
 void SurfaceSweep::push_below(const Node& node) {
-  const std::uint32_t below = blocks_a_->nodes(node.level - 1), first = node.index * FaceBlocks::kFan;
+  const std::uint32_t below = surface_a_->blocks.nodes(node.level - 1), first = node.index * FaceBlocks::kFan;
   for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
     stack_[stacked_++] = {node.level - 1, i};
 }
@@ -198,7 +193,7 @@ bool SurfaceSweep::next_node() {
     return true;
   }
   const double kept = kShareKept * apart;
-  const bool may_search = searched_blocks_ < kFewBlocks + blocks_a_->count() / kBlocksShare;
+  const bool may_search = searched_blocks_ < kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
   if (kept * share_ >= worth_ && (kept >= kGoodShare || !may_search)) {
     // Over a shorter way from here on; this one once more.
     set_share(kept * share_);
@@ -221,17 +216,17 @@ void SurfaceSweep::look_at_all_faces() {
 
 /// The share of the motion in which all faces under A's node are apart from B, or less.
 double SurfaceSweep::node_apart_for(const Node& node) {
-  const std::uint32_t level = std::min(node.level, part().blocks->levels() - 1);
-  walk_.start(*part().blocks, swept(blocks_a_->box(node.level, node.index)), level);
-  const bool flat = node.level < slabs_a_->levels() && level < part().slabs->levels();
+  const std::uint32_t level = std::min(node.level, surface_b().blocks.levels() - 1);
+  walk_.start(surface_b().blocks, swept(surface_a_->blocks.box(node.level, node.index)), level);
+  const bool flat = node.level < surface_a_->slabs.levels() && level < surface_b().slabs.levels();
   MovedSlab slab;
-  if (flat) slab = moved(slabs_a_->slab(node.level, node.index));
+  if (flat) slab = moved(surface_a_->slabs.slab(node.level, node.index));
   double apart = 1;
   for (std::uint32_t count = kBeside; count == kBeside;) {
     count = walk_.next(found_.data(), kBeside);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!flat) return 0;
-      const double share = apart_for(slab, part().slabs->slab(level, found_[i]), floor_);
+      const double share = apart_for(slab, surface_b().slabs.slab(level, found_[i]), floor_);
       if (share == 1) continue;
       if (node.level > 0) return 0;
       if (!apart_from_faces(slab, found_[i])) apart = std::min(apart, share);
@@ -243,7 +238,7 @@ double SurfaceSweep::node_apart_for(const Node& node) {
 
 /// Whether the faces of a block of B are each apart from what A's block is in.
 bool SurfaceSweep::apart_from_faces(const MovedSlab& slab, std::uint32_t block) {
-  const FaceLanes& b = lanes(block);
+  const FaceLanes& b = surface_b().lanes[block];
   const Vec3 middle = 0.5 * (slab.from + slab.to);
   return not_kept_apart(slab.corners(middle), b, middle - b.origin, floor_) == 0;
 }
@@ -280,7 +275,7 @@ AxisBox SurfaceSweep::swept(const AxisBox& box) const {
 /// Whether all faces under A's node recede from the part, by what is known of them together.
 bool SurfaceSweep::recedes(const Node& node) const {
   if (!outside_[at_] || node.level >= cones_a_.size()) return false;
-  const Slab& slab = slabs_a_->slab(node.level, node.index);
+  const Slab& slab = surface_a_->slabs.slab(node.level, node.index);
   return passing_.recedes(cones_a_[node.level][node.index], slab.center + offset_a_, kRadiusSlack * slab.half.norm());
 }
 
@@ -288,9 +283,9 @@ bool SurfaceSweep::recedes(const Node& node) const {
 bool SurfaceSweep::all_recede(std::uint32_t block) {
   skipped_ = 0;
   if (!outside_[at_]) return false;
-  const std::uint32_t faces = blocks_a_->faces(block);
+  const std::uint32_t faces = surface_a_->blocks.faces(block);
   for (std::uint32_t k = 0; k < faces; ++k) {
-    const std::uint32_t face = blocks_a_->face(block, k);
+    const std::uint32_t face = surface_a_->blocks.face(block, k);
     const Vec3 &p = a_->corner(face, 0), &q = a_->corner(face, 1), &r = a_->corner(face, 2);
     const Vec3 middle = (p + q + r) / 3;
     const double radius =
@@ -303,26 +298,33 @@ bool SurfaceSweep::all_recede(std::uint32_t block) {
 /// A's block where it is, and where it goes.
 void SurfaceSweep::place(std::uint32_t block) {
   block_ = block;
-  faces_ = blocks_a_->faces(block);
-  Vec3 low = Vec3::Constant(kInfinity), high = -low;
-  for (std::uint32_t k = 0; k < faces_; ++k) {
-    if ((skipped_ >> k & 1) != 0) continue;
-    for (int c = 0; c < 3; ++c) {
-      const Vec3 p = a_->corner(blocks_a_->face(block, k), c) - center_;
-      const Vec3 &from = from_[k][c] = sweep_.start.R * p + sweep_.start.t,
-                 &to = to_[k][c] = sweep_.end.R * p + sweep_.end.t;
-      low = low.cwiseMin(from.cwiseMin(to));
-      high = high.cwiseMax(from.cwiseMax(to));
-    }
-  }
-  middle_ = 0.5 * (low + high);
-  for (std::uint32_t k = 0; k < faces_; ++k)
-    if ((skipped_ >> k & 1) == 0) moved_[k] = MovedFace(from_[k], to_[k], middle_);
+  faces_ = surface_a_->blocks.faces(block);
+  const FaceLanes& faces = surface_a_->lanes[block];
+  const Vec3 origin = faces.origin + offset_a_;
+  Placement start = sweep_.start, end = sweep_.end;
+  start.t += start.R * origin;
+  end.t += end.R * origin;
+  middle_ = 0.5 * (start.t + end.t);
+  start.t -= middle_;
+  end.t -= middle_;
+  moved_.set(faces, start, end);
   AxisBox box = AxisBox::empty();
-  box.add(low - Vec3::Constant(floor_), high + Vec3::Constant(floor_));
-  walk_.start(*part().blocks, box);
+  for (std::uint32_t k = 0; k < faces_; ++k)
+    if ((skipped_ >> k & 1) == 0) box.add(face_box(k));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(i)]);
+    const float slack = static_cast<float>(floor_) + kBoxError * (std::abs(at) + 4 * moved_.size);
+    box.low[i] += at - slack;
+    box.high[i] += at + slack;
+  }
+  walk_.start(surface_b().blocks, box);
   besides_ = 0;
   face_ = faces_;
+}
+
+AxisBox SurfaceSweep::face_box(std::uint32_t k) const {
+  return {{moved_.low[0][k], moved_.low[1][k], moved_.low[2][k]},
+          {moved_.high[0][k], moved_.high[1][k], moved_.high[2][k]}};
 }
 
 /// The next blocks of B beside that of A, for all faces of it.
@@ -330,7 +332,7 @@ bool SurfaceSweep::next_beside() {
   if (faces_ == 0) return false;
   besides_ = walk_.next(found_.data(), kBeside);
   for (std::uint32_t i = 0; i < besides_; ++i) {
-    const AxisBox box = part().blocks->box(0, found_[i]);
+    const AxisBox box = surface_b().blocks.box(0, found_[i]);
     beside_[i].block = found_[i];
     for (std::size_t c = 0; c < 3; ++c) {
       const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(c)]);
@@ -345,28 +347,17 @@ bool SurfaceSweep::next_beside() {
   return besides_ > 0;
 }
 
-const FaceLanes& SurfaceSweep::lanes(std::uint32_t block) {
-  Cached& place = cache_[(block + 61 * near_[at_]) % kCached];
-  if (place.part != near_[at_] || place.block != block) {
-    place.lanes = FaceLanes(*part().tree, *part().blocks, block);
-    place.part = near_[at_];
-    place.block = block;
-  }
-  return place.lanes;
-}
-
 void SurfaceSweep::look_at_face(std::uint32_t k) {
   if ((skipped_ >> k & 1) != 0) return;
-  const MovedFace& moved = moved_[k];
-  const AxisBox box{moved.low, moved.high};
+  const AxisBox box = face_box(k);
   for (std::uint32_t i = 0; i < besides_; ++i) {
     if (!beside_[i].box.overlaps(box)) continue;
-    const FaceLanes& b = lanes(beside_[i].block);
-    std::uint32_t open = not_kept_apart(moved, b, middle_ - b.origin, floor_);
+    const FaceLanes& b = surface_b().lanes[beside_[i].block];
+    std::uint32_t open = not_kept_apart(moved_, k, b, middle_ - b.origin, floor_);
     for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
-      if ((open & 1) == 0 || lane >= part().blocks->faces(beside_[i].block)) continue;
-      const std::uint32_t face = blocks_a_->face(block_, k), face_b = part().blocks->face(beside_[i].block, lane);
-      if (edges_keep_apart(moved, b, lane, middle_ - b.origin, floor_)) continue;
+      if ((open & 1) == 0 || lane >= surface_b().blocks.faces(beside_[i].block)) continue;
+      const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(beside_[i].block, lane);
+      if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;
       const Faces faces = faces_of(face, face_b);
       if (keeps_apart(faces)) continue;
       if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());

@@ -40,7 +40,7 @@ class SurfaceSweep {
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
-  bool knows(std::uint32_t part) const { return parts_[part].blocks != nullptr; }
+  bool knows(std::uint32_t part) const { return parts_[part].surface != nullptr; }
   /// Begun and not done.
   bool under_way() const { return under_way_; }
   void drop() noexcept { under_way_ = false; }
@@ -58,16 +58,18 @@ class SurfaceSweep {
   bool ended_by_blocks() const { return ended_by_blocks_; }
 
  private:
+  /// The faces of a tree.
+  struct Surface {
+    explicit Surface(const PatchTree& tree);
+
+    FaceBlocks blocks;
+    BlockSlabs slabs;
+    std::vector<FaceLanes> lanes;  ///< of each block
+  };
   struct Part {
     std::shared_ptr<const PatchTree> tree;
-    std::shared_ptr<const FaceBlocks> blocks;  ///< null: too large
-    std::shared_ptr<const BlockSlabs> slabs;
+    std::shared_ptr<const Surface> surface;  ///< null: too large
     Pose pose;
-  };
-  /// Of the blocks of B that were looked at of late.
-  struct Cached {
-    std::uint32_t part = 0xffffffffu, block = 0;
-    FaceLanes lanes;
   };
   struct Node {
     std::uint32_t level, index;
@@ -85,7 +87,6 @@ class SurfaceSweep {
   /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks, if
   /// that may be enough, and all faces, if it was not.
   enum class Look : std::uint8_t { sample, blocks, faces };
-  static constexpr std::size_t kCached = 512;
   static constexpr std::uint32_t kBeside = 32;
 
   Sweep sweep_by(double share, double clearance) const;
@@ -103,6 +104,7 @@ class SurfaceSweep {
   bool recedes(const Node& node) const;
   bool all_recede(std::uint32_t block);
   void place(std::uint32_t block);
+  AxisBox face_box(std::uint32_t k) const;
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
   void look_at_face(std::uint32_t k);
@@ -110,18 +112,16 @@ class SurfaceSweep {
   bool keeps_apart(const Faces& faces);
   void meet(const Faces& faces);
   double free_until(const Faces& faces, double clearance) const;
-  const FaceLanes& lanes(std::uint32_t block);
   const Part& part() const { return parts_[near_[at_]]; }
+  const Surface& surface_b() const { return *part().surface; }
 
   std::shared_ptr<const PatchTree> a_;
   std::shared_ptr<const Facing> facing_;
-  std::shared_ptr<const FaceBlocks> blocks_a_;
-  std::shared_ptr<const BlockSlabs> slabs_a_;
+  std::shared_ptr<const Surface> surface_a_;
   std::vector<std::vector<NormalCone>> cones_a_;  ///< of the levels that have slabs, if A bounds a solid
   Vec3 center_, offset_a_;
   double reach_;  ///< of A about its center of mass, m
   std::vector<Part> parts_;
-  std::vector<Cached> cache_;
   std::vector<FacePair> blocking_;
 
   bool under_way_ = false;
@@ -144,8 +144,7 @@ class SurfaceSweep {
 
   std::uint32_t block_ = 0, face_ = 0, faces_ = 0;  ///< of A, which is looked at
   std::uint32_t skipped_ = 0;                       ///< a bit for each face of it that recedes
-  std::array<std::array<Vec3, 3>, kBlockFaces> from_, to_;
-  std::array<MovedFace, kBlockFaces> moved_;
+  MovedLanes moved_;
   Vec3 middle_ = Vec3::Zero();
   BlockWalk walk_;
   std::array<std::uint32_t, kBeside> found_;

@@ -114,17 +114,28 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
     const PatchTree tree(mesh);
     const FaceBlocks blocks(tree);
     const FaceLanes lanes(tree, blocks, 0);
-    const Vec3 origin = tree.origin() + random_in_ball(rng, size) - tree.origin();
+    auto face = std::make_shared<TriangleMesh>(*soup(rng, 1, size, size));
+    const Vec3 far_a = random_in_ball(rng, 2);
+    for (Vec3& v : face->vertices) v += far_a;
+    const PatchTree tree_a(face);
+    const FaceLanes lanes_a(tree_a, FaceBlocks(tree_a), 0);
+    const Vec3 origin = random_in_ball(rng, size), at = random_in_ball(rng, 1.5 * size);
+    const Quat turned = rotation(random_in_ball(rng, 3));
+    const Placement start{turned.toRotationMatrix(), at - origin};
+    const Placement end{(rotation(random_in_ball(rng, 0.5)) * turned).toRotationMatrix(),
+                        at + random_in_ball(rng, 0.5 * size) - origin};
     std::array<Vec3, 3> from, to;
     for (int c = 0; c < 3; ++c) {
-      from[static_cast<std::size_t>(c)] = random_in_ball(rng, 1.5 * size);
-      to[static_cast<std::size_t>(c)] = from[static_cast<std::size_t>(c)] + random_in_ball(rng, 0.5 * size);
+      const Vec3 p = tree_a.corner(0, c) - tree_a.origin() - lanes_a.origin;
+      from[static_cast<std::size_t>(c)] = start.R * p + start.t + origin;
+      to[static_cast<std::size_t>(c)] = end.R * p + end.t + origin;
     }
-    const MovedFace moved(from, to, origin);
+    MovedLanes moved;
+    moved.set(lanes_a, start, end);
     const Vec3 shift = origin - lanes.origin;
-    const std::uint32_t open = not_kept_apart(moved, lanes, shift, kClearance);
+    const std::uint32_t open = not_kept_apart(moved, 0, lanes, shift, kClearance);
     for (std::uint32_t k = 0; k < blocks.faces(0); ++k) {
-      const bool planes = (open >> k & 1) == 0, edges = edges_keep_apart(moved, lanes, k, shift, kClearance);
+      const bool planes = (open >> k & 1) == 0, edges = edges_keep_apart(moved, 0, lanes, k, shift, kClearance);
       apart += planes;
       by_edges += edges && !planes;
       if (!planes && !edges) continue;
@@ -141,7 +152,7 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
   CHECK(wrong == 0);
   CHECK(near == 0);
   CHECK(apart > 20000);
-  CHECK(by_edges > 1000);
+  CHECK(by_edges > 500);
 }
 
 TEST_CASE("the first part of a motion is free as far as is said, and what was met is met soon after it") {
