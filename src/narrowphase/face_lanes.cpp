@@ -76,20 +76,28 @@ struct OneBox {
   TEGOTAE_INLINE float high(std::size_t i) const { return of.high[i]; }
 };
 
-/// The greatest of the gaps, along some directions, between `a` and eight faces of `b`.
+/// The greatest of the gaps along the axes between `a` and eight faces of `b`.
 template <typename One>
-TEGOTAE_INLINE Lane gaps(const One& a, const FaceLanes& b, std::uint32_t first, const std::array<float, 3>& shift) {
+TEGOTAE_INLINE Lane axis_gaps(const One& a, const FaceLanes& b, std::uint32_t first,
+                              const std::array<float, 3>& shift) {
   Lane gap = greater(load(b.low[0], first) - (a.high(0) + shift[0]), (a.low(0) + shift[0]) - load(b.high[0], first));
   for (std::size_t i = 1; i < 3; ++i) {
     gap = greater(gap, load(b.low[i], first) - (a.high(i) + shift[i]));
     gap = greater(gap, (a.low(i) + shift[i]) - load(b.high[i], first));
   }
+  return gap;
+}
+
+/// The same along the normals of both.
+template <typename One>
+TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t first,
+                               const std::array<float, 3>& shift) {
   const std::array<float, 3> along = {a.normal(0), a.normal(1), a.normal(2)};
   const float up = along[0] * shift[0] + along[1] * shift[1] + along[2] * shift[2];
   const Lane p = dot(load3(b.corner[0], first), along), q = dot(load3(b.corner[1], first), along),
              r = dot(load3(b.corner[2], first), along);
-  gap = greater(gap, (a.normal_low() + up) - greater(greater(p, q), r));
-  gap = greater(gap, lesser(lesser(p, q), r) - (a.normal_high() + up));
+  const Lane gap = greater((a.normal_low() + up) - greater(greater(p, q), r),
+                           lesser(lesser(p, q), r) - (a.normal_high() + up));
   const Lanes3 n = load3(b.normal, first);
   const auto at = [&](std::size_t c) { return n.x * a.corner(c, 0) + n.y * a.corner(c, 1) + n.z * a.corner(c, 2); };
   Lane low = at(0), high = low;
@@ -99,23 +107,32 @@ TEGOTAE_INLINE Lane gaps(const One& a, const FaceLanes& b, std::uint32_t first, 
     high = greater(high, x);
   }
   const Lane moved = dot(n, shift);
-  gap = greater(gap, low + moved - load(b.normal_high, first));
-  return greater(gap, load(b.normal_low, first) - (high + moved));
+  return greater(gap, greater(low + moved - load(b.normal_high, first), load(b.normal_low, first) - (high + moved)));
+}
+
+TEGOTAE_INLINE bool any(const LaneBits& bits) {
+  std::array<std::uint64_t, kLane / 2> in_pairs;
+  std::memcpy(in_pairs.data(), &bits, sizeof bits);
+  return (in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) != 0;
+}
+
+/// A bit for each of eight faces of `b` that has less than `floor`.
+template <typename One>
+TEGOTAE_INLINE std::uint32_t eight_below(const One& a, const FaceLanes& b, std::uint32_t first,
+                                         const std::array<float, 3>& shift, float floor) {
+  LaneBits open = (LaneBits)(axis_gaps(a, b, first, shift) < floor);
+  if (!any(open)) return 0;
+  open &= (LaneBits)(plane_gaps(a, b, first, shift) < floor);
+  if (!any(open)) return 0;
+  std::uint32_t out = 0;
+  for (std::uint32_t k = 0; k < kLane; ++k) out |= (static_cast<std::uint32_t>(open[k]) & 1U) << k;
+  return out;
 }
 
 template <typename One>
 TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const FaceLanes& b, const std::array<float, 3>& shift,
                                         float floor) {
-  const LaneBits first = (LaneBits)(gaps(a, b, 0, shift) < floor), last = (LaneBits)(gaps(a, b, kLane, shift) < floor);
-  const LaneBits any = first | last;
-  std::array<std::uint64_t, kLane / 2> in_pairs;
-  std::memcpy(in_pairs.data(), &any, sizeof any);
-  // Mostly none.
-  if ((in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) == 0) return 0;
-  std::uint32_t out = 0;
-  for (std::uint32_t k = 0; k < kLane; ++k)
-    out |= (static_cast<std::uint32_t>(first[k]) & 1U) << k | (static_cast<std::uint32_t>(last[k]) & 1U) << (kLane + k);
-  return out;
+  return eight_below(a, b, 0, shift, floor) | eight_below(a, b, kLane, shift, floor) << kLane;
 }
 
 TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {

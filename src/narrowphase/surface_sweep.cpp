@@ -331,15 +331,15 @@ AxisBox SurfaceSweep::face_box(std::uint32_t k) const {
 bool SurfaceSweep::next_beside() {
   if (faces_ == 0) return false;
   besides_ = walk_.next(found_.data(), kBeside);
-  for (std::uint32_t i = 0; i < besides_; ++i) {
-    const AxisBox box = surface_b().blocks.box(0, found_[i]);
-    beside_[i].block = found_[i];
+  for (std::uint32_t i = 0; i < (besides_ + BoxLanes::kBoxes - 1) / BoxLanes::kBoxes * BoxLanes::kBoxes; ++i) {
+    const AxisBox box = i < besides_ ? surface_b().blocks.box(0, found_[i]) : AxisBox::empty();
+    BoxLanes& out = beside_boxes_[i / BoxLanes::kBoxes];
     for (std::size_t c = 0; c < 3; ++c) {
       const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(c)]);
       const float slack =
           static_cast<float>(floor_) + kBoxError * (std::abs(at) + std::abs(box.low[c]) + std::abs(box.high[c]));
-      beside_[i].box.low[c] = box.low[c] - at - slack;
-      beside_[i].box.high[c] = box.high[c] - at + slack;
+      out.low[c][i % BoxLanes::kBoxes] = i < besides_ ? box.low[c] - at - slack : box.low[c];
+      out.high[c][i % BoxLanes::kBoxes] = i < besides_ ? box.high[c] - at + slack : box.high[c];
     }
   }
   face_ = 0;
@@ -350,26 +350,36 @@ bool SurfaceSweep::next_beside() {
 void SurfaceSweep::look_at_face(std::uint32_t k) {
   if ((skipped_ >> k & 1) != 0) return;
   const AxisBox box = face_box(k);
-  for (std::uint32_t i = 0; i < besides_; ++i) {
-    if (!beside_[i].box.overlaps(box)) continue;
-    const FaceLanes& b = surface_b().lanes[beside_[i].block];
-    std::uint32_t open = not_kept_apart(moved_, k, b, middle_ - b.origin, floor_);
-    for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
-      if ((open & 1) == 0 || lane >= surface_b().blocks.faces(beside_[i].block)) continue;
-      const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(beside_[i].block, lane);
-      if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;
-      const Faces faces = faces_of(face, face_b);
-      if (keeps_apart(faces)) continue;
-      if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
-      blocking_.push_back({near_[at_], face, face_b});
-      meet(faces);
-      ended_by_blocks_ = false;
-      if (look_ == Look::blocks && share_ < worth_) return look_at_all_faces();
+  for (std::uint32_t first = 0; first < besides_; first += BoxLanes::kBoxes) {
+    std::uint32_t bits = beside_boxes_[first / BoxLanes::kBoxes].overlapping(box);
+    for (std::uint32_t i = first; bits != 0; ++i, bits >>= 1)
+      if ((bits & 1) != 0 && !look_at_pairs(k, found_[i])) return;
+  }
+}
+
+/// Face `k` of A's block and those of a block of B. Whether the motion goes on as far as before.
+bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block) {
+  const FaceLanes& b = surface_b().lanes[block];
+  std::uint32_t open = not_kept_apart(moved_, k, b, middle_ - b.origin, floor_);
+  for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
+    if ((open & 1) == 0 || lane >= surface_b().blocks.faces(block)) continue;
+    if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;
+    const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(block, lane);
+    const Faces faces = faces_of(face, face_b);
+    if (keeps_apart(faces)) continue;
+    if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
+    blocking_.push_back({near_[at_], face, face_b});
+    meet(faces);
+    ended_by_blocks_ = false;
+    if (look_ == Look::blocks && share_ < worth_) {
+      look_at_all_faces();
+    } else {
       // Over a shorter way from here on.
       place(block_);
-      return;
     }
+    return false;
   }
+  return true;
 }
 
 SurfaceSweep::Faces SurfaceSweep::faces_of(std::uint32_t face, std::uint32_t face_b) const {

@@ -79,11 +79,6 @@ class SurfaceSweep {
     std::array<Vec3, 3> a, b;
     double reach = 0;  ///< of A's, m
   };
-  /// A block of B beside that of A.
-  struct Beside {
-    std::uint32_t block;
-    AxisBox box;  ///< from the middle of A's block
-  };
   /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks, if
   /// that may be enough, and all faces, if it was not.
   enum class Look : std::uint8_t { sample, blocks, faces };
@@ -108,6 +103,7 @@ class SurfaceSweep {
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
   void look_at_face(std::uint32_t k);
+  bool look_at_pairs(std::uint32_t k, std::uint32_t block);
   Faces faces_of(std::uint32_t face, std::uint32_t face_b) const;
   bool keeps_apart(const Faces& faces);
   void meet(const Faces& faces);
@@ -148,8 +144,8 @@ class SurfaceSweep {
   Vec3 middle_ = Vec3::Zero();
   BlockWalk walk_;
   std::array<std::uint32_t, kBeside> found_;
-  std::array<Beside, kBeside> beside_;
-  std::uint32_t besides_ = 0;
+  std::uint32_t besides_ = 0;                                      ///< of found_, beside A's block
+  std::array<BoxLanes, kBeside / BoxLanes::kBoxes> beside_boxes_;  ///< of them, from the middle of A's
   MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};  ///< that kept two faces apart
 };
 
