@@ -118,6 +118,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool may_sweep() const noexcept;
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;
+  void come_to(const Pose& X) noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   void fronts_left() noexcept;

@@ -74,6 +74,16 @@ bool PatchMotionCheck::may_go_along() const noexcept {
   return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
 }
 
+/// On the way, or on the next one.
+void PatchMotionCheck::come_to(const Pose& X) noexcept {
+  way_.come_to(X);
+  if (!next_way_.is_on(X)) return;
+  way_ = next_way_;
+  met_ = next_met_;
+  next_way_.drop();
+  way_.come_to(X);
+}
+
 /// Of large parts, fronts may be behind as soon as they touch.
 bool PatchMotionCheck::may_look_ahead() const noexcept {
   return may_sweep() && trusted_ && !touches_ && (may_go_along() || held_->mesh().triangles.size() >= kManyFaces);
@@ -81,13 +91,7 @@ bool PatchMotionCheck::may_look_ahead() const noexcept {
 
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
   if (!may_look_ahead()) return false;
-  way_.come_to(X);
-  if (next_way_.is_on(X)) {
-    way_ = next_way_;
-    met_ = next_met_;
-    next_way_.drop();
-    way_.come_to(X);
-  }
+  come_to(X);
   if (!may_go_along()) return false;
   const auto along = way_.toward(X, d);
   if (!along || !covers_near(way_.parts())) return false;
@@ -158,11 +162,12 @@ bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) co
 }
 
 bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept {
-  // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that.
-  const double ticks = !touches_ && same_way(d, pen_)
-                           ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands))
-                           : 0;
-  const Displacement all = {d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
+  // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that, and
+  // where something touches, they let A go where `d` leads.
+  const double ticks =
+      same_way(d, pen_) ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands)) : 0;
+  const Displacement all = touches_ ? (1 + ticks * size(pen_) / std::max(size(d), kStands)) * d
+                                    : Displacement{d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
   swept_since_ = now_;
   if (!find_swept(X, X, all)) return false;
   look_at(X, all, clearance, worth(d, all));
@@ -192,6 +197,7 @@ void PatchMotionCheck::finish_way() noexcept {
 /// A way ahead of A is looked at as a whole in the time that is left: it begins where A will be by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
   if (!may_look_ahead() || sweeping_ || !(size(pen_) > kStands)) return;
+  come_to(X);
   looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
   if (!looks_ahead_ && !begin_ahead(X)) return;
   looks_ahead_ = true;
