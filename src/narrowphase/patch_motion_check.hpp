@@ -203,7 +203,6 @@ class PatchMotionCheck final : public MotionCheck {
   bool rough_end_ = false;                ///< of the way that was proved last: see SurfaceSweep::ended_by_blocks()
   double clearance_ = 0;                  ///< of the last check, m
   bool looks_ahead_ = false;              ///< it is at a way that A has not come to yet
-  double lead_ = 1;                       ///< share of the ticks that it takes that such a way begins ahead
   Displacement pen_;                      ///< see heads()
   int behind_for_ = 0;                    ///< ticks in a row, up to
   std::uint64_t behind_since_ = 0;        ///< the begin() of the last of them

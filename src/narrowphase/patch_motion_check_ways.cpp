@@ -21,8 +21,8 @@ constexpr double kBesideWay = 0.1;
 constexpr double kSamePlace = 1e-13;
 // Near parts that are no bundle, at most: all lists are gone through for each of them.
 constexpr std::size_t kMostSwept = 256;
-// What a face takes at most, in ticks of which the spare time goes to ways ahead; and where whole blocks are enough.
-constexpr double kTicksPerFace = 1e-3, kRoughTicksPerFace = 2e-4;
+// What a face takes at most, in ticks of which the spare time goes to ways ahead.
+constexpr double kTicksPerFace = 1e-3;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
 constexpr double kSameWay = 0.95, kStands = 1e-7;
 // The ticks that the pen takes to come as far as whole blocks of faces are to prove at least, of a part of no more than
@@ -183,18 +183,15 @@ double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& a
 
 void PatchMotionCheck::finish_way() noexcept {
   looks_ahead_ = false;
-  if (!(sweep_->share() > 0)) {
-    lead_ *= 0.5;
-    return;
-  }
-  lead_ = 1;
+  if (!(sweep_->share() > 0)) return;
   const bool goes_on = way_.is_on(sweep_->start());
   (goes_on ? next_way_ : way_).set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
   (goes_on ? next_met_ : met_) = sweep_->blocking();
   rough_end_ = sweep_->ended_by_blocks();
 }
 
-/// A way ahead of A is looked at as a whole in the time that is left: it begins where A will be by then.
+/// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
+/// come to by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
   if (!may_look_ahead() || sweeping_ || !(size(pen_) > kStands)) return;
   come_to(X);
@@ -205,19 +202,15 @@ void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
 }
 
 bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
-  const double faces = static_cast<double>(held_->mesh().triangles.size());
-  const double rough_ticks = std::max(2.0, lead_ * kRoughTicksPerFace * faces);
-  const bool on_way = covers_near(way_.parts()) &&
-                      (way_.is_on(X) || way_.leads_on(X, pen_) || way_.leads_on(X, rough_ticks * pen_));
+  const bool on_way = covers_near(way_.parts()) && (way_.is_on(X) || way_.leads_on(X, pen_));
   // What is met there, and blocks of faces that ended a way would end the next one at once.
   if (on_way && (next_way_.known() || !met_.empty() || !same_way(way_.motion(), pen_))) return false;
-  const bool rough = faces >= static_cast<double>(kManyFaces) && !(on_way && rough_end_);
-  const double ticks = rough ? rough_ticks : std::max(2.0, lead_ * kTicksPerFace * faces);
-  const double far = std::min(kSweptTicks + ticks, kLongestSweep * radius_ / size(pen_));
-  if (ticks > far) return false;
-  const Pose from = on_way ? way_.end() : displaced(X, center_, ticks * pen_);
+  const double faces = static_cast<double>(held_->mesh().triangles.size());
+  const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(pen_));
+  const Pose from = on_way ? way_.end() : X;
   if (!find_swept(X, from, far * pen_)) return false;
-  look_at(from, far * pen_, clearance_, rough ? worth({}, far * pen_) : std::numeric_limits<double>::infinity());
+  look_at(from, far * pen_, clearance_,
+          on_way && rough_end_ ? std::numeric_limits<double>::infinity() : worth({}, far * pen_));
   return true;
 }
 
