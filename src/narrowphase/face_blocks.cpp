@@ -294,12 +294,18 @@ std::uint32_t BoxLanes::overlapping(const AxisBox& box) const noexcept {
 }
 
 void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level) {
+  const std::uint32_t root = 0;
+  start_under(&root, 1, blocks.levels() - 1, blocks, box, level);
+}
+
+void BlockWalk::start_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,
+                            const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level) {
   blocks_ = &blocks;
   level_ = level;
   box_ = box;
   stacked_ = 0;
-  const std::uint32_t top = blocks.levels() - 1;
-  if (blocks.box(top, 0).overlaps(box)) stack_[stacked_++] = {top, 0};
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (blocks.box(level_of_nodes, nodes[i]).overlaps(box)) stack_[stacked_++] = {level_of_nodes, nodes[i]};
 }
 
 std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {

@@ -71,7 +71,12 @@ class FaceBlocks {
 /// The nodes of one level that meet a box, one by one.
 class BlockWalk {
  public:
+  static constexpr std::uint32_t kMostTops = 32;
+
   void start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level = 0);
+  /// Those of them that are under some nodes of a level, up to kMostTops.
+  void start_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,
+                   const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level = 0);
   /// Up to `most` more of them to `out`; returns how many. Fewer than asked are the last.
   std::uint32_t next(std::uint32_t* out, std::uint32_t most);
 
@@ -82,7 +87,7 @@ class BlockWalk {
   const FaceBlocks* blocks_ = nullptr;
   AxisBox box_{};
   std::uint32_t level_ = 0;
-  std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;
+  std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan + kMostTops> stack_;
   std::uint32_t stacked_ = 0;
 };
 

@@ -14,6 +14,8 @@
 namespace tegotae {
 namespace {
 
+/// Nodes of this level know what of B is beside them.
+constexpr std::uint32_t kTopLevel = 2;
 /// Blocks of A that are looked at first.
 constexpr std::uint32_t kSample = 32;
 /// What they meet ends the motion this far before it is touched (m): nearer, the planes of faces that lie on each other
@@ -114,7 +116,7 @@ void SurfaceSweep::start_look(Look look) {
 
 /// Begins with the part `at_`, at A's root.
 void SurfaceSweep::start_part() {
-  sampled_ = 0;
+  sampled_ = tops_count_ = 0;
   stack_[0] = {surface_a_->blocks.levels() - 1, 0};
   stacked_ = 1;
   set_share(share_);
@@ -162,7 +164,7 @@ bool SurfaceSweep::next_block() {
   while (stacked_ > 0) {
     const Node node = stack_[--stacked_];
     if (recedes(node)) continue;
-    walk_.start(surface_b().blocks, swept(surface_a_->blocks.box(node.level, node.index)));
+    walk_beside(node, 0);
     if (walk_.next(found_.data(), 1) == 0) continue;
     if (node.level == 0) {
       if (all_recede(node.index)) continue;
@@ -172,6 +174,26 @@ bool SurfaceSweep::next_block() {
     push_below(node);
   }
   return false;
+}
+
+/// Walks over what of B is beside A's node. What is under one goes on from what was found for it.
+void SurfaceSweep::walk_beside(const Node& node, std::uint32_t level) {
+  const AxisBox box = swept(surface_a_->blocks.box(node.level, node.index));
+  if (node.level >= kTopLevel) tops_count_ = 0;
+  if (node.level == kTopLevel && surface_b().blocks.levels() > kTopLevel) {
+    walk_.start(surface_b().blocks, box, kTopLevel);
+    tops_count_ = walk_.next(tops_.data(), BlockWalk::kMostTops);
+    if (tops_count_ == BlockWalk::kMostTops) tops_count_ = 0;
+  }
+  walk(box, level);
+}
+
+void SurfaceSweep::walk(const AxisBox& box, std::uint32_t level) {
+  if (tops_count_ > 0) {
+    walk_.start_under(tops_.data(), tops_count_, kTopLevel, surface_b().blocks, box, level);
+  } else {
+    walk_.start(surface_b().blocks, box, level);
+  }
 }
 
 void SurfaceSweep::push_below(const Node& node) {
@@ -217,7 +239,7 @@ void SurfaceSweep::look_at_all_faces() {
 /// The share of the motion in which all faces under A's node are apart from B, or less.
 double SurfaceSweep::node_apart_for(const Node& node) {
   const std::uint32_t level = std::min(node.level, surface_b().blocks.levels() - 1);
-  walk_.start(surface_b().blocks, swept(surface_a_->blocks.box(node.level, node.index)), level);
+  walk_beside(node, level);
   const bool flat = node.level < surface_a_->slabs.levels() && level < surface_b().slabs.levels();
   MovedSlab slab;
   if (flat) slab = moved(surface_a_->slabs.slab(node.level, node.index));
@@ -317,7 +339,7 @@ void SurfaceSweep::place(std::uint32_t block) {
     box.low[i] += at - slack;
     box.high[i] += at + slack;
   }
-  walk_.start(surface_b().blocks, box);
+  walk(box, 0);
   besides_ = 0;
   face_ = faces_;
 }

@@ -96,6 +96,8 @@ class SurfaceSweep {
   void look_at_all_faces();
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
+  void walk_beside(const Node& node, std::uint32_t level);
+  void walk(const AxisBox& box, std::uint32_t level);
   bool recedes(const Node& node) const;
   bool all_recede(std::uint32_t block);
   void place(std::uint32_t block);
@@ -143,6 +145,8 @@ class SurfaceSweep {
   MovedLanes moved_;
   Vec3 middle_ = Vec3::Zero();
   BlockWalk walk_;
+  std::array<std::uint32_t, BlockWalk::kMostTops> tops_;  ///< nodes of B beside that one of A whose blocks are looked at
+  std::uint32_t tops_count_ = 0;                          ///< none: from the root
   std::array<std::uint32_t, kBeside> found_;
   std::uint32_t besides_ = 0;                                      ///< of found_, beside A's block
   std::array<BoxLanes, kBeside / BoxLanes::kBoxes> beside_boxes_;  ///< of them, from the middle of A's
