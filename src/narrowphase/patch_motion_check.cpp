@@ -313,13 +313,14 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   clearance_ = clearance;
   instead_.reset();
   count_still(X);
+  take_turns(X);
   if (sweeping_ && sweeps(X, wanted)) return ask_sweep(X, wanted, blocking);
   sweeping_ = false;
   if (goes_along(X, wanted, blocking)) return answer(blocking);
   instead_ = onto_way(X, wanted);
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
-  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(X, d);
+  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(X, d) && !cells_turn();
   if (sweeps_now) {
     const std::int64_t now_ns = monotonic_ns();
     limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));

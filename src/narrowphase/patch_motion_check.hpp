@@ -89,6 +89,16 @@ class PatchMotionCheck final : public MotionCheck {
     bool a_outside = false, b_outside = false;
   };
 
+  /// Who brings A on where something touches and the cells are behind: they or looks at all of it, and what both have
+  /// brought, m a tick.
+  struct Turn {
+    bool of_cells = true;
+    int ticks = 0, in_a_row = 0;
+    double moved = 0, cells_pace = 0, sweeps_pace = 0;
+    Pose X;                   ///< of A
+    std::uint64_t since = 0;  ///< the begin() of the last tick
+  };
+
   /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
@@ -113,6 +123,9 @@ class PatchMotionCheck final : public MotionCheck {
   /// Whether a motion is looked at as a whole that `X` is on, and that leads where `d` does.
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
+  void take_turns(const Pose& X) noexcept;
+  /// Where something touches, whether the cells bring A on as fast as looks at all of it.
+  bool cells_turn() const { return touches_ && turn_.of_cells && !stands_still(); }
   bool stands_still() const { return still_for_ >= kTicksStill; }
   bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
@@ -209,6 +222,7 @@ class PatchMotionCheck final : public MotionCheck {
   int still_for_ = 0;                     ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
+  Turn turn_;
   std::uint64_t swept_since_ = 0, swept_until_ = 0;  ///< the begin() of the last sweep's start and of its end
   std::uint64_t swept_for_ = 0;                      ///< and the ticks that it took
   bool touches_ = false;           ///< see heads()

@@ -31,6 +31,8 @@ constexpr double kSameWay = 0.95, kStands = 1e-7;
 constexpr double kWorthTicks = 2, kWorthTicksPerFace = 3e-5;
 constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
+// Turns of one kind after which the other is tried.
+constexpr int kTurnsInARow = 6;
 // What has come less far (m) stands.
 constexpr double kStill = 1e-6;
 
@@ -53,6 +55,28 @@ void PatchMotionCheck::count_still(const Pose& X) noexcept {
   const bool still = behind_for_ > 0 && size(displacement(still_X_, X, center_)) < kStill;
   still_for_ = still ? still_for_ + 1 : 0;
   if (!still) still_X_ = X;
+}
+
+/// Cells have as many ticks as the last sweep, then whoever was faster; the other one is tried again now and then.
+void PatchMotionCheck::take_turns(const Pose& X) noexcept {
+  if (turn_.since == now_) return;
+  turn_.since = now_;
+  const double moved = size(displacement(turn_.X, X, center_));
+  turn_.X = X;
+  if (!touches_ || behind_for_ < kTicksBehind) {
+    turn_.ticks = 0;
+    turn_.moved = 0;
+    return;
+  }
+  turn_.moved += moved;
+  ++turn_.ticks;
+  if (turn_.of_cells ? static_cast<std::uint64_t>(turn_.ticks) < swept_for_ : sweeping_) return;
+  (turn_.of_cells ? turn_.cells_pace : turn_.sweeps_pace) = turn_.moved / turn_.ticks;
+  const bool cells = (turn_.cells_pace > turn_.sweeps_pace) != (turn_.in_a_row >= kTurnsInARow);
+  turn_.in_a_row = cells == turn_.of_cells ? turn_.in_a_row + 1 : 0;
+  turn_.of_cells = cells;
+  turn_.ticks = 0;
+  turn_.moved = 0;
 }
 
 /// Where what touches still stands after it was looked at as a whole, cells are to have the time: until the pen moves, or
