@@ -18,9 +18,9 @@ struct Slab {
 
 /// A slab at the two ends of a motion, in the axes of what it moves past.
 struct MovedSlab {
-  Vec3 from, to;         ///< its center, m
+  Vec3 from, to;            ///< its center, m
   Mat3 from_axes, to_axes;  ///< as long as the slab's halves
-  Mat3 axes;             ///< at the start, of unit length
+  Mat3 axes;                ///< at the start, of unit length
 
   /// Its corners from `origin` (m): those of one side across come first.
   MovedBox corners(const Vec3& origin) const;
@@ -43,8 +43,8 @@ class BlockSlabs {
   std::vector<std::vector<Slab>> slabs_;  ///< of each level
 };
 
-/// The share of a straight motion, from its start, in which a fixed plane across faces or edges of the slabs keeps `a` at least
-/// `floor` (m) apart from `b`; 0 where they are nearer at the start.
+/// The share of a straight motion, from its start, in which a fixed plane across faces or edges of the slabs keeps `a`
+/// at least `floor` (m) apart from `b`; 0 where they are nearer at the start.
 double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept;
 
 }  // namespace tegotae

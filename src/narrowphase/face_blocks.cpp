@@ -16,16 +16,16 @@ constexpr std::uint32_t kPlaces = 1u << kPlaceBits;
 /// Kinds of faces by size, each this many times as long as the last.
 constexpr std::uint64_t kSizes = 8;
 constexpr double kLonger = 4;
-/// Faces that look the other way than most, or than the first where there is no such way, by these cosines.
+/// Faces that look the other way than most, or than one of them where there is no such way, by these cosines.
 constexpr float kOneWay = 0.4F, kOtherWay = -0.2F;
 /// A block has fewer faces than there is room for where more would make it longer than so many times the root of their
 /// squared lengths,
 constexpr float kLongest = 2;
 /// where they lie in layers that are farther apart than their normals tell, with this share of its length besides,
 constexpr float kLayers = 0.02F;
-/// and where they look in two directions, each of them exact to this share of what both are, which is no less than so
-/// much.
-constexpr float kOneOfTwo = 0.3F, kTwoDirections = 0.2F;
+/// and where a quarter of them or more look in one of a few directions, exact to this share of what all are, which is
+/// no less than so much.
+constexpr float kOneOfFew = 0.3F, kFewDirections = 0.2F;
 /// Faces of a stretch of the curve.
 constexpr std::size_t kStretch = 256 * std::size_t{kBlockFaces};
 
@@ -106,32 +106,35 @@ Way way_of(const Placed* faces, std::size_t count) {
   return way;
 }
 
+/// The normal of the face that looks least in a direction.
+std::array<float, 3> farthest_from(const Placed* faces, std::size_t count, const std::array<float, 3>& n) {
+  return std::min_element(faces, faces + count,
+                          [&](const Placed& a, const Placed& b) { return dot(a.normal, n) < dot(b.normal, n); })
+      ->normal;
+}
+
 /// Where faces look the other way than others, those come last; returns how many come first.
 std::size_t part_by_side(Placed* faces, std::size_t count) {
   Way way = way_of(faces, count);
-  if (way.length < kOneWay) way.mean = faces[0].normal;
+  if (way.length < kOneWay) way.mean = farthest_from(faces, count, faces[0].normal);
   const auto along = [&](const Placed& f) { return dot(f.normal, way.mean); };
   if (std::none_of(faces, faces + count, [&](const Placed& f) { return along(f) < kOtherWay; })) return count;
   return static_cast<std::size_t>(std::partition(faces, faces + count, [&](const Placed& f) { return along(f) >= 0; }) -
                                   faces);
 }
 
-/// The same where the faces of a block look in two directions.
+/// The same where the faces of a block look in a few directions.
 std::size_t part_by_direction(Placed* faces, std::size_t count, const Way& way) {
-  if (way.spread < kTwoDirections) return count;
-  const auto farthest_from = [&](const std::array<float, 3>& n) {
-    return std::min_element(faces, faces + count, [&](const Placed& a, const Placed& b) {
-             return dot(a.normal, n) < dot(b.normal, n);
-           })->normal;
-  };
-  const std::array<float, 3> one = farthest_from(way.mean), other = farthest_from(one);
+  if (way.spread < kFewDirections) return count;
+  const std::array<float, 3> one = farthest_from(faces, count, way.mean), other = farthest_from(faces, count, one);
   const auto half = static_cast<std::size_t>(
       std::partition(faces, faces + count,
                      [&](const Placed& f) { return dot(f.normal, one) >= dot(f.normal, other); }) -
       faces);
-  if (half == 0 || half == count) return count;
-  const float most = kOneOfTwo * way.spread;
-  return way_of(faces, half).spread < most && way_of(faces + half, count - half).spread < most ? half : count;
+  const auto is_one = [&](const Placed* first, std::size_t n) {
+    return 4 * n >= count && way_of(first, n).spread < kOneOfFew * way.spread;
+  };
+  return is_one(faces, half) || is_one(faces + half, count - half) ? half : count;
 }
 
 /// The same where they lie in layers.
@@ -160,9 +163,8 @@ std::size_t part(Placed* faces, std::size_t count) {
   }
   const std::size_t blocks = (count + kBlockFaces - 1) / kBlockFaces;
   half = blocks == 1 ? (count + 1) / 2 : (blocks + 1) / 2 * kBlockFaces;
-  std::nth_element(faces, faces + half, faces + count, [axis = e.longest](const Placed& a, const Placed& b) {
-    return a.middle[axis] < b.middle[axis];
-  });
+  std::nth_element(faces, faces + half, faces + count,
+                   [axis = e.longest](const Placed& a, const Placed& b) { return a.middle[axis] < b.middle[axis]; });
   return half;
 }
 

@@ -36,8 +36,8 @@ struct alignas(32) BoxLanes {
 };
 
 /// The faces of a surface in blocks of up to sixteen that lie beside each other and face about the same way, and a
-/// hierarchy of upright boxes over the blocks. For questions that are asked once and of all faces: a PatchTree's boxes fit closer and take ten times as
-/// long. Immutable; 6 bytes a triangle.
+/// hierarchy of upright boxes over the blocks. For questions that are asked once and of all faces: a PatchTree's boxes
+/// fit closer and take ten times as long. Immutable; 6 bytes a triangle.
 class FaceBlocks {
  public:
   /// Levels of a hierarchy over any number of faces, and nodes that go together.

@@ -96,8 +96,8 @@ TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t f
   const float up = along[0] * shift[0] + along[1] * shift[1] + along[2] * shift[2];
   const Lane p = dot(load3(b.corner[0], first), along), q = dot(load3(b.corner[1], first), along),
              r = dot(load3(b.corner[2], first), along);
-  const Lane gap = greater((a.normal_low() + up) - greater(greater(p, q), r),
-                           lesser(lesser(p, q), r) - (a.normal_high() + up));
+  const Lane gap =
+      greater((a.normal_low() + up) - greater(greater(p, q), r), lesser(lesser(p, q), r) - (a.normal_high() + up));
   const Lanes3 n = load3(b.normal, first);
   const auto at = [&](std::size_t c) { return n.x * a.corner(c, 0) + n.y * a.corner(c, 1) + n.z * a.corner(c, 2); };
   Lane low = at(0), high = low;

@@ -338,8 +338,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
   behind_since_ = now_;
   // What was begun ahead of it may have come to here.
-  const bool begun =
-      behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || (way_.is_on(X) && way_.ends_at(X)));
+  const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || (way_.is_on(X) && way_.ends_at(X)));
   if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
     sweeping_ = begun || begin_sweep(X, wanted, clearance);
     looks_ahead_ = false;

@@ -79,8 +79,8 @@ void PatchMotionCheck::take_turns(const Pose& X) noexcept {
   turn_.moved = 0;
 }
 
-/// Where what touches still stands after it was looked at as a whole, cells are to have the time: until the pen moves, or
-/// for as long as that took where the pen moves on.
+/// Where what touches still stands after it was looked at as a whole, cells are to have the time: until the pen moves,
+/// or for as long as that took where the pen moves on.
 bool PatchMotionCheck::rests(const Pose& X, const Displacement& d) const noexcept {
   if (size(d) < kStill) return true;
   if (!touches_ || size(displacement(sweep_->start(), X, center_)) > kStill) return false;

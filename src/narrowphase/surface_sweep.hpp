@@ -36,7 +36,8 @@ class SurfaceSweep {
   /// and the answer is about an A that is apart from them at `X`. Where `worth` (m) of the motion or more are free
   /// that whole blocks of faces tell, a tenth of the work, no more is looked for.
   void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-             const std::vector<bool>& outside, double clearance, double worth = std::numeric_limits<double>::infinity()) noexcept;
+             const std::vector<bool>& outside, double clearance,
+             double worth = std::numeric_limits<double>::infinity()) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
@@ -132,8 +133,8 @@ class SurfaceSweep {
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
   Look look_ = Look::sample;
-  std::uint32_t at_ = 0;       ///< of near_
-  std::uint32_t sampled_ = 0;  ///< the next block of the sample
+  std::uint32_t at_ = 0;                                                ///< of near_
+  std::uint32_t sampled_ = 0;                                           ///< the next block of the sample
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy
   std::uint32_t stacked_ = 0;
   Sweep sweep_;  ///< of the share of the motion, past the part
@@ -145,12 +146,13 @@ class SurfaceSweep {
   MovedLanes moved_;
   Vec3 middle_ = Vec3::Zero();
   BlockWalk walk_;
-  std::array<std::uint32_t, BlockWalk::kMostTops> tops_;  ///< nodes of B beside that one of A whose blocks are looked at
-  std::uint32_t tops_count_ = 0;                          ///< none: from the root
+  std::array<std::uint32_t, BlockWalk::kMostTops>
+      tops_;                      ///< nodes of B beside that one of A whose blocks are looked at
+  std::uint32_t tops_count_ = 0;  ///< none: from the root
   std::array<std::uint32_t, kBeside> found_;
   std::uint32_t besides_ = 0;                                      ///< of found_, beside A's block
   std::array<BoxLanes, kBeside / BoxLanes::kBoxes> beside_boxes_;  ///< of them, from the middle of A's
-  MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};  ///< that kept two faces apart
+  MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};             ///< that kept two faces apart
 };
 
 }  // namespace tegotae

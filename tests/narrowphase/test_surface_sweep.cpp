@@ -3,6 +3,7 @@
 
 #include "alloc_guard.hpp"
 #include "catch.hpp"
+#include "core/numbers.hpp"
 #include "narrowphase/facing.hpp"
 #include "narrowphase/patch_motion_check.hpp"
 #include "narrowphase/surface_sweep.hpp"
@@ -29,11 +30,11 @@ SurfaceSweep sweep_past(const MeshPtr& a, const MeshPtr& b, const Vec3& center,
   return SurfaceSweep(tree_of(a), center, {{tree_of(b), Pose{}}}, std::move(facing), 24);
 }
 
-double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outside = false) {
+double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outside = false, double worth = kInfinity) {
   const std::vector<std::uint32_t> near = {0};
   const std::vector<bool> nothing_inside = {outside};
   const AllocGuard guard;
-  sweep.begin(X, d, near, nothing_inside, kClearance);
+  sweep.begin(X, d, near, nothing_inside, kClearance, worth);
   sweep.go_on(kNoDeadline);
   CHECK(guard.count() == 0);
   CHECK(!sweep.under_way());
@@ -99,8 +100,90 @@ TEST_CASE("blocks have all faces once, and a walk finds the blocks that a box me
         for (std::uint32_t i = 0; i < count; ++i) CHECK(found.insert(some[i]).second);
       }
       CHECK(found == expected);
+      // The same under what a larger box meets of a higher level.
+      AxisBox larger = box;
+      larger.add(random_in_ball(rng, 0.06), random_in_ball(rng, 0.06));
+      std::array<std::uint32_t, BlockWalk::kMostTops> tops;
+      walk.start(blocks, larger, 1);
+      const std::uint32_t tops_count = walk.next(tops.data(), BlockWalk::kMostTops);
+      std::array<std::uint32_t, 4096> under;
+      walk.start_under(tops.data(), tops_count, 1, blocks, box);
+      const std::uint32_t count = walk.next(under.data(), 4096);
+      if (tops_count < BlockWalk::kMostTops)
+        CHECK(std::set<std::uint32_t>(under.begin(), under.begin() + count) == expected);
     }
   }
+}
+
+TEST_CASE("blocks are flat: no two sides of a sheet, no layers, no two directions in one") {
+  // Thin plates one over the other, each of a few large faces.
+  TriangleMesh plates;
+  for (int i = 0; i < 8; ++i) {
+    const MeshPtr plate = box({0.1, 0.08, 0.001});
+    const auto first = static_cast<std::uint32_t>(plates.vertices.size());
+    for (const Vec3& v : plate->vertices) plates.vertices.push_back(v + Vec3(0, 0, 0.005 * i));
+    for (const auto& t : plate->triangles) plates.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const PatchTree tree(std::make_shared<const TriangleMesh>(plates));
+  const FaceBlocks blocks(tree);
+  const BlockSlabs slabs(tree, blocks);
+  for (std::uint32_t b = 0; b < blocks.count(); ++b) CHECK(slabs.slab(0, b).half.z() < 1e-9);
+}
+
+TEST_CASE("slabs hold the faces of their blocks, and blocks that they keep apart do not meet") {
+  std::mt19937 rng(35);
+  int parted = 0, wrong = 0, near = 0;
+  for (const MeshPtr& mesh : {wave(0.1, 0.01, 0.04, 24), knot(0.05, 0.006, 900), box({0.01, 0.02, 0.03})}) {
+    const PatchTree tree(mesh);
+    const FaceBlocks blocks(tree);
+    const BlockSlabs slabs(tree, blocks);
+    std::uint32_t each = 1;
+    for (std::uint32_t level = 0; level < slabs.levels(); ++level, each *= FaceBlocks::kFan) {
+      for (std::uint32_t b = 0; b < blocks.count(); ++b) {
+        const Slab& slab = slabs.slab(level, b / each);
+        for (std::uint32_t k = 0; k < blocks.faces(b); ++k) {
+          for (int c = 0; c < 3; ++c) {
+            const Vec3 at = slab.axes.transpose() * (tree.corner(blocks.face(b, k), c) - tree.origin() - slab.center);
+            CHECK((slab.half - at.cwiseAbs()).minCoeff() >= 0);
+          }
+        }
+      }
+    }
+    for (int n = 0; n < 4000; ++n) {
+      const auto a = static_cast<std::uint32_t>(rng() % blocks.count()),
+                 b = static_cast<std::uint32_t>(rng() % blocks.count());
+      const Slab &slab = slabs.slab(0, a), &other = slabs.slab(0, b);
+      const Mat3 from = rotation(random_in_ball(rng, 3)).toRotationMatrix();
+      const Mat3 to = rotation(random_in_ball(rng, 0.3)).toRotationMatrix() * from;
+      MovedSlab moved;
+      moved.from = other.center + random_in_ball(rng, 0.02);
+      moved.to = moved.from + random_in_ball(rng, 0.02);
+      moved.axes = from * slab.axes;
+      moved.from_axes = moved.axes * slab.half.asDiagonal();
+      moved.to_axes = to * slab.axes * slab.half.asDiagonal();
+      const double share = apart_for(moved, other, kClearance);
+      if (share == 0) continue;
+      ++parted;
+      for (const double s : {0.0, 0.5 * share, share}) {
+        for (std::uint32_t k = 0; k < blocks.faces(a); k += 3) {
+          Corners corner;
+          for (int c = 0; c < 3; ++c) {
+            const Vec3 p = tree.corner(blocks.face(a, k), c) - tree.origin() - slab.center;
+            const Vec3 start = from * p + moved.from, end = to * p + moved.to;
+            corner[static_cast<std::size_t>(c)] = start + s * (end - start);
+          }
+          for (std::uint32_t l = 0; l < blocks.faces(b); l += 3) {
+            const Corners there = corners(*mesh, blocks.face(b, l), Pose{Quat::Identity(), -tree.origin()});
+            wrong += triangles_meet(corner, there);
+            if (n % 50 == 0) near += nearly(corner, there, 6) < kClearance * (1 - 1e-6);
+          }
+        }
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(near == 0);
+  CHECK(parted > 2000);
 }
 
 TEST_CASE("faces that are kept apart do not meet on their straight ways, however small or far from the origin") {
@@ -186,6 +269,42 @@ TEST_CASE("the first part of a motion is free as far as is said, and what was me
   }
   CHECK(whole > 20);
   CHECK(cut > 20);
+}
+
+TEST_CASE("what whole blocks tell to be free is free, and no less than it was to be worth") {
+  std::mt19937 rng(36);
+  int by_blocks = 0, by_faces = 0;
+  auto all = scenes();
+  all.push_back({"sheet", wave(0.1, 0.01, 0.05, 40), wave(0.1, 0.01, 0.05, 57), Vec3::Zero(),
+                 Pose{Quat::Identity(), Vec3(0, 0, 0.01)}, 0.004, 0.02});
+  for (const Scene& scene : all) {
+    INFO(scene.name);
+    const Oracle oracle(scene.a, scene.b);
+    const auto tree = tree_of(scene.a);
+    SurfaceSweep sweep(tree, scene.center, {{tree_of(scene.b), Pose{}}}, Facing::of(scene.a, tree), 24);
+    for (int n = 0; n < 60; ++n) {
+      const Pose X =
+          displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+      if (oracle.meet(X) || oracle.distance(X) < 2 * kClearance) continue;
+      const Displacement d{random_in_ball(rng, 8 * scene.move),
+                           n % 3 == 0 ? Vec3::Zero() : random_in_ball(rng, scene.turn)};
+      const double share = run(sweep, X, d, true), worth = uniform(rng, 0, 0.5) * d.dp.norm();
+      const double rough = run(sweep, X, d, true, worth);
+      CHECK(oracle.hits(X, scene.center, rough * d, 20) == 0);
+      const double size = d.dp.norm() + (tree->radius() + (tree->origin() - scene.center).norm()) * d.dr.norm();
+      CHECK(rough < share + kEndsBefore / size);
+      if (sweep.ended_by_blocks()) {
+        CHECK(rough * size > worth * (1 - 1e-9));
+        CHECK(sweep.blocking().empty());
+        ++by_blocks;
+      } else if (rough < 1) {
+        CHECK(!sweep.blocking().empty());
+        ++by_faces;
+      }
+    }
+  }
+  CHECK(by_blocks > 20);
+  CHECK(by_faces > 20);
 }
 
 TEST_CASE("a sheet comes down on its die to where FCL finds touching") {
