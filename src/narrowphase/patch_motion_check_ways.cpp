@@ -16,12 +16,9 @@ constexpr double kSweptTicks = 50, kLongestSweep = 0.5;
 constexpr double kWayLeaves = 0.5;
 // Where fronts are asked about each motion, it keeps to the way where that leaves no more than this.
 constexpr double kBesideWay = 0.1;
-// Poses are the same that differ by less than this share of the size of the scene: a tenth of the rounding that
-// certificates leave room for.
-constexpr double kSamePlace = 1e-13;
 // Near parts that are no bundle, at most: all lists are gone through for each of them.
 constexpr std::size_t kMostSwept = 256;
-// What a face takes at most, in ticks of which the spare time goes to ways ahead.
+// Ways ahead are longer by so many ticks for each face: what looking at it takes at most.
 constexpr double kTicksPerFace = 1e-3;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
 constexpr double kSameWay = 0.95, kStands = 1e-7;
