@@ -24,6 +24,8 @@ struct Lanes3 {
   Lane x, y, z;
 };
 
+// No lambda gives a lane back: it would be compiled for other registers than its caller, unless it is inlined.
+
 TEGOTAE_INLINE Lane load(const FaceLanes::Field& field, std::uint32_t first) {
   return *reinterpret_cast<const Lane*>(field.data() + first);
 }
@@ -88,6 +90,11 @@ TEGOTAE_INLINE Lane axis_gaps(const One& a, const FaceLanes& b, std::uint32_t fi
   return gap;
 }
 
+template <typename One>
+TEGOTAE_INLINE Lane along_corner(const Lanes3& n, const One& a, std::size_t c) {
+  return n.x * a.corner(c, 0) + n.y * a.corner(c, 1) + n.z * a.corner(c, 2);
+}
+
 /// The same along the normals of both.
 template <typename One>
 TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t first,
@@ -99,10 +106,9 @@ TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t f
   const Lane gap =
       greater((a.normal_low() + up) - greater(greater(p, q), r), lesser(lesser(p, q), r) - (a.normal_high() + up));
   const Lanes3 n = load3(b.normal, first);
-  const auto at = [&](std::size_t c) { return n.x * a.corner(c, 0) + n.y * a.corner(c, 1) + n.z * a.corner(c, 2); };
-  Lane low = at(0), high = low;
+  Lane low = along_corner(n, a, 0), high = low;
   for (std::size_t c = 1; c < One::kCorners; ++c) {
-    const Lane x = at(c);
+    const Lane x = along_corner(n, a, c);
     low = lesser(low, x);
     high = greater(high, x);
   }
@@ -186,16 +192,14 @@ TEGOTAE_WIDE void move_lanes(const FaceLanes& faces, const Moved& start, const M
 
 /// Directions across edges: of each with each, and across those of both faces in their planes; one is there twice.
 constexpr std::uint32_t kAcross = 16;
-typedef std::array<std::array<float, kAcross>, 3> Across;
+typedef std::array<FaceLanes::Field, 3> Across;
+static_assert(kAcross == kBlockFaces);
 
 /// The greatest of the gaps along eight directions has at least `floor` along its own.
 TEGOTAE_INLINE bool any_apart(const Across& left, const Across& right, std::uint32_t first,
                               const std::array<std::array<float, 3>, 6>& p,
                               const std::array<std::array<float, 3>, 3>& q, float floor2) {
-  const auto at = [first](const std::array<float, kAcross>& x) {
-    return *reinterpret_cast<const Lane*>(x.data() + first);
-  };
-  const Lanes3 l = {at(left[0]), at(left[1]), at(left[2])}, r = {at(right[0]), at(right[1]), at(right[2])};
+  const Lanes3 l = load3(left, first), r = load3(right, first);
   const Lanes3 n = {l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
   Lane low = dot(n, p[0]), high = low;
   for (std::size_t k = 1; k < 6; ++k) {
