@@ -341,6 +341,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || (way_.is_on(X) && way_.ends_at(X)));
   if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
     sweeping_ = begun || begin_sweep(X, wanted, clearance);
+    swept_since_ = now_;
     looks_ahead_ = false;
     if (sweeping_) return ask_sweep(X, wanted, blocking);
   }

@@ -223,10 +223,11 @@ class PatchMotionCheck final : public MotionCheck {
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
   Turn turn_;
-  std::uint64_t swept_since_ = 0, swept_until_ = 0;  ///< the begin() of the last sweep's start and of its end
-  std::uint64_t swept_for_ = 0;                      ///< and the ticks that it took
-  bool touches_ = false;                             ///< see heads()
-  bool sweeping_ = false;                            ///< it was begun, and its answer not yet given
+  std::uint64_t swept_since_ = 0,
+                swept_until_ = 0;  ///< the begin() since which A waited for the last sweep, and of its end
+  std::uint64_t swept_for_ = 0;    ///< and the ticks that it took
+  bool touches_ = false;           ///< see heads()
+  bool sweeping_ = false;          ///< it was begun, and its answer not yet given
   std::optional<Displacement> instead_;
   std::uint64_t wait_ = 0, retry_leaving_ = 0;  ///< ticks, and the one, until leaving is looked at thoroughly again
   bool trusted_ = false;                        ///< see trust_start()

@@ -189,7 +189,6 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
       same_way(d, pen_) ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands)) : 0;
   const Displacement all = touches_ ? (1 + ticks * size(pen_) / std::max(size(d), kStands)) * d
                                     : Displacement{d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
-  swept_since_ = now_;
   if (!find_swept(X, X, all)) return false;
   look_at(X, all, clearance, worth(d, all));
   return true;

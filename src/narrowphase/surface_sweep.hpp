@@ -44,7 +44,6 @@ class SurfaceSweep {
   bool knows(std::uint32_t part) const { return parts_[part].surface != nullptr; }
   /// Begun and not done.
   bool under_way() const { return under_way_; }
-  void drop() noexcept { under_way_ = false; }
 
   const Pose& start() const { return X_; }
   const Displacement& motion() const { return d_; }

@@ -41,6 +41,15 @@ double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outsi
   return sweep.share();
 }
 
+Pose random_start(std::mt19937& rng, const Scene& scene) {
+  return displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+}
+
+Displacement random_motion(std::mt19937& rng, const Scene& scene, bool turns) {
+  const Vec3 moved = random_in_ball(rng, 8 * scene.move);
+  return {moved, turns ? random_in_ball(rng, scene.turn) : Vec3::Zero()};
+}
+
 Corners corners(const TriangleMesh& m, std::uint32_t face, const Pose& X) {
   const auto& t = m.triangles[face];
   return {X * m.vertices[t[0]], X * m.vertices[t[1]], X * m.vertices[t[2]]};
@@ -246,11 +255,9 @@ TEST_CASE("the first part of a motion is free as far as is said, and what was me
     const Oracle oracle(scene.a, scene.b);
     SurfaceSweep sweep = sweep_past(scene.a, scene.b, scene.center);
     for (int n = 0; n < 60; ++n) {
-      const Pose X =
-          displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+      const Pose X = random_start(rng, scene);
       if (oracle.meet(X) || oracle.distance(X) < 2 * kClearance) continue;
-      const Displacement d{random_in_ball(rng, 8 * scene.move),
-                           n % 3 == 0 ? Vec3::Zero() : random_in_ball(rng, scene.turn)};
+      const Displacement d = random_motion(rng, scene, n % 3 != 0);
       const double share = run(sweep, X, d);
       CHECK(oracle.hits(X, scene.center, share * d, 20) == 0);
       (share == 1 ? whole : cut) += 1;
@@ -283,11 +290,9 @@ TEST_CASE("what whole blocks tell to be free is free, and no less than it was to
     const auto tree = tree_of(scene.a);
     SurfaceSweep sweep(tree, scene.center, {{tree_of(scene.b), Pose{}}}, Facing::of(scene.a, tree), 24);
     for (int n = 0; n < 60; ++n) {
-      const Pose X =
-          displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
+      const Pose X = random_start(rng, scene);
       if (oracle.meet(X) || oracle.distance(X) < 2 * kClearance) continue;
-      const Displacement d{random_in_ball(rng, 8 * scene.move),
-                           n % 3 == 0 ? Vec3::Zero() : random_in_ball(rng, scene.turn)};
+      const Displacement d = random_motion(rng, scene, n % 3 != 0);
       const double share = run(sweep, X, d, true), worth = uniform(rng, 0, 0.5) * d.dp.norm();
       const double rough = run(sweep, X, d, true, worth);
       CHECK(oracle.hits(X, scene.center, rough * d, 20) == 0);
