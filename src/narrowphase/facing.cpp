@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mesh/cache_entry.hpp"
@@ -19,31 +18,10 @@ namespace {
 
 // To be raised whenever the same mesh may be judged otherwise.
 constexpr std::uint32_t kSolidBuild = 1;
-/// Cosines are kept in single precision, and those of normals that were computed err by less.
-constexpr double kConeSlack = 1e-6;
-/// Wider cones are none: only what nearly turns back from a motion would leave by them.
-constexpr double kLeastCos = 0.02;
 /// A shell of less volume than this part of its box may be inside out by rounding.
 constexpr double kLeastVolume = 1e-9;
 /// A ray that passes an edge by less than this part of the faces around is not counted.
 constexpr double kGrazing = 1e-9;
-
-NormalCone cone(const Vec3& axis, double least) {
-  NormalCone out;
-  const double cos = least - kConeSlack;
-  if (!(cos > kLeastCos)) return out;
-  for (int i = 0; i < 3; ++i) out.axis[static_cast<std::size_t>(i)] = static_cast<float>(axis[i]);
-  out.cos = static_cast<float>(cos);
-  out.sin = static_cast<float>(std::sqrt(std::max(0.0, 1 - cos * cos)) + kConeSlack);
-  return out;
-}
-
-Vec3 normal(const PatchTree& tree, std::uint32_t face) {
-  const Vec3 e = tree.corner(face, 1) - tree.corner(face, 0), f = tree.corner(face, 2) - tree.corner(face, 0);
-  const Vec3 n = e.cross(f);
-  const double longest2 = std::max({e.squaredNorm(), f.squaredNorm(), (f - e).squaredNorm()});
-  return n.norm() > kThinFace * longest2 ? n.normalized() : Vec3(Vec3::Zero());
-}
 
 struct Shell {
   Eigen::AlignedBox3d box;
@@ -136,12 +114,6 @@ Range range_of(const PatchTree& tree, std::size_t i, const std::vector<Vec3>& no
 
 }  // namespace
 
-double NormalCone::least(const Vec3& v) const {
-  if (!(cos > 0)) return -std::numeric_limits<double>::infinity();
-  const Vec3 m(double{axis[0]}, double{axis[1]}, double{axis[2]});
-  return m.dot(v) * double{cos} - m.cross(v).norm() * double{sin};
-}
-
 std::shared_ptr<const Facing> Facing::of(const std::shared_ptr<const TriangleMesh>& mesh,
                                          const std::shared_ptr<const PatchTree>& tree) {
   if (mesh->triangles.size() > kMostFaces || !known_to_bound_solid(mesh, *tree)) return nullptr;
@@ -162,8 +134,8 @@ Facing::Facing(std::shared_ptr<const PatchTree> tree) : tree_(std::move(tree)), 
   const auto& order = tree_->order();
   std::vector<Vec3> normals;
   for (std::uint32_t f = 0; f < order.size(); ++f) {
-    normals.push_back(normal(*tree_, f));
-    faces_.push_back(normals.back().isZero() ? NormalCone{} : cone(normals.back(), 1));
+    normals.push_back(normal_of(*tree_, f));
+    faces_.push_back(normals.back().isZero() ? NormalCone{} : NormalCone::about(normals.back(), 1));
   }
   std::vector<Range> ranges(nodes_.size());
   for (std::size_t i = nodes_.size(); i-- > 0;) {
@@ -171,23 +143,10 @@ Facing::Facing(std::shared_ptr<const PatchTree> tree) : tree_(std::move(tree)), 
     if (!(r.sum.norm() > 0)) continue;
     const Vec3 axis = r.sum.normalized();
     double least = 1;
-    for (std::uint32_t k = r.begin; k < r.end && least > kLeastCos; ++k)
+    for (std::uint32_t k = r.begin; k < r.end && least > 0; ++k)
       least = std::min(least, axis.dot(normals[order[k]]));
-    nodes_[i] = cone(axis, least);
+    nodes_[i] = NormalCone::about(axis, least);
   }
-}
-
-NormalCone Facing::around(const std::vector<std::uint32_t>& faces) const {
-  const auto axis_of = [this](std::uint32_t face) -> Vec3 {
-    return Eigen::Map<const Eigen::Vector3f>(faces_[face].axis.data()).cast<double>();
-  };
-  Vec3 sum = Vec3::Zero();
-  for (const std::uint32_t face : faces) sum += axis_of(face);
-  if (!(sum.norm() > 0)) return {};
-  const Vec3 axis = sum.normalized();
-  double least = 1;
-  for (const std::uint32_t face : faces) least = std::min(least, axis.dot(axis_of(face)));
-  return cone(axis, least);
 }
 
 bool Facing::outside(const Vec3& p) const noexcept {

@@ -4,18 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "narrowphase/normal_cone.hpp"
 #include "narrowphase/patch_tree.hpp"
 
 namespace tegotae {
-
-/// Which way a surface faces: all unit normals within an angle of an axis (file frame). No cone: `cos` is -1.
-struct NormalCone {
-  std::array<float, 3> axis{};
-  float cos = -1, sin = 0;  ///< of the angle, rounded outwards
-
-  /// Least of n · v over the normals; very low where there is no cone.
-  double least(const Vec3& v) const;
-};
 
 /// A surface that bounds a solid beyond doubt, and which way its faces look: closed, each edge of two faces that turn
 /// the same way, no face without a normal, no two faces that meet but in what they share, every shell with its inside
@@ -36,8 +28,7 @@ class Facing {
   const PatchTree& tree() const { return *tree_; }
   const NormalCone& node(std::uint32_t i) const { return nodes_[i]; }
   const NormalCone& face(std::uint32_t i) const { return faces_[i]; }
-  /// Around those of some faces.
-  NormalCone around(const std::vector<std::uint32_t>& faces) const;
+  const std::vector<NormalCone>& faces() const { return faces_; }
   /// Whether `p` (m, file frame), which is on no face, is outside for sure. No allocation.
   bool outside(const Vec3& p) const noexcept;
 

@@ -157,8 +157,10 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
-  if (effort_ == ProofEffort::full && held->triangles.size() <= SurfaceSweep::kMostFaces)
-    sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, kMaxBlocking);
+  if (effort_ == ProofEffort::full && held->triangles.size() <= SurfaceSweep::kMostFaces) {
+    backing_ = Backing::of(held_, held_body_.facing.get());
+    sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, backing_, kMaxBlocking);
+  }
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);
   choice_.assign(fixed.size(), Certificate::front);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "narrowphase/axis_pairs.hpp"
+#include "narrowphase/backing.hpp"
 #include "narrowphase/cell_front.hpp"
 #include "narrowphase/facing.hpp"
 #include "narrowphase/headway.hpp"
@@ -146,6 +147,8 @@ class PatchMotionCheck final : public MotionCheck {
   /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
   /// else. False where one of them is too large.
   bool find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
+  /// The side to which A at `from` may be drawn out for a look at a motion past the parts `swept_`, if there is one.
+  std::optional<Backing::Side> drawn_for(const Pose& from, const Displacement& d) const noexcept;
   /// Whether those that a way or a sweep is about are all that are near.
   bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
@@ -201,6 +204,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::optional<PartBundle> bundle_;  ///< what the cells know as the part after the last
   bool bundled_ = false;              ///< the near parts of the bundle are certified as one
   Body held_body_;
+  std::shared_ptr<const Backing> backing_;       ///< of A; null: none
   std::vector<Body> bodies_;                     ///< of each part; nothing of those that may be left out
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part

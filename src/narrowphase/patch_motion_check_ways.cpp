@@ -42,7 +42,7 @@ bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexce
 }
 
 void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
-  sweep_->begin(X, d, swept_, outside_, clearance, worth);
+  sweep_->begin(X, d, swept_, outside_, clearance, worth, drawn_for(X, d));
   line_.set(X, d, swept_);
 }
 
@@ -173,6 +173,26 @@ bool PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displac
     outside_.push_back(nothing_inside(part));
   }
   return std::all_of(swept_.begin(), swept_.end(), [this](std::uint32_t part) { return sweep_->knows(part); });
+}
+
+std::optional<Backing::Side> PatchMotionCheck::drawn_for(const Pose& from, const Displacement& d) const noexcept {
+  if (!backing_ || !trusted_) return std::nullopt;
+  const double along = backing_->drawn(Backing::Side::plus).dot(from.q.conjugate() * d.dp);
+  if (along == 0) return std::nullopt;
+  const Backing::Side side = along > 0 ? Backing::Side::plus : Backing::Side::minus;
+  const Pose to_held = from.inverse();
+  const auto outside = [&](std::uint32_t part) {
+    const Pose X = to_held * poses_[part];
+    const auto& points = bodies_[part].points;
+    return !points.empty() && std::all_of(points.begin(), points.end(),
+                                          [&](const Vec3& p) { return backing_->outside(X * p, side); });
+  };
+  for (const std::uint32_t part : swept_) {
+    if (part < fixed_.size() && !outside(part)) return std::nullopt;
+    for (std::uint32_t i = 0; part == fixed_.size() && i < fixed_.size(); ++i)
+      if (bundle_->has(i) && !outside(i)) return std::nullopt;
+  }
+  return side;
 }
 
 bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) const noexcept {

@@ -33,22 +33,6 @@ constexpr double kShareKept = 0.999;
 constexpr double kGoodShare = 0.5;
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 16;
 
-/// Of the nodes of the lowest levels.
-std::vector<std::vector<NormalCone>> cones_of(const Facing& facing, const FaceBlocks& blocks, std::uint32_t levels) {
-  std::vector<std::vector<NormalCone>> cones;
-  std::uint32_t each = 1;
-  for (std::uint32_t level = 0; level < levels; ++level, each *= FaceBlocks::kFan) {
-    cones.emplace_back();
-    for (std::uint32_t first = 0; first < blocks.count(); first += each) {
-      std::vector<std::uint32_t> faces;
-      for (std::uint32_t block = first; block < std::min(first + each, blocks.count()); ++block)
-        for (std::uint32_t k = 0; k < blocks.faces(block); ++k) faces.push_back(blocks.face(block, k));
-      cones.back().push_back(facing.around(faces));
-    }
-  }
-  return cones;
-}
-
 }  // namespace
 
 SurfaceSweep::Surface::Surface(const PatchTree& tree) : blocks(tree), slabs(tree, blocks) {
@@ -57,15 +41,22 @@ SurfaceSweep::Surface::Surface(const PatchTree& tree) : blocks(tree), slabs(tree
 
 SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center,
                            const std::vector<CellFront::FixedPart>& fixed, std::shared_ptr<const Facing> facing,
-                           std::uint32_t blocking)
+                           std::shared_ptr<const Backing> backing, std::uint32_t blocking)
     : a_(std::move(a)),
       facing_(std::move(facing)),
-      surface_a_(std::make_shared<Surface>(*a_)),
+      backing_(std::move(backing)),
+      surface_of_a_(std::make_shared<Surface>(*a_)),
       center_(center),
-      offset_a_(a_->origin() - center),
-      reach_(a_->radius() + offset_a_.norm()) {
-  if (facing_) cones_a_ = cones_of(*facing_, surface_a_->blocks, surface_a_->slabs.levels());
-  std::map<const PatchTree*, std::shared_ptr<const Surface>> known = {{a_.get(), surface_a_}};
+      reach_(a_->radius() + (a_->origin() - center).norm()) {
+  if (facing_) facing_cones_ = cones_of(facing_->faces());
+  if (backing_) {
+    backing_cones_ = cones_of(backing_->faces());
+    for (const Backing::Side side : {Backing::Side::plus, Backing::Side::minus})
+      if (const auto& walls = backing_->walls(side))
+        walls_[static_cast<std::size_t>(side)] = std::make_shared<Surface>(*walls);
+    reach_ += backing_->drawn(Backing::Side::plus).norm();
+  }
+  std::map<const PatchTree*, std::shared_ptr<const Surface>> known = {{a_.get(), surface_of_a_}};
   for (const CellFront::FixedPart& part : fixed) {
     auto& own = known[part.tree.get()];
     if (!own && part.tree->mesh().triangles.size() <= kMostFaces) own = std::make_shared<Surface>(*part.tree);
@@ -76,17 +67,39 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
   blocking_.reserve(blocking);
 }
 
+SurfaceSweep::Cones SurfaceSweep::cones_of(const std::vector<NormalCone>& faces) const {
+  Cones cones{&faces, {}};
+  const FaceBlocks& blocks = surface_of_a_->blocks;
+  std::uint32_t each = 1;
+  for (std::uint32_t level = 0; level < surface_of_a_->slabs.levels(); ++level, each *= FaceBlocks::kFan) {
+    cones.nodes.emplace_back();
+    for (std::uint32_t first = 0; first < blocks.count(); first += each) {
+      std::vector<std::uint32_t> under;
+      for (std::uint32_t block = first; block < std::min(first + each, blocks.count()); ++block)
+        for (std::uint32_t k = 0; k < blocks.faces(block); ++k) under.push_back(blocks.face(block, k));
+      cones.nodes.back().push_back(NormalCone::around(faces, under));
+    }
+  }
+  return cones;
+}
+
 void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-                         const std::vector<bool>& outside, double clearance, double worth) noexcept {
+                         const std::vector<bool>& outside, double clearance, double worth,
+                         std::optional<Backing::Side> drawn) noexcept {
   X_ = X;
   d_ = d;
   near_.assign(near.begin(), near.end());
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = facing_ && outside[i];
   clearance_ = clearance;
   worth_ = worth / (d.dp.norm() + reach_ * d.dr.norm());
+  drawn_ = backing_ ? drawn : std::nullopt;
+  under_way_ = true;
+  start_looks();
+}
+
+void SurfaceSweep::start_looks() {
   blocking_.clear();
   share_ = 1;
-  under_way_ = true;
   ended_by_blocks_ = false;
   searched_blocks_ = 0;
   last_plane_ = {Vec3::Zero(), Vec3::Zero()};
@@ -99,7 +112,7 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
       under_way_ = false;
     } else if (face_ < faces_) {
       look_at_face(face_++);
-    } else if (!next_beside() && !(look_ == Look::blocks ? next_node() : next_block()) && !next_part()) {
+    } else if (!next_beside() && !(by_nodes() ? next_node() : next_block()) && !next_part()) {
       under_way_ = false;
     }
     if (past(deadline_ns)) break;
@@ -108,8 +121,24 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
 }
 
 void SurfaceSweep::start_look(Look look) {
+  // Of what was drawn, blocks have told as much as faces would.
+  const bool drawn_again = drawn_ && !(look_ == Look::blocks && look == Look::faces);
   look_ = look;
-  at_ = sampled_ = 0;
+  start_layer(drawn_again ? Layer::walls : Layer::faces);
+}
+
+void SurfaceSweep::start_layer(Layer layer) {
+  layer_ = layer;
+  tree_a_ = a_.get();
+  surface_a_ = surface_of_a_.get();
+  if (layer == Layer::walls) {
+    tree_a_ = backing_->walls(*drawn_).get();
+    surface_a_ = walls_[static_cast<std::size_t>(*drawn_)].get();
+    if (surface_a_ == nullptr) return start_layer(Layer::moved_faces);
+  }
+  shift_a_ = layer == Layer::moved_faces ? backing_->drawn(*drawn_) : Vec3(Vec3::Zero());
+  offset_a_ = tree_a_->origin() + shift_a_ - center_;
+  at_ = 0;
   face_ = faces_ = besides_ = 0;
   start_part();
 }
@@ -142,6 +171,10 @@ void SurfaceSweep::set_share(double share) {
 bool SurfaceSweep::next_part() {
   if (++at_ < near_.size()) {
     start_part();
+    return true;
+  }
+  if (layer_ != Layer::faces) {
+    start_layer(layer_ == Layer::walls ? Layer::moved_faces : Layer::faces);
     return true;
   }
   if (look_ == Look::blocks && ended_by_blocks_) blocking_.clear();
@@ -212,6 +245,10 @@ bool SurfaceSweep::next_node() {
   if (apart == 1 || (node.level == 0 && all_recede(node.index))) return true;
   if (node.level > 0) {
     push_below(node);
+    return true;
+  }
+  if (layer_ != Layer::faces) {
+    place(node.index);
     return true;
   }
   const double kept = kShareKept * apart;
@@ -296,15 +333,15 @@ AxisBox SurfaceSweep::swept(const AxisBox& box) const {
 
 /// Whether all faces under A's node recede from the part, by what is known of them together.
 bool SurfaceSweep::recedes(const Node& node) const {
-  if (!outside_[at_] || node.level >= cones_a_.size()) return false;
+  if (!may_recede() || node.level >= cones().nodes.size()) return false;
   const Slab& slab = surface_a_->slabs.slab(node.level, node.index);
-  return passing_.recedes(cones_a_[node.level][node.index], slab.center + offset_a_, kRadiusSlack * slab.half.norm());
+  return passing_.recedes(seen(cones().nodes[node.level][node.index]), slab.center + offset_a_, kRadiusSlack * slab.half.norm());
 }
 
 /// Whether all faces of A's block recede from the part, and so need not be looked at.
 bool SurfaceSweep::all_recede(std::uint32_t block) {
   skipped_ = 0;
-  if (!outside_[at_]) return false;
+  if (!may_recede()) return false;
   const std::uint32_t faces = surface_a_->blocks.faces(block);
   for (std::uint32_t k = 0; k < faces; ++k) {
     const std::uint32_t face = surface_a_->blocks.face(block, k);
@@ -312,7 +349,7 @@ bool SurfaceSweep::all_recede(std::uint32_t block) {
     const Vec3 middle = (p + q + r) / 3;
     const double radius =
         std::sqrt(std::max({(p - middle).squaredNorm(), (q - middle).squaredNorm(), (r - middle).squaredNorm()}));
-    if (passing_.recedes(facing_->face(face), middle - center_, kRadiusSlack * radius)) skipped_ |= 1U << k;
+    if (passing_.recedes(seen((*cones().faces)[face]), middle - center_, kRadiusSlack * radius)) skipped_ |= 1U << k;
   }
   return skipped_ == (1U << faces) - 1;
 }
@@ -389,6 +426,12 @@ bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block) {
     const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(block, lane);
     const Faces faces = faces_of(face, face_b);
     if (keeps_apart(faces)) continue;
+    if (layer_ != Layer::faces) {
+      // Not solid, then.
+      drawn_.reset();
+      start_looks();
+      return false;
+    }
     if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
     blocking_.push_back({near_[at_], face, face_b});
     meet(faces);
@@ -407,7 +450,7 @@ bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block) {
 SurfaceSweep::Faces SurfaceSweep::faces_of(std::uint32_t face, std::uint32_t face_b) const {
   Faces out;
   for (int c = 0; c < 3; ++c) {
-    out.a[c] = a_->corner(face, c) - center_;
+    out.a[c] = tree_a_->corner(face, c) + shift_a_ - center_;
     out.b[c] = part().tree->corner(face_b, c) - part().tree->origin();
     out.reach = std::max(out.reach, out.a[c].norm());
   }

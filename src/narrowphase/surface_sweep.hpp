@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "narrowphase/backing.hpp"
 #include "narrowphase/block_slabs.hpp"
 #include "narrowphase/cell_front.hpp"
 #include "narrowphase/face_blocks.hpp"
@@ -25,19 +27,22 @@ class SurfaceSweep {
   /// Larger surfaces are not looked at as a whole: blocks of a million faces would take 0.2 s at every start.
   static constexpr std::size_t kMostFaces = 1U << 18;
 
-  /// `center` (m, file frame) is A's center of mass; `facing` of A, if it bounds a solid. At most `blocking` triangle
-  /// pairs are told.
+  /// `center` (m, file frame) is A's center of mass; `facing` of A, if it bounds a solid, and `backing` if it has one.
+  /// At most `blocking` triangle pairs are told.
   SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center, const std::vector<CellFront::FixedPart>& fixed,
-               std::shared_ptr<const Facing> facing, std::uint32_t blocking);
+               std::shared_ptr<const Facing> facing, std::shared_ptr<const Backing> backing, std::uint32_t blocking);
 
   /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
   /// between the same two poses whose file-frame origin moves linearly (see Sweep). Separations below `clearance` (m)
   /// do not count. `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
-  /// and the answer is about an A that is apart from them at `X`. Where `worth` (m) of the motion or more are free
-  /// that whole blocks of faces tell, a tenth of the work, no more is looked for.
+  /// and the answer is about an A that is apart from them at `X`. So it is where `drawn` is a side to which A may be
+  /// drawn out at `X` with no point of a part's pieces inside (see Backing), as long as nothing meets what was drawn.
+  /// Where `worth` (m) of the motion or more are free that whole blocks of faces tell, a tenth of the work, no more is
+  /// looked for.
   void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
              const std::vector<bool>& outside, double clearance,
-             double worth = std::numeric_limits<double>::infinity()) noexcept;
+             double worth = std::numeric_limits<double>::infinity(),
+             std::optional<Backing::Side> drawn = std::nullopt) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
@@ -82,11 +87,15 @@ class SurfaceSweep {
   /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks, if
   /// that may be enough, and all faces, if it was not.
   enum class Look : std::uint8_t { sample, blocks, faces };
+  /// Of A drawn out what is looked at, one after the other: nothing may meet it, and it never recedes. Then A's faces.
+  enum class Layer : std::uint8_t { walls, moved_faces, faces };
   static constexpr std::uint32_t kBeside = 32;
 
   Sweep sweep_by(double share, double clearance) const;
   void set_share(double share);
+  void start_looks();
   void start_look(Look look);
+  void start_layer(Layer layer);
   void start_part();
   bool next_part();
   bool next_block();
@@ -113,11 +122,25 @@ class SurfaceSweep {
   const Part& part() const { return parts_[near_[at_]]; }
   const Surface& surface_b() const { return *part().surface; }
 
+  /// Which way A's faces look, and the nodes of the levels that have slabs.
+  struct Cones {
+    const std::vector<NormalCone>* faces = nullptr;
+    std::vector<std::vector<NormalCone>> nodes;
+  };
+  Cones cones_of(const std::vector<NormalCone>& faces) const;
+  const Cones& cones() const { return drawn_ ? backing_cones_ : facing_cones_; }
+  NormalCone seen(const NormalCone& cone) const { return drawn_ == Backing::Side::plus ? cone.turned() : cone; }
+  /// Nodes are asked as a whole, and faces where those are not kept apart.
+  bool by_nodes() const { return look_ == Look::blocks || (look_ == Look::faces && layer_ != Layer::faces); }
+  bool may_recede() const { return layer_ == Layer::faces && (drawn_ || outside_[at_]); }
+
   std::shared_ptr<const PatchTree> a_;
   std::shared_ptr<const Facing> facing_;
-  std::shared_ptr<const Surface> surface_a_;
-  std::vector<std::vector<NormalCone>> cones_a_;  ///< of the levels that have slabs, if A bounds a solid
-  Vec3 center_, offset_a_;
+  std::shared_ptr<const Backing> backing_;
+  std::shared_ptr<const Surface> surface_of_a_;
+  std::array<std::shared_ptr<const Surface>, 2> walls_;  ///< on each side of the backing; null: none
+  Cones facing_cones_, backing_cones_;                   ///< if there are those
+  Vec3 center_;
   double reach_;  ///< of A about its center of mass, m
   std::vector<Part> parts_;
   std::vector<FacePair> blocking_;
@@ -131,7 +154,13 @@ class SurfaceSweep {
   std::uint32_t searched_blocks_ = 0;  ///< of A, face by face, while whole ones were looked at
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
+  std::optional<Backing::Side> drawn_;
   Look look_ = Look::sample;
+  Layer layer_ = Layer::faces;
+  const PatchTree* tree_a_ = nullptr;  ///< of the layer
+  const Surface* surface_a_ = nullptr;
+  Vec3 shift_a_ = Vec3::Zero();   ///< by which its faces are moved, m
+  Vec3 offset_a_ = Vec3::Zero();  ///< of the tree's origin, moved, from the center of mass
   std::uint32_t at_ = 0;                                                ///< of near_
   std::uint32_t sampled_ = 0;                                           ///< the next block of the sample
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy

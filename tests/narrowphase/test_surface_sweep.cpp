@@ -27,7 +27,7 @@ std::shared_ptr<const PatchTree> tree_of(const MeshPtr& mesh) {
 /// A sweep past one part whose file frame is the world's.
 SurfaceSweep sweep_past(const MeshPtr& a, const MeshPtr& b, const Vec3& center,
                         std::shared_ptr<const Facing> facing = nullptr) {
-  return SurfaceSweep(tree_of(a), center, {{tree_of(b), Pose{}}}, std::move(facing), 24);
+  return SurfaceSweep(tree_of(a), center, {{tree_of(b), Pose{}}}, std::move(facing), nullptr, 24);
 }
 
 double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outside = false, double worth = kInfinity) {
@@ -288,7 +288,7 @@ TEST_CASE("what whole blocks tell to be free is free, and no less than it was to
     INFO(scene.name);
     const Oracle oracle(scene.a, scene.b);
     const auto tree = tree_of(scene.a);
-    SurfaceSweep sweep(tree, scene.center, {{tree_of(scene.b), Pose{}}}, Facing::of(scene.a, tree), 24);
+    SurfaceSweep sweep(tree, scene.center, {{tree_of(scene.b), Pose{}}}, Facing::of(scene.a, tree), nullptr, 24);
     for (int n = 0; n < 60; ++n) {
       const Pose X = random_start(rng, scene);
       if (oracle.meet(X) || oracle.distance(X) < 2 * kClearance) continue;
@@ -352,7 +352,7 @@ TEST_CASE("of a solid the faces that recede need not be looked at") {
   const auto facing = Facing::of(a, tree);
   REQUIRE(facing);
   const Oracle oracle(a, b);
-  SurfaceSweep some(tree, Vec3::Zero(), {{tree_of(b), Pose{}}}, facing, 24);
+  SurfaceSweep some(tree, Vec3::Zero(), {{tree_of(b), Pose{}}}, facing, nullptr, 24);
   SurfaceSweep all = sweep_past(a, b, Vec3::Zero());
   int cut = 0;
   for (int n = 0; n < 60; ++n) {
