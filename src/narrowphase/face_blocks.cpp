@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "narrowphase/box_overlap.hpp"
 #include "narrowphase/wide.hpp"
 
 namespace tegotae {
@@ -202,20 +202,8 @@ std::vector<Placed> beside_each_other(const PatchTree& tree) {
   return placed;
 }
 
-typedef float Lane __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
-typedef std::int32_t LaneBits __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
-
-TEGOTAE_WIDE std::uint32_t overlap(const BoxLanes& boxes, const AxisBox& box) {
-  LaneBits all = LaneBits{1, 2, 4, 8, 16, 32, 64, 128};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Lane low = *reinterpret_cast<const Lane*>(boxes.low[i].data());
-    const Lane high = *reinterpret_cast<const Lane*>(boxes.high[i].data());
-    all &= (LaneBits)(low <= box.high[i]) & (LaneBits)(high >= box.low[i]);
-  }
-  std::array<std::uint64_t, BoxLanes::kBoxes / 2> in_pairs;
-  std::memcpy(in_pairs.data(), &all, sizeof all);
-  const std::uint64_t pair = in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3];
-  return static_cast<std::uint32_t>(pair | pair >> 32);
+TEGOTAE_WIDE std::uint32_t overlapping_boxes(const BoxLanes& boxes, const AxisBox& box) {
+  return overlap(boxes, box);
 }
 
 }  // namespace
@@ -292,7 +280,7 @@ AxisBox FaceBlocks::box(std::uint32_t level, std::uint32_t node) const {
 }
 
 std::uint32_t BoxLanes::overlapping(const AxisBox& box) const noexcept {
-  return overlap(*this, box);
+  return overlapping_boxes(*this, box);
 }
 
 void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level) {

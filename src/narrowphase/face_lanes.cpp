@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "narrowphase/box_overlap.hpp"
 #include "narrowphase/wide.hpp"
 
 namespace tegotae {
@@ -13,6 +14,9 @@ namespace {
 /// Rounding of a gap in single precision, as a share of the sum of all coordinates that it comes from: two dozen
 /// operations and numbers that were rounded, of 6e-8 each, along normals that are no axes.
 constexpr float kGapError = 5e-6F;
+
+/// Boxes are grown by this share of the coordinates that they come from, in single precision.
+constexpr float kBoxError = 1e-6F;
 
 /// Conditions on vectors longer than a register would go number by number.
 constexpr std::uint32_t kLane = 8;
@@ -147,6 +151,22 @@ TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const std
 
 TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
   return gaps_below(a, b, shift, floor);
+}
+
+TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const BoxLanes* boxes, const BesideFaces::Block* blocks,
+                                      std::uint32_t count, std::uint32_t& at) {
+  const AxisBox box = {{a.low(0), a.low(1), a.low(2)}, {a.high(0), a.high(1), a.high(2)}};
+  while (at < count) {
+    const std::uint32_t in_eight = at % BoxLanes::kBoxes;
+    std::uint32_t bits = overlap(boxes[at / BoxLanes::kBoxes], box) >> in_eight;
+    for (; bits != 0; bits >>= 1, ++at) {
+      if ((bits & 1) == 0) continue;
+      const std::uint32_t open = gaps_below(a, *blocks[at].faces, blocks[at].shift, blocks[at].floor);
+      if (open != 0) return open;
+    }
+    at = (at / BoxLanes::kBoxes + 1) * BoxLanes::kBoxes;
+  }
+  return 0;
 }
 
 /// A Placement in single precision.
@@ -305,6 +325,36 @@ MovedBox::MovedBox(const std::array<Vec3, 8>& start, const std::array<Vec3, 8>& 
     }
   }
   for (std::size_t i = 0; i < 3; ++i) size = std::max({size, -low[i], high[i]});
+}
+
+void BesideFaces::set(const FaceBlocks& blocks, const std::vector<FaceLanes>& lanes, const std::uint32_t* found,
+                      std::uint32_t count, const MovedLanes& a, const Vec3& origin, double floor) noexcept {
+  count_ = count;
+  const std::uint32_t whole = (count + BoxLanes::kBoxes - 1) / BoxLanes::kBoxes * BoxLanes::kBoxes;
+  const Float3 at = in_single(origin);
+  for (std::uint32_t i = 0; i < whole; ++i) {
+    BoxLanes& out = boxes_[i / BoxLanes::kBoxes];
+    const std::uint32_t k = i % BoxLanes::kBoxes;
+    const AxisBox box = i < count ? blocks.box(0, found[i]) : AxisBox::empty();
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.low[c][k] = box.low[c];
+      out.high[c][k] = box.high[c];
+    }
+    if (i >= count) continue;
+    const FaceLanes& faces = lanes[found[i]];
+    const Vec3 shift = origin - faces.origin;
+    blocks_[i] = {&faces, in_single(shift), floor_in_single(a.size, faces, shift, floor)};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float slack = static_cast<float>(floor) +
+                          kBoxError * (std::abs(at[c]) + std::abs(box.low[c]) + std::abs(box.high[c]));
+      out.low[c][k] = box.low[c] - at[c] - slack;
+      out.high[c][k] = box.high[c] - at[c] + slack;
+    }
+  }
+}
+
+std::uint32_t BesideFaces::next_not_kept_apart(const MovedLanes& a, std::uint32_t k, std::uint32_t& at) const noexcept {
+  return next_below(OneFace{a, k}, boxes_.data(), blocks_.data(), count_, at);
 }
 
 std::uint32_t not_kept_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, const Vec3& shift,

@@ -24,6 +24,8 @@ constexpr double kKept = 12e-6;
 /// How exactly it is found where the motion ends (m), and the halvings that takes at most.
 constexpr double kExact = 5e-7;
 constexpr int kHalvings = 24;
+/// Faces after which the clock is looked at.
+constexpr std::uint32_t kFacesAtOnce = 4;
 /// Boxes are grown by this share of the coordinates that they come from, in single precision.
 constexpr float kBoxError = 1e-6F;
 constexpr double kRadiusSlack = 1 + 1e-9;
@@ -112,6 +114,7 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
       under_way_ = false;
     } else if (face_ < faces_) {
       look_at_face(face_++);
+      if (face_ % kFacesAtOnce != 0) continue;
     } else if (!next_beside() && !(by_nodes() ? next_node() : next_block()) && !next_part()) {
       under_way_ = false;
     }
@@ -139,7 +142,7 @@ void SurfaceSweep::start_layer(Layer layer) {
   shift_a_ = layer == Layer::moved_faces ? backing_->drawn(*drawn_) : Vec3(Vec3::Zero());
   offset_a_ = tree_a_->origin() + shift_a_ - center_;
   at_ = 0;
-  face_ = faces_ = besides_ = 0;
+  face_ = faces_ = 0;
   start_part();
 }
 
@@ -377,7 +380,7 @@ void SurfaceSweep::place(std::uint32_t block) {
     box.high[i] += at + slack;
   }
   walk(box, 0);
-  besides_ = 0;
+  beside_.clear();
   face_ = faces_;
 }
 
@@ -389,37 +392,24 @@ AxisBox SurfaceSweep::face_box(std::uint32_t k) const {
 /// The next blocks of B beside that of A, for all faces of it.
 bool SurfaceSweep::next_beside() {
   if (faces_ == 0) return false;
-  besides_ = walk_.next(found_.data(), kBeside);
-  for (std::uint32_t i = 0; i < (besides_ + BoxLanes::kBoxes - 1) / BoxLanes::kBoxes * BoxLanes::kBoxes; ++i) {
-    const AxisBox box = i < besides_ ? surface_b().blocks.box(0, found_[i]) : AxisBox::empty();
-    BoxLanes& out = beside_boxes_[i / BoxLanes::kBoxes];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(c)]);
-      const float slack =
-          static_cast<float>(floor_) + kBoxError * (std::abs(at) + std::abs(box.low[c]) + std::abs(box.high[c]));
-      out.low[c][i % BoxLanes::kBoxes] = i < besides_ ? box.low[c] - at - slack : box.low[c];
-      out.high[c][i % BoxLanes::kBoxes] = i < besides_ ? box.high[c] - at + slack : box.high[c];
-    }
-  }
+  const std::uint32_t count = walk_.next(found_.data(), kBeside);
+  beside_.set(surface_b().blocks, surface_b().lanes, found_.data(), count, moved_, middle_, floor_);
   face_ = 0;
-  if (besides_ == 0) face_ = faces_ = 0;
-  return besides_ > 0;
+  if (count == 0) face_ = faces_ = 0;
+  return count > 0;
 }
 
 void SurfaceSweep::look_at_face(std::uint32_t k) {
   if ((skipped_ >> k & 1) != 0) return;
-  const AxisBox box = face_box(k);
-  for (std::uint32_t first = 0; first < besides_; first += BoxLanes::kBoxes) {
-    std::uint32_t bits = beside_boxes_[first / BoxLanes::kBoxes].overlapping(box);
-    for (std::uint32_t i = first; bits != 0; ++i, bits >>= 1)
-      if ((bits & 1) != 0 && !look_at_pairs(k, found_[i])) return;
+  for (std::uint32_t at = 0; at < beside_.count(); ++at) {
+    const std::uint32_t open = beside_.next_not_kept_apart(moved_, k, at);
+    if (open != 0 && !look_at_pairs(k, found_[at], open)) return;
   }
 }
 
-/// Face `k` of A's block and those of a block of B. Whether the motion goes on as far as before.
-bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block) {
+/// Face `k` of A's block and those of a block of B that may be near. Whether the motion goes on as far as before.
+bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint32_t open) {
   const FaceLanes& b = surface_b().lanes[block];
-  std::uint32_t open = not_kept_apart(moved_, k, b, middle_ - b.origin, floor_);
   for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
     if ((open & 1) == 0 || lane >= surface_b().blocks.faces(block)) continue;
     if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;

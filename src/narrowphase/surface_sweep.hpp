@@ -89,7 +89,7 @@ class SurfaceSweep {
   enum class Look : std::uint8_t { sample, blocks, faces };
   /// Of A drawn out what is looked at, one after the other: nothing may meet it, and it never recedes. Then A's faces.
   enum class Layer : std::uint8_t { walls, moved_faces, faces };
-  static constexpr std::uint32_t kBeside = 32;
+  static constexpr std::uint32_t kBeside = BesideFaces::kMost;
 
   Sweep sweep_by(double share, double clearance) const;
   void set_share(double share);
@@ -114,7 +114,7 @@ class SurfaceSweep {
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
   void look_at_face(std::uint32_t k);
-  bool look_at_pairs(std::uint32_t k, std::uint32_t block);
+  bool look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint32_t open);
   Faces faces_of(std::uint32_t face, std::uint32_t face_b) const;
   bool keeps_apart(const Faces& faces);
   void meet(const Faces& faces);
@@ -178,8 +178,7 @@ class SurfaceSweep {
       tops_;                      ///< nodes of B beside that one of A whose blocks are looked at
   std::uint32_t tops_count_ = 0;  ///< none: from the root
   std::array<std::uint32_t, kBeside> found_;
-  std::uint32_t besides_ = 0;                                      ///< of found_, beside A's block
-  std::array<BoxLanes, kBeside / BoxLanes::kBoxes> beside_boxes_;  ///< of them, from the middle of A's
+  BesideFaces beside_;                                  ///< of found_, beside A's block
   MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};             ///< that kept two faces apart
 };
 
