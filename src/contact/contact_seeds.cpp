@@ -120,6 +120,16 @@ int ContactSet::seed(const std::vector<FacePair>& triangles, const Pose& X_near,
   return fresh;
 }
 
+void ContactSet::faces_within(double distance, std::size_t most, std::vector<FacePair>& faces) const noexcept {
+  faces.clear();
+  for (std::size_t i = 0; i < constraints_.size() && faces.size() < most; ++i) {
+    if (owners_[i] == kNone || constraints_[i].gap > distance) continue;
+    const Pair& pair = next_[owners_[i]];
+    const FacesAround a = faces_around(*held_, pair.a), b = faces_around(*fixed_[pair.part].surface, pair.b);
+    if (a.size > 0 && b.size > 0) faces.push_back({pair.part, a.faces[0], b.faces[0]});
+  }
+}
+
 bool ContactSet::out_of_time() const {
   return past(deadline_ns_);
 }

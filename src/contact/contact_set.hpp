@@ -55,6 +55,9 @@ class ContactSet {
   /// Whether the two triangles that constraint number `constraint`, from add_cutting_planes(), keeps apart are at most
   /// `distance` (m) from each other at the pose of the last track().
   bool touches(std::size_t constraint, double distance) const noexcept;
+  /// A pair of faces for each contact that is no farther than `distance` (m) at the pose of the last track(), up to
+  /// `most`, for seed() to find it again.
+  void faces_within(double distance, std::size_t most, std::vector<FacePair>& faces) const noexcept;
   /// Constraint number `constraint` carries force: the next track() keeps its pair, whatever it drops.
   void carries(std::size_t constraint) noexcept;
 

@@ -75,6 +75,9 @@ constexpr double kFeltLag = 0.05;
 constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.7;
+// A part whose way is not proved in time goes back along where it came from if that leaves less than this share of the
+// squared distance to the pen; or than the other one, if something held it there.
+constexpr double kNearerOnTrail = 0.25, kNearerInContact = 0.9;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
 
@@ -90,7 +93,8 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
       rows_(kMaxConstraints),
       bounds_(kMaxConstraints),
       friction_(resolver_->knows_friction() ? friction_of_parts(scene) : std::vector<double>(), kMaxConstraints),
-      planes_(kMaxConstraints, scene.coupling, scene.scale) {
+      planes_(kMaxConstraints, scene.coupling, scene.scale),
+      trail_(center_, at_.radius) {
   trust_ = substep_cap_ = at_.check->longest_motion();
   max_margin_ = margin_ = kMarginShare * *settings_.l_min;
   min_margin_ = scene.contact.l_min ? max_margin_ : std::min(kMinMargin, max_margin_);
@@ -106,6 +110,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
 bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::vector<bool>* fresh,
                             std::int64_t deadline_ns) {
   if (!at_.is_path_free(X_, last.proxy.X, center_, fresh, deadline_ns, near_, blocking_)) return false;
+  trail_.forget();
   X_ = last.proxy.X;
   at_.check->jumped();
   last_Y_ = Y;
@@ -118,6 +123,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
 
 void ContactLoop::stand_at(const Pose& X) {
   X_ = last_Y_ = X;
+  trail_.forget();
   at_.check->jumped();
   at_.contacts->clear();
   near_.clear();
@@ -142,7 +148,10 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   if (still_ticks_ < kMaxStillTicks) swings_.forget();
   // The pen's motion is followed within the tick, an older lag at twice its pace over the next ticks.
   const double travel = std::max(substep_cap_, kCatchUp * pen);
-  if (at_.poll_initial_contacts(X_)) tracked_ = false;
+  if (at_.poll_initial_contacts(X_)) {
+    tracked_ = false;
+    trail_.forget();
+  }
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
   held_by_contacts_ = false;
@@ -188,8 +197,10 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
 }
 
 void ContactLoop::move_in_air(const Pose& Y, double wanted, double travel, TickReport& report) {
+  const Pose from = X_;
   X_ = displaced(X_, center_, std::min(1.0, travel / wanted) * displacement(X_, Y, center_));
   if (wanted <= travel) X_ = Y;
+  trail_.went(from, X_);
   report.substeps.push_back(X_);
   at_.contacts->clear();
   tracked_ = false;
@@ -214,8 +225,59 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
     if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
     made_ += length;
   }
+  if (made_ == 0 && late() && !touches()) go_back(Y, travel, report);
   if (report.substeps.empty()) report.substeps.push_back(X_);
   if (!late()) track();
+  if (tracked_ && trail_.is_at(X_) && touches()) {
+    at_.contacts->faces_within(margin_ / kMarginShare, Trail::kFaces, blocking_);
+    trail_.touches(blocking_);
+  }
+}
+
+std::size_t ContactLoop::nearest_on_trail(const Pose& Y) const {
+  const auto off = [&](std::size_t i) {
+    return metric_.whiten(displacement(trail_.pose(i), Y, center_)).squaredNorm();
+  };
+  const double now = off(trail_.here());
+  double least = now;
+  std::size_t nearest = trail_.here();
+  const auto look_at = [&](std::size_t i) {
+    const double at = off(i);
+    if (at < least && at < (trail_.touched_at(i) ? kNearerInContact : kNearerOnTrail) * now) {
+      least = at;
+      nearest = i;
+    }
+    return at <= now;
+  };
+  for (std::size_t i = trail_.here(); i > 0 && look_at(i - 1); --i) {
+  }
+  for (std::size_t i = trail_.here(); i + 1 < trail_.count() && look_at(i + 1); ++i) {
+  }
+  return nearest;
+}
+
+void ContactLoop::go_back(const Pose& Y, double travel, TickReport& report) {
+  if (!trail_.is_at(X_)) return;
+  metric_.set_orientation(X_.q);
+  const std::size_t to = nearest_on_trail(Y);
+  while (trail_.here() != to) {
+    const std::size_t next = to < trail_.here() ? trail_.here() - 1 : trail_.here() + 1;
+    const double length = size(displacement(X_, trail_.pose(next), center_));
+    if (made_ > 0 && made_ + length > travel) break;
+    X_ = trail_.pose(next);
+    trail_.step_to(next);
+    report.substeps.push_back(X_);
+    made_ += length;
+  }
+  if (made_ == 0) return;
+  tracked_ = false;
+  owed_.reset();
+  // A few contacts are known at once, time or not: they hold the part where it was held.
+  trail_.touched(blocking_);
+  if (!blocking_.empty() && at_.contacts->track(X_, at_.reach, kNoDeadline)) {
+    at_.contacts->seed(blocking_, X_, kNoDeadline);
+    tracked_ = true;
+  }
 }
 
 void ContactLoop::report_forces(const Pose& Y, TickReport& report) {
@@ -329,6 +391,7 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
 }
 
 void ContactLoop::go_to(const Trial& trial) {
+  trail_.went(X_, trial.X);
   X_ = trial.X;
   tracked_ = false;
   allowed_ = std::max(0.0, allowed_ - size(trial.d));

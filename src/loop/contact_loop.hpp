@@ -8,6 +8,7 @@
 #include "loop/contact_planes.hpp"
 #include "loop/proxy_loop.hpp"
 #include "loop/swings.hpp"
+#include "loop/trail.hpp"
 #include "resolve/friction_rows.hpp"
 #include "resolve/metric.hpp"
 #include "tegotae/resolve/resolver.hpp"
@@ -85,6 +86,10 @@ class ContactLoop final : public ProxyLoop {
   void move_in_air(const Pose& Y, double wanted, double travel, TickReport& report);
   /// The sub-steps of a tick among near parts, at most `travel` (m), under a pen that moved by `pen` (m).
   void move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report);
+  /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) of it, if that leads much nearer.
+  void go_back(const Pose& Y, double travel, TickReport& report);
+  /// The pose on the trail that is nearest to the pen, of those that it leads to without going farther away.
+  std::size_t nearest_on_trail(const Pose& Y) const;
   /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);
   /// Adapts the margin of contacts to the clearance of the fit.
@@ -134,6 +139,7 @@ class ContactLoop final : public ProxyLoop {
   PlanePicker planes_;
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;
+  Trail trail_;
   Pose X_;
   Pose last_Y_;
   double trust_;
