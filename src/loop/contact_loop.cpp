@@ -211,7 +211,7 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
   at_.check->trust_start();
   if (track()) adapt_margin(Y);
-  at_.check->heads(pen, touches());
+  at_.check->heads(pen, touches(), margin_ / kMarginShare);
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
   if (at_.check->prefers_long()) trust_ = substep_cap_;

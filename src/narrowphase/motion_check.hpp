@@ -35,9 +35,10 @@ class MotionCheck {
   virtual void trust_start() noexcept {}
   /// A is where no motion that was checked has brought it.
   virtual void jumped() noexcept {}
-  /// Until the next begin(): in a tick the pen goes on by `pen` about, and A `touches` something or not.
-  virtual void heads(const Displacement& pen, bool touches) noexcept {
-    static_cast<void>(pen), static_cast<void>(touches);
+  /// Until the next begin(): in a tick the pen goes on by `pen` about, and A `touches` something or not, which is what
+  /// is no farther than `contact_gap` (m).
+  virtual void heads(const Displacement& pen, bool touches, double contact_gap) noexcept {
+    static_cast<void>(pen), static_cast<void>(touches), static_cast<void>(contact_gap);
   }
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,

@@ -42,9 +42,10 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   void trust_start() noexcept override { trusted_ = true; }
   void jumped() noexcept override;
-  void heads(const Displacement& pen, bool touches) noexcept override {
+  void heads(const Displacement& pen, bool touches, double contact_gap) noexcept override {
     pen_ = pen;
     touches_ = touches;
+    contact_gap_ = contact_gap;
   }
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
@@ -231,6 +232,7 @@ class PatchMotionCheck final : public MotionCheck {
                 swept_until_ = 0;  ///< the begin() since which A waited for the last sweep, and of its end
   std::uint64_t swept_for_ = 0;    ///< and the ticks that it took
   bool touches_ = false;           ///< see heads()
+  double contact_gap_ = 20e-6;     ///< see heads(), m
   bool sweeping_ = false;          ///< it was begun, and its answer not yet given
   std::optional<Displacement> instead_;
   std::uint64_t wait_ = 0, retry_leaving_ = 0;  ///< ticks, and the one, until leaving is looked at thoroughly again

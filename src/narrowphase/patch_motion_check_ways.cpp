@@ -28,6 +28,8 @@ constexpr double kSameWay = 0.95, kStands = 1e-7;
 constexpr double kWorthTicks = 2, kWorthTicksPerFace = 3e-5;
 constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
+// What a few faces tell to be in the way is come to as near as this share of the gap that counts as contact.
+constexpr double kKeptOfContact = 0.6;
 // Turns of one kind after which the other is tried.
 constexpr int kTurnsInARow = 6;
 // What has come less far (m) stands.
@@ -42,7 +44,7 @@ bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexce
 }
 
 void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
-  sweep_->begin(X, d, swept_, outside_, clearance, worth, drawn_for(X, d));
+  sweep_->begin(X, d, swept_, outside_, {clearance, worth, kKeptOfContact * contact_gap_, drawn_for(X, d)});
   line_.set(X, d, swept_);
 }
 

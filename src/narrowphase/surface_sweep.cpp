@@ -18,9 +18,6 @@ namespace {
 constexpr std::uint32_t kTopLevel = 2;
 /// Blocks of A that are looked at first.
 constexpr std::uint32_t kSample = 32;
-/// What they meet ends the motion this far before it is touched (m): nearer, the planes of faces that lie on each other
-/// keep few of their neighbors apart. Less than contacts keep.
-constexpr double kKept = 12e-6;
 /// How exactly it is found where the motion ends (m), and the halvings that takes at most.
 constexpr double kExact = 5e-7;
 constexpr int kHalvings = 24;
@@ -86,15 +83,15 @@ SurfaceSweep::Cones SurfaceSweep::cones_of(const std::vector<NormalCone>& faces)
 }
 
 void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-                         const std::vector<bool>& outside, double clearance, double worth,
-                         std::optional<Backing::Side> drawn) noexcept {
+                         const std::vector<bool>& outside, const SweepAim& aim) noexcept {
   X_ = X;
   d_ = d;
   near_.assign(near.begin(), near.end());
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = facing_ && outside[i];
-  clearance_ = clearance;
-  worth_ = worth / (d.dp.norm() + reach_ * d.dr.norm());
-  drawn_ = backing_ ? drawn : std::nullopt;
+  clearance_ = aim.clearance;
+  kept_ = std::max(aim.kept, aim.clearance);
+  worth_ = aim.worth / (d.dp.norm() + reach_ * d.dr.norm());
+  drawn_ = backing_ ? aim.drawn : std::nullopt;
   under_way_ = true;
   start_looks();
 }
@@ -456,7 +453,7 @@ bool SurfaceSweep::keeps_apart(const Faces& faces) {
 
 /// Something is in the way: the motion ends before it.
 void SurfaceSweep::meet(const Faces& faces) {
-  double until = free_until(faces, look_ == Look::sample ? std::max(kKept, clearance_) : clearance_);
+  double until = free_until(faces, look_ == Look::sample ? kept_ : clearance_);
   // It was nearer at the start.
   if (until == 0 && look_ == Look::sample) until = free_until(faces, clearance_);
   set_share(until);

@@ -19,6 +19,20 @@
 
 namespace tegotae {
 
+/// What is wanted of a look at a motion.
+struct SweepAim {
+  double clearance;  ///< separations below do not count, m
+  /// Where so much of the motion (m) or more is free that whole blocks of faces tell, a tenth of the work, no more is
+  /// looked for.
+  double worth = std::numeric_limits<double>::infinity();
+  /// What a few faces tell to be in the way ends the motion so far (m) before it is touched: nearer, the planes of
+  /// faces that lie on each other keep few of their neighbors apart.
+  double kept = 12e-6;
+  /// A side to which A may be drawn out at the start with no point of a part's pieces inside (see Backing). It is not,
+  /// where something meets what was drawn.
+  std::optional<Backing::Side> drawn = std::nullopt;
+};
+
 /// The path certificate of one motion of A by a look at all of its faces, with nothing kept for the next one: where
 /// surfaces lie on each other and A moves far, a tenth of what new cells for all faces take, however far it goes. It
 /// takes many ticks for a large part and goes on where it was. Mutable scratch; no call but the constructor allocates.
@@ -33,16 +47,10 @@ class SurfaceSweep {
                std::shared_ptr<const Facing> facing, std::shared_ptr<const Backing> backing, std::uint32_t blocking);
 
   /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
-  /// between the same two poses whose file-frame origin moves linearly (see Sweep). Separations below `clearance` (m)
-  /// do not count. `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
-  /// and the answer is about an A that is apart from them at `X`. So it is where `drawn` is a side to which A may be
-  /// drawn out at `X` with no point of a part's pieces inside (see Backing), as long as nothing meets what was drawn.
-  /// Where `worth` (m) of the motion or more are free that whole blocks of faces tell, a tenth of the work, no more is
-  /// looked for.
+  /// between the same two poses whose file-frame origin moves linearly (see Sweep). `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
+  /// and the answer is about an A that is apart from them at `X`. So it is where A may be drawn out.
   void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
-             const std::vector<bool>& outside, double clearance,
-             double worth = std::numeric_limits<double>::infinity(),
-             std::optional<Backing::Side> drawn = std::nullopt) noexcept;
+             const std::vector<bool>& outside, const SweepAim& aim) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
@@ -148,7 +156,7 @@ class SurfaceSweep {
   bool under_way_ = false;
   Pose X_;
   Displacement d_;
-  double clearance_ = 0, worth_ = 0, share_ = 1;
+  double clearance_ = 0, kept_ = 0, worth_ = 0, share_ = 1;
   double sampled_share_ = 1;           ///< that the sample left
   bool ended_by_blocks_ = false;       ///< of what was met last, no more is known
   std::uint32_t searched_blocks_ = 0;  ///< of A, face by face, while whole ones were looked at

@@ -34,7 +34,10 @@ double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outsi
   const std::vector<std::uint32_t> near = {0};
   const std::vector<bool> nothing_inside = {outside};
   const AllocGuard guard;
-  sweep.begin(X, d, near, nothing_inside, kClearance, worth);
+  SweepAim aim;
+  aim.clearance = kClearance;
+  aim.worth = worth;
+  sweep.begin(X, d, near, nothing_inside, aim);
   sweep.go_on(kNoDeadline);
   CHECK(guard.count() == 0);
   CHECK(!sweep.under_way());
@@ -333,7 +336,7 @@ TEST_CASE("a sweep that is interrupted at every step ends like one that is not")
   const Pose X{rotation(Vec3(0, 0.01, 0)), Vec3(0, 0, 0.012)};
   const Displacement down{{0.001, 0, -0.02}, {0, 0, 0.02}};
   const double share = run(at_once, X, down);
-  in_steps.begin(X, down, {0}, {false}, kClearance);
+  in_steps.begin(X, down, {0}, {false}, {kClearance});
   int calls = 1;
   while (!in_steps.go_on(1)) ++calls;
   CHECK(calls > 100);
@@ -432,7 +435,7 @@ TEST_CASE("with little time a tick, a fine sheet comes down on its die by motion
     const std::int64_t deadline_ns = monotonic_ns() + 100000;
     check.begin(near, deadline_ns, OtherParts::far);
     check.trust_start();
-    check.heads(tick < 250 ? pen : Displacement{}, false);
+    check.heads(tick < 250 ? pen : Displacement{}, false, 20e-6);
     blocking.clear();
     check.check(X, d, kClearance, blocking);
     const auto other = check.instead();
