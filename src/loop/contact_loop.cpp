@@ -76,8 +76,10 @@ constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.7;
 // A part whose way is not proved in time goes back along where it came from if that leaves less than this share of the
-// squared distance to the pen; or than the other one, if something held it there.
-constexpr double kNearerOnTrail = 0.25, kNearerInContact = 0.9;
+// squared distance to the pen.
+constexpr double kNearerOnTrail = 0.8;
+// Contacts that all open by this share of the way to the pen, and more, are left.
+constexpr double kOpens = 0.05;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
 
@@ -211,7 +213,7 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
   at_.check->trust_start();
   if (track()) adapt_margin(Y);
-  at_.check->heads(pen, touches(), margin_ / kMarginShare);
+  at_.check->heads(pen, touches() && !leaves(Y), margin_ / kMarginShare);
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
   if (at_.check->prefers_long()) trust_ = substep_cap_;
@@ -234,24 +236,23 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   }
 }
 
-std::size_t ContactLoop::nearest_on_trail(const Pose& Y) const {
-  const auto off = [&](std::size_t i) {
-    return metric_.whiten(displacement(trail_.pose(i), Y, center_)).squaredNorm();
-  };
-  const double now = off(trail_.here());
+ContactLoop::OnTrail ContactLoop::nearest_on_trail(const Pose& Y) const {
+  const Vec6 error = metric_.whiten(displacement(X_, Y, center_));
+  const double now = error.squaredNorm();
+  OnTrail nearest;
   double least = now;
-  std::size_t nearest = trail_.here();
-  const auto look_at = [&](std::size_t i) {
-    const double at = off(i);
-    if (at < least && at < (trail_.touched_at(i) ? kNearerInContact : kNearerOnTrail) * now) {
+  for (std::size_t i = 1; i < trail_.count(); ++i) {
+    // On the straight way to the pose.
+    const Pose& from = trail_.pose(i - 1);
+    const Vec6 off = metric_.whiten(displacement(from, Y, center_)),
+               way = metric_.whiten(displacement(from, trail_.pose(i), center_));
+    const double share = std::clamp(way.dot(off) / std::max(way.squaredNorm(), kRest * kRest), 0.0, 1.0);
+    const double at = (off - share * way).squaredNorm();
+    if (at < least && at < kNearerOnTrail * now) {
       least = at;
-      nearest = i;
+      nearest = {i, share};
     }
-    return at <= now;
-  };
-  for (std::size_t i = trail_.here(); i > 0 && look_at(i - 1); --i) {
-  }
-  for (std::size_t i = trail_.here(); i + 1 < trail_.count() && look_at(i + 1); ++i) {
+    if ((off - way).squaredNorm() > now) break;
   }
   return nearest;
 }
@@ -259,15 +260,15 @@ std::size_t ContactLoop::nearest_on_trail(const Pose& Y) const {
 void ContactLoop::go_back(const Pose& Y, double travel, TickReport& report) {
   if (!trail_.is_at(X_)) return;
   metric_.set_orientation(X_.q);
-  const std::size_t to = nearest_on_trail(Y);
-  while (trail_.here() != to) {
-    const std::size_t next = to < trail_.here() ? trail_.here() - 1 : trail_.here() + 1;
-    const double length = size(displacement(X_, trail_.pose(next), center_));
-    if (made_ > 0 && made_ + length > travel) break;
-    X_ = trail_.pose(next);
-    trail_.step_to(next);
+  const OnTrail to = nearest_on_trail(Y);
+  for (std::size_t i = 1; i <= to.pose && made_ < travel; ++i) {
+    const Displacement whole = displacement(X_, trail_.pose(1), center_);
+    const double share = std::min(i == to.pose ? to.share : 1.0, (travel - made_) / std::max(size(whole), kRest));
+    const Pose from = X_;
+    X_ = share < 1 ? displaced(X_, center_, share * whole) : trail_.pose(1);
+    trail_.went(from, X_);
     report.substeps.push_back(X_);
-    made_ += length;
+    made_ += share * size(whole);
   }
   if (made_ == 0) return;
   tracked_ = false;
@@ -455,6 +456,15 @@ bool ContactLoop::touches() const {
   const auto& constraints = at_.contacts->constraints();
   return std::any_of(constraints.begin(), constraints.end(),
                      [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= margin_ / kMarginShare; });
+}
+
+bool ContactLoop::leaves(const Pose& Y) const {
+  const auto& constraints = at_.contacts->constraints();
+  const Displacement d = displacement(X_, Y, center_);
+  const double least = kOpens * size(d);
+  return std::all_of(constraints.begin(), constraints.end(), [&](const Contact& c) {
+    return c.age == kOneShotAge || c.gap > margin_ / kMarginShare || c.n.dot(d.dp + d.dr.cross(c.r)) > least;
+  });
 }
 
 /// What was asked for in another tick may lead away by now.

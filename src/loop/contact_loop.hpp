@@ -76,6 +76,8 @@ class ContactLoop final : public ProxyLoop {
   void go_to(const Trial& trial);
   /// Whether a contact is within reach.
   bool touches() const;
+  /// Whether all that touches opens on the way to the pen.
+  bool leaves(const Pose& Y) const;
   bool leads_nearer(const Trial& trial, const Pose& goal) const;
   /// Shortens the trial to `share` of it.
   void scale(Trial& trial, double share) const;
@@ -88,8 +90,13 @@ class ContactLoop final : public ProxyLoop {
   void move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report);
   /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) of it, if that leads much nearer.
   void go_back(const Pose& Y, double travel, TickReport& report);
-  /// The pose on the trail that is nearest to the pen, of those that it leads to without going farther away.
-  std::size_t nearest_on_trail(const Pose& Y) const;
+  /// A place between two poses of the trail: a share of the way to that number.
+  struct OnTrail {
+    std::size_t pose = 0;
+    double share = 0;
+  };
+  /// Where it comes nearest to the pen, before it leads farther away than the part is.
+  OnTrail nearest_on_trail(const Pose& Y) const;
   /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);
   /// Adapts the margin of contacts to the clearance of the fit.

@@ -18,7 +18,7 @@ bool same(const Pose& a, const Pose& b) {
 Trail::Trail(const Vec3& center, double radius) : center_(center), radius_(radius), places_(kPoses) {}
 
 bool Trail::is_at(const Pose& X) const noexcept {
-  return count_ > 0 && same(pose(here_), X);
+  return count_ > 0 && same(pose(0), X);
 }
 
 void Trail::went(const Pose& from, const Pose& to) noexcept {
@@ -27,11 +27,9 @@ void Trail::went(const Pose& from, const Pose& to) noexcept {
     count_ = 0;
     add(from);
   }
-  // What it went back along is another way now.
-  count_ = here_ + 1;
-  while (here_ > 0 && passes(pose(here_), to, pose(here_ - 1))) count_ = here_--;
-  if (same(pose(here_), to)) return;
-  if (here_ > 0 && passes(pose(here_), pose(here_ - 1), to)) count_ = here_--;
+  while (count_ > 1 && passes(pose(0), to, pose(1))) go_back();
+  if (same(pose(0), to)) return;
+  if (count_ > 1 && passes(pose(0), pose(1), to)) go_back();
   add(to);
 }
 
@@ -52,20 +50,18 @@ void Trail::add(const Pose& X) noexcept {
     first_ = (first_ + 1) % kPoses;
     --count_;
   }
-  here_ = count_++;
-  Place& at = places_[place(here_)];
-  at.X = X;
-  at.touched = 0;
+  ++count_;
+  here().X = X;
+  here().touched = 0;
 }
 
 void Trail::touches(const std::vector<FacePair>& faces) noexcept {
-  Place& at = places_[place(here_)];
-  at.touched = std::min(faces.size(), kFaces);
-  std::copy_n(faces.begin(), at.touched, at.faces.begin());
+  here().touched = std::min(faces.size(), kFaces);
+  std::copy_n(faces.begin(), here().touched, here().faces.begin());
 }
 
 void Trail::touched(std::vector<FacePair>& faces) const noexcept {
-  const Place& at = places_[place(here_)];
+  const Place& at = place(0);
   faces.assign(at.faces.begin(), at.faces.begin() + static_cast<std::ptrdiff_t>(at.touched));
 }
 

@@ -10,8 +10,8 @@
 namespace tegotae {
 
 /// Where the held part has come from: poses between which it went by straight motions that were free of all parts. So
-/// are the same motions back, without a question, as long as no part has moved or begun to count since. No call but
-/// the constructor allocates.
+/// are the same motions back, without a question, as long as no part has moved or begun to count since. The part is at
+/// the last pose. No call but the constructor allocates.
 class Trail {
  public:
   static constexpr std::size_t kPoses = 256;
@@ -28,16 +28,15 @@ class Trail {
 
   /// Whether the part at `X` is on it.
   bool is_at(const Pose& X) const noexcept;
-  /// Poses on it, from the oldest; number here() is where the part is.
+  /// Poses on it; number 0 is where the part is, the others from there back.
   std::size_t count() const { return count_; }
-  std::size_t here() const { return here_; }
-  const Pose& pose(std::size_t i) const { return places_[place(i)].X; }
-  /// The part goes along it to the pose before or after.
-  void step_to(std::size_t i) noexcept { here_ = i; }
-  /// Whether the part touched something at a pose of it.
-  bool touched_at(std::size_t i) const { return places_[place(i)].touched > 0; }
-  /// To `faces`: what it touched where it is now.
+  const Pose& pose(std::size_t back) const { return place(back).X; }
+  /// Whether the part touched something there.
+  bool touched_at(std::size_t back) const { return place(back).touched > 0; }
+  /// To `faces`: what it touched where it is.
   void touched(std::vector<FacePair>& faces) const noexcept;
+  /// Back along it, to pose number 1.
+  void go_back() noexcept { --count_; }
 
  private:
   struct Place {
@@ -45,14 +44,15 @@ class Trail {
     std::array<FacePair, kFaces> faces;
     std::size_t touched = 0;
   };
-  std::size_t place(std::size_t i) const { return (first_ + i) % kPoses; }
+  const Place& place(std::size_t back) const { return places_[(first_ + count_ - 1 - back) % kPoses]; }
+  Place& here() { return places_[(first_ + count_ - 1) % kPoses]; }
   void add(const Pose& X) noexcept;
   bool passes(const Pose& from, const Pose& to, const Pose& X) const noexcept;
 
   Vec3 center_;
   double radius_;
   std::vector<Place> places_;
-  std::size_t first_ = 0, count_ = 0, here_ = 0;
+  std::size_t first_ = 0, count_ = 0;
 };
 
 }  // namespace tegotae

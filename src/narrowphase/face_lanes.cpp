@@ -156,15 +156,13 @@ TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const std:
 TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const BoxLanes* boxes, const BesideFaces::Block* blocks,
                                       std::uint32_t count, std::uint32_t& at) {
   const AxisBox box = {{a.low(0), a.low(1), a.low(2)}, {a.high(0), a.high(1), a.high(2)}};
-  while (at < count) {
-    const std::uint32_t in_eight = at % BoxLanes::kBoxes;
-    std::uint32_t bits = overlap(boxes[at / BoxLanes::kBoxes], box) >> in_eight;
-    for (; bits != 0; bits >>= 1, ++at) {
-      if ((bits & 1) == 0) continue;
+  for (std::uint32_t first = at / BoxLanes::kBoxes * BoxLanes::kBoxes; first < count; first += BoxLanes::kBoxes) {
+    const std::uint32_t bits = overlap(boxes[first / BoxLanes::kBoxes], box);
+    for (at = std::max(at, first); at < first + BoxLanes::kBoxes; ++at) {
+      if ((bits >> (at - first) & 1) == 0) continue;
       const std::uint32_t open = gaps_below(a, *blocks[at].faces, blocks[at].shift, blocks[at].floor);
       if (open != 0) return open;
     }
-    at = (at / BoxLanes::kBoxes + 1) * BoxLanes::kBoxes;
   }
   return 0;
 }

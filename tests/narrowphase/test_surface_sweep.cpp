@@ -250,6 +250,48 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
   CHECK(by_edges > 500);
 }
 
+TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
+  std::mt19937 rng(39);
+  std::size_t near = 0, most = 0;
+  for (int n = 0; n < 300; ++n) {
+    const auto mesh = soup(rng, 300, 0.05, uniform(rng, 0.005, 0.05));
+    const PatchTree tree(mesh);
+    const FaceBlocks blocks(tree);
+    std::vector<FaceLanes> lanes;
+    for (std::uint32_t b = 0; b < blocks.count(); ++b) lanes.emplace_back(tree, blocks, b);
+    const auto held = soup(rng, 16, 0.03, 0.02);
+    const PatchTree tree_a(held);
+    const FaceBlocks blocks_a(tree_a);
+    const Vec3 origin = random_in_ball(rng, 0.05);
+    const Placement start{rotation(random_in_ball(rng, 3)).toRotationMatrix(), Vec3::Zero()};
+    const Placement end{start.R, random_in_ball(rng, 0.02)};
+    MovedLanes moved;
+    moved.set(FaceLanes(tree_a, blocks_a, 0), start, end);
+    // Any number of blocks, in any order.
+    std::vector<std::uint32_t> found(blocks.count());
+    for (std::uint32_t b = 0; b < blocks.count(); ++b) found[b] = b;
+    std::shuffle(found.begin(), found.end(), rng);
+    found.resize(std::min<std::size_t>(found.size(), rng() % (BesideFaces::kMost + 1)));
+    BesideFaces beside;
+    beside.set(blocks, lanes, found.data(), static_cast<std::uint32_t>(found.size()), moved, origin, kClearance);
+    for (std::uint32_t k = 0; k < blocks_a.faces(0); ++k) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, told;
+      for (std::uint32_t i = 0; i < found.size(); ++i) {
+        const FaceLanes& b = lanes[found[i]];
+        if (const std::uint32_t open = not_kept_apart(moved, k, b, origin - b.origin, kClearance); open != 0)
+          expected.emplace_back(i, open);
+      }
+      for (std::uint32_t at = 0; at < beside.count(); ++at)
+        if (const std::uint32_t open = beside.next_not_kept_apart(moved, k, at); open != 0) told.emplace_back(at, open);
+      CHECK(told == expected);
+      near += expected.size();
+      most = std::max(most, expected.size());
+    }
+  }
+  CHECK(near > 3000);
+  CHECK(most > 8);
+}
+
 TEST_CASE("the first part of a motion is free as far as is said, and what was met is met soon after it") {
   std::mt19937 rng(33);
   int whole = 0, cut = 0;
