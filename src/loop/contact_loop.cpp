@@ -75,8 +75,8 @@ constexpr double kFeltLag = 0.05;
 constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.7;
-// A part whose way is not proved in time goes back along where it came from if that leaves less than this share of the
-// squared distance to the pen.
+// A part whose way is not proved in time goes back along where it came from to where it touched something, if that is no
+// farther from the pen, or if it leaves less than this share of the squared distance to it.
 constexpr double kNearerOnTrail = 0.8;
 // Contacts that all open by this share of the way to the pen, and more, are left.
 constexpr double kOpens = 0.05;
@@ -247,12 +247,13 @@ ContactLoop::OnTrail ContactLoop::nearest_on_trail(const Pose& Y) const {
     const Vec6 off = metric_.whiten(displacement(from, Y, center_)),
                way = metric_.whiten(displacement(from, trail_.pose(i), center_));
     const double share = std::clamp(way.dot(off) / std::max(way.squaredNorm(), kRest * kRest), 0.0, 1.0);
-    const double at = (off - share * way).squaredNorm();
+    const double at = (off - share * way).squaredNorm(), at_pose = (off - way).squaredNorm();
     if (at < least && at < kNearerOnTrail * now) {
       least = at;
       nearest = {i, share};
     }
-    if ((off - way).squaredNorm() > now) break;
+    if (at_pose > now) break;
+    if (trail_.touched_at(i)) return {i, 1};
   }
   return nearest;
 }
