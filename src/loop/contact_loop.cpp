@@ -75,8 +75,8 @@ constexpr double kFeltLag = 0.05;
 constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.7;
-// A part whose way is not proved in time goes back along where it came from to where it touched something, if that is no
-// farther from the pen, or if it leaves less than this share of the squared distance to it.
+// A part whose way is not proved in time goes back along where it came from to where it touched something, if that is
+// no farther from the pen, or if it leaves less than this share of the squared distance to it.
 constexpr double kNearerOnTrail = 0.8;
 // Contacts that all open by this share of the way to the pen, and more, are left.
 constexpr double kOpens = 0.05;

@@ -88,7 +88,8 @@ class ContactLoop final : public ProxyLoop {
   void move_in_air(const Pose& Y, double wanted, double travel, TickReport& report);
   /// The sub-steps of a tick among near parts, at most `travel` (m), under a pen that moved by `pen` (m).
   void move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report);
-  /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) of it, if that leads much nearer.
+  /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) of it, if that leads much
+  /// nearer.
   void go_back(const Pose& Y, double travel, TickReport& report);
   /// A place between two poses of the trail: a share of the way to that number.
   struct OnTrail {

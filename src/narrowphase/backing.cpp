@@ -91,8 +91,8 @@ std::shared_ptr<const PatchTree> walls_under(const TriangleMesh& mesh,
 bool may_meet(const PatchNode& n, const Vec3& from, const Vec3& along) {
   const Vec3 p = n.center_vec() - from;
   const double share = std::clamp(p.dot(along) / along.squaredNorm(), 0.0, 1.0);
-  const double radius = std::sqrt(double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] +
-                                  double{n.half[2]} * n.half[2]);
+  const double radius =
+      std::sqrt(double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2]);
   return (p - share * along).norm() <= 1.001 * radius + kNear * along.norm() + 1e-6 * p.norm();
 }
 

@@ -343,8 +343,8 @@ void BesideFaces::set(const FaceBlocks& blocks, const std::vector<FaceLanes>& la
     const Vec3 shift = origin - faces.origin;
     blocks_[i] = {&faces, in_single(shift), floor_in_single(a.size, faces, shift, floor)};
     for (std::size_t c = 0; c < 3; ++c) {
-      const float slack = static_cast<float>(floor) +
-                          kBoxError * (std::abs(at[c]) + std::abs(box.low[c]) + std::abs(box.high[c]));
+      const float slack =
+          static_cast<float>(floor) + kBoxError * (std::abs(at[c]) + std::abs(box.low[c]) + std::abs(box.high[c]));
       out.low[c][k] = box.low[c] - at[c] - slack;
       out.high[c][k] = box.high[c] - at[c] + slack;
     }

@@ -143,8 +143,7 @@ Facing::Facing(std::shared_ptr<const PatchTree> tree) : tree_(std::move(tree)), 
     if (!(r.sum.norm() > 0)) continue;
     const Vec3 axis = r.sum.normalized();
     double least = 1;
-    for (std::uint32_t k = r.begin; k < r.end && least > 0; ++k)
-      least = std::min(least, axis.dot(normals[order[k]]));
+    for (std::uint32_t k = r.begin; k < r.end && least > 0; ++k) least = std::min(least, axis.dot(normals[order[k]]));
     nodes_[i] = NormalCone::about(axis, least);
   }
 }

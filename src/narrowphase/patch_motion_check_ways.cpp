@@ -186,8 +186,8 @@ std::optional<Backing::Side> PatchMotionCheck::drawn_for(const Pose& from, const
   const auto outside = [&](std::uint32_t part) {
     const Pose X = to_held * poses_[part];
     const auto& points = bodies_[part].points;
-    return !points.empty() && std::all_of(points.begin(), points.end(),
-                                          [&](const Vec3& p) { return backing_->outside(X * p, side); });
+    return !points.empty() &&
+           std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return backing_->outside(X * p, side); });
   };
   for (const std::uint32_t part : swept_) {
     if (part < fixed_.size() && !outside(part)) return std::nullopt;

@@ -335,7 +335,8 @@ AxisBox SurfaceSweep::swept(const AxisBox& box) const {
 bool SurfaceSweep::recedes(const Node& node) const {
   if (!may_recede() || node.level >= cones().nodes.size()) return false;
   const Slab& slab = surface_a_->slabs.slab(node.level, node.index);
-  return passing_.recedes(seen(cones().nodes[node.level][node.index]), slab.center + offset_a_, kRadiusSlack * slab.half.norm());
+  return passing_.recedes(seen(cones().nodes[node.level][node.index]), slab.center + offset_a_,
+                          kRadiusSlack * slab.half.norm());
 }
 
 /// Whether all faces of A's block recede from the part, and so need not be looked at.

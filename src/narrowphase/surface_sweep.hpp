@@ -47,8 +47,9 @@ class SurfaceSweep {
                std::shared_ptr<const Facing> facing, std::shared_ptr<const Backing> backing, std::uint32_t blocking);
 
   /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
-  /// between the same two poses whose file-frame origin moves linearly (see Sweep). `outside` tells of which of them nothing is inside A: then A's faces that recede are not looked at,
-  /// and the answer is about an A that is apart from them at `X`. So it is where A may be drawn out.
+  /// between the same two poses whose file-frame origin moves linearly (see Sweep). `outside` tells of which of them
+  /// nothing is inside A: then A's faces that recede are not looked at, and the answer is about an A that is apart from
+  /// them at `X`. So it is where A may be drawn out.
   void begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
              const std::vector<bool>& outside, const SweepAim& aim) noexcept;
   /// Goes on until `deadline_ns` of monotonic_ns(), about; whether it is done.
@@ -169,8 +170,8 @@ class SurfaceSweep {
   const Surface* surface_a_ = nullptr;
   Vec3 shift_a_ = Vec3::Zero();   ///< by which its faces are moved, m
   Vec3 offset_a_ = Vec3::Zero();  ///< of the tree's origin, moved, from the center of mass
-  std::uint32_t at_ = 0;                                                ///< of near_
-  std::uint32_t sampled_ = 0;                                           ///< the next block of the sample
+  std::uint32_t at_ = 0;          ///< of near_
+  std::uint32_t sampled_ = 0;     ///< the next block of the sample
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy
   std::uint32_t stacked_ = 0;
   Sweep sweep_;  ///< of the share of the motion, past the part
@@ -187,7 +188,7 @@ class SurfaceSweep {
   std::uint32_t tops_count_ = 0;  ///< none: from the root
   std::array<std::uint32_t, kBeside> found_;
   BesideFaces beside_;                                  ///< of found_, beside A's block
-  MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};             ///< that kept two faces apart
+  MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};  ///< that kept two faces apart
 };
 
 }  // namespace tegotae

@@ -1,0 +1,118 @@
+// Sheets that are drawn out behind them: what is inside against closed forms, and lifts against FCL.
+#include "catch.hpp"
+#include "narrowphase/backing.hpp"
+#include "narrowphase/surface_sweep.hpp"
+#include "patch_oracle.hpp"
+#include "patch_scenes.hpp"
+#include "tegotae/core/clock.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+constexpr double kKeptGap = 1.1e-6;
+using Side = Backing::Side;
+
+std::shared_ptr<const PatchTree> hierarchy_of(const MeshPtr& mesh) {
+  return std::make_shared<const PatchTree>(mesh);
+}
+
+/// Faces that look either way.
+MeshPtr with_turned_faces(const MeshPtr& mesh, std::mt19937& rng) {
+  auto out = std::make_shared<TriangleMesh>(*mesh);
+  for (auto& t : out->triangles)
+    if (rng() % 2 == 0) std::swap(t[0], t[1]);
+  return out;
+}
+
+MeshPtr both(const MeshPtr& a, const MeshPtr& b, const Vec3& at) {
+  auto out = std::make_shared<TriangleMesh>(*a);
+  const auto first = static_cast<std::uint32_t>(a->vertices.size());
+  for (const Vec3& v : b->vertices) out->vertices.push_back(v + at);
+  for (const auto& t : b->triangles) out->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what a sheet is drawn out to is inside, on its side and as deep") {
+  std::mt19937 rng(51);
+  const double side = 0.1;
+  const auto tree = hierarchy_of(with_turned_faces(wave(side, 0, 0.04, 20), rng));
+  const auto backing = Backing::of(tree, nullptr);
+  REQUIRE(backing);
+  const double depth = backing->drawn(Side::plus).norm();
+  CHECK(depth > 0.01 * side);
+  CHECK(backing->drawn(Side::plus).cross(Vec3::UnitZ()).norm() < 1e-9 * depth);
+  int inside = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p = random_in_ball(rng, 0.08);
+    const bool under = std::abs(p.x()) < side / 2 && std::abs(p.y()) < side / 2;
+    for (const Side s : {Side::plus, Side::minus}) {
+      const double z = p.z() * (backing->drawn(s).z() > 0 ? 1 : -1);
+      const bool expected = under && z > 0 && z < depth;
+      CHECK(backing->outside(p, s) != expected);
+      inside += expected;
+    }
+  }
+  CHECK(inside > 100);
+}
+
+TEST_CASE("only what looks along one axis is drawn out, and no thick solid") {
+  const auto backing_of = [](const MeshPtr& mesh) {
+    const auto tree = hierarchy_of(mesh);
+    const auto facing = Facing::of(mesh, tree);
+    return Backing::of(tree, facing.get());
+  };
+  CHECK(backing_of(wave(0.1, 0.01, 0.05, 40)));
+  CHECK(!backing_of(box({0.1, 0.08, 0.03})));
+  CHECK(!backing_of(knot(0.05, 0.006, 900)));
+}
+
+TEST_CASE("motions of a sheet that is drawn out are free where they are said to be") {
+  std::mt19937 rng(52);
+  const MeshPtr die = wave(0.12, 0.01, 0.05, 57), post = box({0.01, 0.01, 0.004});
+  const MeshPtr others[] = {die, both(die, wave(0.03, 0, 0.04, 6), Vec3(0.01, 0, 0.03)),
+                            both(die, post, Vec3(0.02, 0.01, 0.028)), both(die, post, Vec3(0.05, 0, 0.022))};
+  int whole = 0, cut = 0, drawn_out = 0, free_lifts = 0;
+  for (int n = 0; n < 4; ++n) {
+    const MeshPtr sheet = with_turned_faces(wave(0.1, 0.01, 0.05, 40), rng);
+    const auto tree = hierarchy_of(sheet);
+    const auto backing = Backing::of(tree, nullptr);
+    REQUIRE(backing);
+    for (const MeshPtr& other : others) {
+      const Oracle oracle(sheet, other);
+      const auto points = Facing::points_of(other);
+      SurfaceSweep sweep(tree, Vec3::Zero(), {{hierarchy_of(other), Pose{}}}, nullptr, backing, 24);
+      for (int k = 0; k < 60; ++k) {
+        const Pose X{rotation(random_in_ball(rng, 0.02)), random_in_ball(rng, 0.002) + Vec3(0, 0, 0.003)};
+        if (oracle.meet(X) || oracle.distance(X) < 2 * kKeptGap) continue;
+        const bool lift = k % 2 == 0;
+        const Displacement d{
+            lift ? Vec3(0.2 * random_in_ball(rng, 0.01) + Vec3(0, 0, 0.01)) : random_in_ball(rng, 0.01),
+            k % 3 == 0 ? random_in_ball(rng, 0.02) : Vec3::Zero()};
+        const bool plus = backing->drawn(Side::plus).dot(X.q.conjugate() * d.dp) > 0;
+        const Side side = plus ? Side::plus : Side::minus;
+        SweepAim aim;
+        aim.clearance = kKeptGap;
+        if (std::all_of(points.begin(), points.end(),
+                        [&](const Vec3& p) { return backing->outside(X.inverse() * p, side); }))
+          aim.drawn = side;
+        sweep.begin(X, d, {0}, {false}, aim);
+        sweep.go_on(kNoDeadline);
+        const double share = sweep.share();
+        CHECK(oracle.hits(X, Vec3::Zero(), share * d, 20) == 0);
+        drawn_out += aim.drawn.has_value();
+        free_lifts += lift && share == 1;
+        (share == 1 ? whole : cut) += 1;
+        // What is met is of the sheet, not of what was drawn.
+        for (const FacePair& met : sweep.blocking()) CHECK(met.a < sheet->triangles.size());
+      }
+    }
+  }
+  CHECK(drawn_out > 100);
+  CHECK(free_lifts > 50);
+  CHECK(whole > 50);
+  CHECK(cut > 50);
+}
