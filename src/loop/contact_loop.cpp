@@ -78,6 +78,8 @@ constexpr double kPrepareShare = 0.7;
 // A part whose way is not proved in time goes back along where it came from to where it touched something, if that is
 // no farther from the pen, or if it leaves less than this share of the squared distance to it.
 constexpr double kNearerOnTrail = 0.8;
+// What it touched there is looked for in this share of a tick more.
+constexpr double kLateShare = 0.2;
 // Contacts that all open by this share of the way to the pen, and more, are left.
 constexpr double kOpens = 0.05;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
@@ -104,6 +106,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
   blocking_.reserve(kMaxBlocking);
+  touched_faces_.reserve(Trail::kFaces);
   near_.reserve(at_.spheres.size());
   known_.reserve(kMaxForces);
   guess_.reserve(kMaxForces);
@@ -231,8 +234,8 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   if (report.substeps.empty()) report.substeps.push_back(X_);
   if (!late()) track();
   if (tracked_ && trail_.is_at(X_) && touches()) {
-    at_.contacts->faces_within(margin_ / kMarginShare, Trail::kFaces, blocking_);
-    trail_.touches(blocking_);
+    at_.contacts->faces_within(margin_ / kMarginShare, Trail::kFaces, touched_faces_);
+    trail_.touches(touched_faces_);
   }
 }
 
@@ -274,10 +277,11 @@ void ContactLoop::go_back(const Pose& Y, double travel, TickReport& report) {
   if (made_ == 0) return;
   tracked_ = false;
   owed_.reset();
-  // A few contacts are known at once, time or not: they hold the part where it was held.
-  trail_.touched(blocking_);
-  if (!blocking_.empty() && at_.contacts->track(X_, at_.reach, kNoDeadline)) {
-    at_.contacts->seed(blocking_, X_, kNoDeadline);
+  // A few contacts are known at once, although the tick's time is over: they hold the part where it was held.
+  const auto deadline_ns = deadline_ns_ + static_cast<std::int64_t>(1e9 * kLateShare * settings_.tick_budget);
+  trail_.touched(touched_faces_);
+  if (!touched_faces_.empty() && at_.contacts->track(X_, at_.reach, deadline_ns)) {
+    at_.contacts->seed(touched_faces_, X_, deadline_ns);
     tracked_ = true;
   }
 }

@@ -148,6 +148,7 @@ class ContactLoop final : public ProxyLoop {
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;
   Trail trail_;
+  std::vector<FacePair> touched_faces_;  ///< of the trail; blocking_ is of the motion that is owed
   Pose X_;
   Pose last_Y_;
   double trust_;
