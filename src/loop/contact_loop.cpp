@@ -74,7 +74,7 @@ constexpr double kFeltLag = 0.05;
 // Contacts explain a lag where steps that open gaps take back this share of what the others bring.
 constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
-constexpr double kPrepareShare = 0.7;
+constexpr double kPrepareShare = 0.9;
 // A part whose way is not proved in time goes back along where it came from to where it touched something, if that is
 // no farther from the pen, or if it leaves less than this share of the squared distance to it.
 constexpr double kNearerOnTrail = 0.8;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "narrowphase/block_order.hpp"
 #include "narrowphase/box_overlap.hpp"
 #include "narrowphase/wide.hpp"
 
@@ -202,6 +203,29 @@ std::vector<Placed> beside_each_other(const PatchTree& tree) {
   return placed;
 }
 
+BlockPlace place_of(const Placed* faces, std::size_t count) {
+  const Extent e = extent_of(faces, count);
+  BlockPlace place{{}, way_of(faces, count).mean, std::sqrt(e.diagonal2)};
+  for (std::size_t k = 0; k < 3; ++k) place.middle[k] = 0.5F * (e.low[k] + e.high[k]);
+  for (std::size_t i = 0; i < count; ++i) place.size = std::max(place.size, std::sqrt(faces[i].length2));
+  return place;
+}
+
+/// The faces, block after block in an order for nodes over them; `first` of each block is put in it as well.
+std::vector<std::uint32_t> in_order(const std::vector<Placed>& placed, std::vector<std::uint32_t>& first) {
+  std::vector<BlockPlace> places;
+  for (std::size_t block = 0; block + 1 < first.size(); ++block)
+    places.push_back(place_of(placed.data() + first[block], first[block + 1] - first[block]));
+  std::vector<std::uint32_t> faces, first_in_order;
+  for (const std::uint32_t block : order_by_nodes(places, FaceBlocks::kFan)) {
+    first_in_order.push_back(static_cast<std::uint32_t>(faces.size()));
+    for (std::uint32_t i = first[block]; i < first[block + 1]; ++i) faces.push_back(placed[i].face);
+  }
+  first_in_order.push_back(first.back());
+  first.swap(first_in_order);
+  return faces;
+}
+
 TEGOTAE_WIDE std::uint32_t overlapping_boxes(const BoxLanes& boxes, const AxisBox& box) {
   return overlap(boxes, box);
 }
@@ -237,8 +261,7 @@ FaceBlocks::FaceBlocks(const PatchTree& tree) {
     arrange(placed.data() + first, end - first, static_cast<std::uint32_t>(first), first_);
   }
   first_.push_back(static_cast<std::uint32_t>(placed.size()));
-  order_.resize(placed.size());
-  std::transform(placed.begin(), placed.end(), order_.begin(), [](const Placed& p) { return p.face; });
+  order_ = in_order(placed, first_);
   std::vector<AxisBox> boxes(first_.size() - 1, AxisBox::empty());
   for (std::uint32_t block = 0; block < boxes.size(); ++block) {
     for (std::uint32_t i = first_[block]; i < first_[block + 1]; ++i) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxFronts = 32;
 // Where more parts than these, of as many triangles at most, are near, they are one for the cells: 2 µs for each
 // triangle at the start. Until fewer than half of them are.
-constexpr std::size_t kMostApart = 16, kMaxBundleFaces = 1u << 18;
+constexpr std::size_t kMostApart = 16, kMaxBundleFaces = 1u << 20;
 // Pairs of all fronts together (about 400 bytes each, 550 where parts have a common axis), and the least and the most
 // of one.
 constexpr std::size_t kAllPairs = 1u << 18;
@@ -119,8 +119,6 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       effort_(effort),
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
-      way_(center, radius, fixed.size() + 1),
-      next_way_(center, radius, fixed.size() + 1),
       line_(center, radius, fixed.size() + 1),
       edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
@@ -172,8 +170,10 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   outside_.reserve(fixed.size() + 1);
   left_out_.assign(fixed.size(), false);
   for (const std::uint32_t part : left_out) left_out_[part] = true;
-  met_.reserve(kMaxBlocking);
-  next_met_.reserve(kMaxBlocking);
+  for (std::size_t i = 0; i < kWays; ++i) {
+    ways_.push_back({ProvedWay(center_, radius_, fixed.size() + 1), {}});
+    ways_.back().met.reserve(kMaxBlocking);
+  }
 }
 
 /// For scenes of many parts. Bores and threads are not in it, since their fronts are faster, unless there are far more
@@ -301,6 +301,10 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
                                      std::vector<FacePair>& blocking) noexcept {
   const bool asked = std::exchange(asked_, true);
   const MotionAnswer answer = ask(X, d, clearance, blocking);
+  if (answer == MotionAnswer::free && instead_ && !declined(X)) {
+    offered_ = X;
+    offered_at_ = now_;
+  }
   // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
   // them costs a search, and few go together again in a call that ends so.
   if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline || effort_ == ProofEffort::quick)
@@ -318,8 +322,10 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   take_turns(X);
   if (sweeping_ && sweeps(X, wanted)) return ask_sweep(X, wanted, blocking);
   sweeping_ = false;
-  if (goes_along(X, wanted, blocking)) return answer(blocking);
-  instead_ = onto_way(X, wanted);
+  if (!declined(X)) {
+    if (goes_along(X, wanted, blocking)) return answer(blocking);
+    instead_ = onto_way(X, wanted);
+  }
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
   const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(X, d) && !cells_turn();
@@ -340,7 +346,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
   behind_since_ = now_;
   // What was begun ahead of it may have come to here.
-  const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || (way_.is_on(X) && way_.ends_at(X)));
+  const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || at_end_of_way(X));
   if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
     sweeping_ = begun || begin_sweep(X, wanted, clearance);
     swept_since_ = now_;
@@ -523,11 +529,12 @@ void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, A
 void PatchMotionCheck::prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept {
   limit_.deadline_ns = deadline_ns;
   limit_.blocking = 1;
-  prepare_fronts(X);
+  // Ways first: where they are proved, fronts are not needed.
   const std::int64_t now_ns = monotonic_ns();
   limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kWayShare * static_cast<double>(deadline_ns - now_ns));
   prepare_way(X);
   limit_.deadline_ns = deadline_ns;
+  prepare_fronts(X);
   prepare_cells(X, next);
 }
 

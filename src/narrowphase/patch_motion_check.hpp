@@ -62,6 +62,8 @@ class PatchMotionCheck final : public MotionCheck {
   static constexpr std::uint32_t kNobody = 0xffffffffu;
   /// Where cells or fronts were behind in so many ticks in a row, motions through the air are looked at as a whole.
   static constexpr int kTicksBehind = 2;
+  /// Ways that are known at once, one after the other.
+  static constexpr std::size_t kWays = 8;
   /// What has not moved for so many ticks meanwhile has to be looked at as a whole.
   static constexpr int kTicksStill = 8;
 
@@ -101,6 +103,12 @@ class PatchMotionCheck final : public MotionCheck {
     std::uint64_t since = 0;  ///< the begin() of the last tick
   };
 
+  /// A way that is proved, and what was met at its end.
+  struct Stretch {
+    ProvedWay way;
+    std::vector<FacePair> met;
+  };
+
   /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
@@ -134,6 +142,13 @@ class PatchMotionCheck final : public MotionCheck {
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;
   void come_to(const Pose& X) noexcept;
+  void drop_ways() noexcept { ways_known_ = 0; }
+  /// The end of the ways from here on; none where there is none.
+  Stretch* last_way() noexcept { return ways_known_ > 0 ? &ways_[ways_known_ - 1] : nullptr; }
+  /// What was looked at is a way from now on, after those that are known.
+  void add_way() noexcept;
+  bool at_end_of_way(const Pose& X) const noexcept;
+  bool declined(const Pose& X) const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   void fronts_left() noexcept;
@@ -142,9 +157,9 @@ class PatchMotionCheck final : public MotionCheck {
   std::optional<Displacement> onto_way(const Pose& X, const Displacement& d) const noexcept;
   /// How far A is from where `d` leads when it has made another motion, m.
   double left_of(const Pose& X, const Displacement& d, const Displacement& made) const noexcept;
-  bool begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// How far (m) a motion has to be free for whole blocks of faces to be enough, where so much is wanted of it.
   double worth(const Displacement& wanted, const Displacement& all) const noexcept;
+  bool begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// To `swept_`: the parts that a motion from `from`, of A which is at `X`, may come near to, whatever certifies them
   /// else. False where one of them is too large.
   bool find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept;
@@ -210,21 +225,22 @@ class PatchMotionCheck final : public MotionCheck {
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part
   LeavingCheck leaving_;
-  bool behind_ = false;                   ///< the cells ran out of time when they were asked last
-  std::unique_ptr<SurfaceSweep> sweep_;   ///< what takes their place then
-  ProvedWay way_, next_way_;              ///< of it; the next one begins where that ends, or is not known
-  ProvedWay line_;                        ///< what is looked at, as if it were proved
-  std::vector<std::uint32_t> swept_;      ///< parts
-  std::vector<bool> outside_;             ///< of each of them: see SurfaceSweep::begin()
-  std::vector<bool> left_out_;            ///< of each part: it may be
-  std::vector<FacePair> met_, next_met_;  ///< at their ends
-  bool rough_end_ = false;                ///< of the way that was proved last: see SurfaceSweep::ended_by_blocks()
-  double clearance_ = 0;                  ///< of the last check, m
-  bool looks_ahead_ = false;              ///< it is at a way that A has not come to yet
-  Displacement pen_;                      ///< see heads()
-  int behind_for_ = 0;                    ///< ticks in a row, up to
-  std::uint64_t behind_since_ = 0;        ///< the begin() of the last of them
-  int still_for_ = 0;                     ///< ticks in a row in which A stood at still_X_ and they were behind
+  bool behind_ = false;                  ///< the cells ran out of time when they were asked last
+  std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then
+  std::vector<Stretch> ways_;  ///< of it, each from the end of the one before; A is on the first, or beside it
+  std::size_t ways_known_ = 0;
+  std::optional<Pose> offered_;       ///< where A was when a motion was proved instead of the one asked about
+  std::uint64_t offered_at_ = 0;      ///< the begin() of that
+  ProvedWay line_;                    ///< what is looked at, as if it were proved
+  std::vector<std::uint32_t> swept_;  ///< parts
+  std::vector<bool> outside_;         ///< of each of them: see SurfaceSweep::begin()
+  std::vector<bool> left_out_;        ///< of each part: it may be
+  double clearance_ = 0;              ///< of the last check, m
+  bool looks_ahead_ = false;          ///< it is at a way that A has not come to yet
+  Displacement pen_;                  ///< see heads()
+  int behind_for_ = 0;                ///< ticks in a row, up to
+  std::uint64_t behind_since_ = 0;    ///< the begin() of the last of them
+  int still_for_ = 0;                 ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
   Turn turn_;

@@ -19,8 +19,7 @@ constexpr std::uint64_t kLongestWait = 32;
 }  // namespace
 
 void PatchMotionCheck::jumped() noexcept {
-  way_.drop();
-  next_way_.drop();
+  drop_ways();
   sweeping_ = looks_ahead_ = false;
   sides_.assign(sides_.size(), Sides{});
 }

@@ -23,15 +23,19 @@ constexpr double kTicksPerFace = 1e-3;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
 constexpr double kSameWay = 0.95, kStands = 1e-7;
 // The ticks that the pen takes to come as far as whole blocks of faces are to prove at least, of a part of no more than
-// some faces and for each face: about as long as the look at them takes. No less than this share of what is wanted, and
-// no more than that of all that is looked at. Fewer faces are looked at one by one.
-constexpr double kWorthTicks = 2, kWorthTicksPerFace = 3e-5;
+// some faces and for each face: about as long as the look at all faces takes. No less than this share of what is
+// wanted, and no more than that of all that is looked at. Fewer faces are looked at one by one.
+constexpr double kWorthTicks = 2, kWorthTicksPerFace = 1e-4;
 constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
 // What a few faces tell to be in the way is come to as near as this share of the gap that counts as contact.
 constexpr double kKeptOfContact = 0.6;
 // Turns of one kind after which the other is tried.
 constexpr int kTurnsInARow = 6;
+// Ticks in which a look may wait for its turn to begin.
+constexpr int kTurnWaits = 8;
+// How often as long as a look cells have the time where the pen stands.
+constexpr std::uint64_t kPatience = 4;
 // What has come less far (m) stands.
 constexpr double kStill = 1e-6;
 
@@ -69,7 +73,8 @@ void PatchMotionCheck::take_turns(const Pose& X) noexcept {
   }
   turn_.moved += moved;
   ++turn_.ticks;
-  if (turn_.of_cells ? static_cast<std::uint64_t>(turn_.ticks) < swept_for_ : sweeping_) return;
+  if (turn_.of_cells ? static_cast<std::uint64_t>(turn_.ticks) < swept_for_ : sweeping_ || turn_.ticks < kTurnWaits)
+    return;
   (turn_.of_cells ? turn_.cells_pace : turn_.sweeps_pace) = turn_.moved / turn_.ticks;
   const bool cells = (turn_.cells_pace > turn_.sweeps_pace) != (turn_.in_a_row >= kTurnsInARow);
   turn_.in_a_row = cells == turn_.of_cells ? turn_.in_a_row + 1 : 0;
@@ -78,12 +83,12 @@ void PatchMotionCheck::take_turns(const Pose& X) noexcept {
   turn_.moved = 0;
 }
 
-/// Where what touches still stands after it was looked at as a whole, cells are to have the time: until the pen moves,
-/// or for as long as that took where the pen moves on.
+/// Where what touches still stands after it was looked at as a whole, cells are to have the time: for as long as that
+/// took where the pen moves on, and some times as long where it stands.
 bool PatchMotionCheck::rests(const Pose& X, const Displacement& d) const noexcept {
   if (size(d) < kStill) return true;
   if (!touches_ || size(displacement(sweep_->start(), X, center_)) > kStill) return false;
-  if (!(size(pen_) > kStands)) return true;
+  if (!(size(pen_) > kStands)) return now_ < swept_until_ + kPatience * swept_for_;
   return now_ < swept_until_ + swept_for_ && same_way(d, sweep_->motion());
 }
 
@@ -97,14 +102,33 @@ bool PatchMotionCheck::may_go_along() const noexcept {
   return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
 }
 
-/// On the way, or on the next one.
+/// On the way, or on one of the next.
 void PatchMotionCheck::come_to(const Pose& X) noexcept {
-  way_.come_to(X);
-  if (!next_way_.is_on(X)) return;
-  way_ = next_way_;
-  met_ = next_met_;
-  next_way_.drop();
-  way_.come_to(X);
+  if (ways_known_ == 0) return;
+  ways_[0].way.come_to(X);
+  while (ways_known_ > 1 && ways_[1].way.is_on(X)) {
+    std::rotate(ways_.begin(), ways_.begin() + 1, ways_.end());
+    --ways_known_;
+    ways_[0].way.come_to(X);
+  }
+}
+
+void PatchMotionCheck::add_way() noexcept {
+  const Stretch* last = last_way();
+  if (last == nullptr || ways_known_ == ways_.size() || !last->way.is_on(sweep_->start())) ways_known_ = 0;
+  Stretch& added = ways_[ways_known_++];
+  added.way.set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
+  added.met = sweep_->blocking();
+}
+
+/// Whether A was not moved, in a tick before, by a motion that was proved instead of the one that was asked about: it
+/// led nowhere that A is to go.
+bool PatchMotionCheck::declined(const Pose& X) const noexcept {
+  return offered_ && offered_at_ != now_ && X.p == offered_->p && X.q.coeffs() == offered_->q.coeffs();
+}
+
+bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
+  return ways_known_ > 0 && ways_[0].way.is_on(X) && ways_[0].way.ends_at(X);
 }
 
 /// Of large parts, fronts may be behind as soon as they touch.
@@ -116,15 +140,17 @@ bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vec
   if (!may_look_ahead()) return false;
   come_to(X);
   if (!may_go_along()) return false;
-  const auto along = way_.toward(X, d);
-  if (!along || !covers_near(way_.parts())) return false;
+  if (ways_known_ == 0) return false;
+  const auto& [way, met] = ways_[0];
+  const auto along = way.toward(X, d);
+  if (!along || !covers_near(way.parts())) return false;
   // Near the end, what nearly touches turns a motion away from the way: it is come to all the same, and where the next
   // way is looked at that begins there.
-  const bool leads_on = !met_.empty() || (looks_ahead_ && line_.is_on(way_.end()));
-  const bool arrives =
-      leads_on && !way_.done() && size(*along) > kStands && way_.ends_at(displaced(X, center_, *along));
+  const bool leads_on = !met.empty() || ways_known_ > 1 || (looks_ahead_ && line_.is_on(way.end()));
+  const bool to_end = way.ends_at(displaced(X, center_, *along));
+  const bool arrives = leads_on && !way.done() && size(*along) > kStands && to_end;
   if (left_of(X, d, *along) > kWayLeaves * size(d) && !arrives) return false;
-  if (way_.ends_at(displaced(X, center_, *along))) tell(met_, blocking);
+  if (to_end) tell(met, blocking);
   forget_small_cells(*along);
   instead_ = along;
   return true;
@@ -133,8 +159,8 @@ bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vec
 std::optional<Displacement> PatchMotionCheck::onto_way(const Pose& X, const Displacement& d) const noexcept {
   if (!may_look_ahead()) return std::nullopt;
   const double most = may_go_along() ? kWayLeaves : kBesideWay;
-  for (const ProvedWay* way : {&way_, &line_}) {
-    if ((way == &line_ && !looks_ahead_) || !covers_near(way->parts())) continue;
+  for (const ProvedWay* way : {&ways_[0].way, &line_}) {
+    if (!(way == &line_ ? looks_ahead_ : ways_known_ > 0) || !covers_near(way->parts())) continue;
     const auto onto = way->join(X, d);
     if (onto && left_of(X, d, *onto) <= most * size(d)) return onto;
   }
@@ -225,11 +251,7 @@ double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& a
 
 void PatchMotionCheck::finish_way() noexcept {
   looks_ahead_ = false;
-  if (!(sweep_->share() > 0)) return;
-  const bool goes_on = way_.is_on(sweep_->start());
-  (goes_on ? next_way_ : way_).set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
-  (goes_on ? next_met_ : met_) = sweep_->blocking();
-  rough_end_ = sweep_->ended_by_blocks();
+  if (sweep_->share() > 0) add_way();
 }
 
 /// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
@@ -244,15 +266,18 @@ void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
 }
 
 bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
-  const bool on_way = covers_near(way_.parts()) && (way_.is_on(X) || way_.leads_on(X, pen_));
+  const Stretch* last = last_way();
+  const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, pen_); };
+  const bool on_way = last != nullptr && covers_near(last->way.parts()) && leads_on(ways_[0].way);
   // What is met there, and blocks of faces that ended a way would end the next one at once.
-  if (on_way && (next_way_.known() || !met_.empty() || !same_way(way_.motion(), pen_))) return false;
+  if (on_way && (ways_known_ == ways_.size() || !last->met.empty() || !same_way(last->way.motion(), pen_)))
+    return false;
   const double faces = static_cast<double>(held_->mesh().triangles.size());
   const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(pen_));
-  const Pose from = on_way ? way_.end() : X;
+  const Pose from = on_way ? last->way.end() : X;
+  if (left_of(X, {}, displacement(X, from, center_)) > far * size(pen_)) return false;
   if (!find_swept(X, from, far * pen_)) return false;
-  look_at(from, far * pen_, clearance_,
-          on_way && rough_end_ ? std::numeric_limits<double>::infinity() : worth({}, far * pen_));
+  look_at(from, far * pen_, clearance_, worth({}, far * pen_));
   return true;
 }
 
@@ -265,16 +290,15 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
-  next_way_.drop();
-  way_.set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
-  way_.come_to(X);
+  drop_ways();
+  add_way();
+  const auto& [way, met] = ways_[0];
+  come_to(X);
   share_ = 1;
   // What was met is told where the pen has come to it.
-  const auto along = way_.toward(X, d);
+  const auto along = way.toward(X, d);
   instead_ = along ? *along : Displacement{};
-  met_ = sweep_->blocking();
-  rough_end_ = sweep_->ended_by_blocks();
-  if (way_.ends_at(displaced(X, center_, *instead_))) tell(met_, blocking);
+  if (way.ends_at(displaced(X, center_, *instead_))) tell(met, blocking);
   swept_for_ = now_ - swept_since_ + 1;
   swept_until_ = now_;
   forget_small_cells(*instead_);

@@ -16,8 +16,8 @@ namespace {
 
 /// Nodes of this level know what of B is beside them.
 constexpr std::uint32_t kTopLevel = 2;
-/// Blocks of A that are looked at first.
-constexpr std::uint32_t kSample = 32;
+/// Blocks of A that are looked at first: so many, and one of so many.
+constexpr std::uint32_t kSample = 32, kSampleShare = 100;
 /// How exactly it is found where the motion ends (m), and the halvings that takes at most.
 constexpr double kExact = 5e-7;
 constexpr int kHalvings = 24;
@@ -28,9 +28,15 @@ constexpr float kBoxError = 1e-6F;
 constexpr double kRadiusSlack = 1 + 1e-9;
 /// What is free that blocks tell is taken a little shorter: they are looked at again.
 constexpr double kShareKept = 0.999;
+/// Where a block passes more blocks of B than so many, by a way longer than so many times its size, or more pairs of
+/// faces than so many have to be asked exactly, the look goes on over half of the motion: all the way past surfaces
+/// that lie beside each other, or around in each other, takes seconds for a large part.
+constexpr std::uint32_t kManyPassed = 64, kManyAsked = 48;
+constexpr double kPassedWay = 4, kAskedWay = 1;
+/// What whole blocks leave of a motion is enough where it is so much of what faces have left.
+constexpr double kEnough = 0.85;
 /// Blocks that may be looked at face by face before all are: so many, and one for so many of A's.
-constexpr double kGoodShare = 0.5;
-constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 16;
+constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
 
 }  // namespace
 
@@ -99,7 +105,7 @@ void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector
 void SurfaceSweep::start_looks() {
   blocking_.clear();
   share_ = 1;
-  ended_by_blocks_ = false;
+  ended_early_ = halved_ = false;
   searched_blocks_ = 0;
   last_plane_ = {Vec3::Zero(), Vec3::Zero()};
   if (!near_.empty()) start_look(Look::sample);
@@ -177,19 +183,22 @@ bool SurfaceSweep::next_part() {
     start_layer(layer_ == Layer::walls ? Layer::moved_faces : Layer::faces);
     return true;
   }
-  if (look_ == Look::blocks && ended_by_blocks_) blocking_.clear();
-  if (look_ != Look::sample) return false;
+  if (look_ != Look::sample) {
+    if (ended_early_) blocking_.clear();
+    return false;
+  }
   sampled_share_ = share_;
-  start_look(worth_ <= share_ ? Look::blocks : Look::faces);
+  start_look(std::isfinite(worth_) ? Look::blocks : Look::faces);
   return true;
 }
 
 /// Finds the next block of A beside which there may be something of B. False when all were looked at.
 bool SurfaceSweep::next_block() {
   if (look_ == Look::sample) {
-    const std::uint32_t stride = std::max(1U, surface_a_->blocks.count() / kSample);
+    const std::uint32_t blocks = surface_a_->blocks.count();
+    const std::uint32_t stride = std::max(1U, blocks / (kSample + blocks / kSampleShare));
     const std::uint32_t block = stride / 2 + stride * sampled_;
-    if (block >= surface_a_->blocks.count()) return false;
+    if (block >= blocks) return false;
     ++sampled_;
     if (!all_recede(block)) place(block);
     return true;
@@ -243,34 +252,35 @@ bool SurfaceSweep::next_node() {
   if (recedes(node)) return true;
   const double apart = node_apart_for(node);
   if (apart == 1 || (node.level == 0 && all_recede(node.index))) return true;
-  if (node.level > 0) {
-    push_below(node);
-    return true;
-  }
-  if (layer_ != Layer::faces) {
-    place(node.index);
-    return true;
-  }
-  const double kept = kShareKept * apart;
-  const bool may_search = searched_blocks_ < kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
-  if (kept * share_ >= worth_ && (kept >= kGoodShare || !may_search)) {
+  if (is_enough(apart)) {
     // Over a shorter way from here on; this one once more.
-    set_share(kept * share_);
-    ended_by_blocks_ = true;
+    set_share(kShareKept * apart * share_);
+    ended_early_ = true;
     ++stacked_;
-  } else if (may_search) {
+  } else if (node.level > 0) {
+    push_below(node);
+  } else if (layer_ != Layer::faces || look_ == Look::faces || may_search()) {
     ++searched_blocks_;
     place(node.index);
   } else {
-    look_at_all_faces();
+    // Most would be looked at, and so may all be, for all of the way.
+    share_ = sampled_share_;
+    ended_early_ = halved_;
+    start_look(Look::faces);
   }
   return true;
 }
 
-void SurfaceSweep::look_at_all_faces() {
-  share_ = sampled_share_;
-  ended_by_blocks_ = false;
-  start_look(Look::faces);
+/// Whether the motion may end so early as whole blocks tell.
+bool SurfaceSweep::is_enough(double apart) const {
+  const double kept = kShareKept * apart * share_;
+  if (look_ != Look::blocks || layer_ != Layer::faces) return false;
+  return kept >= kEnough * sampled_share_ || (!may_search() && kept >= worth_);
+}
+
+/// Whether few blocks were looked at face by face until now.
+bool SurfaceSweep::may_search() const {
+  return searched_blocks_ < kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
 }
 
 /// The share of the motion in which all faces under A's node are apart from B, or less.
@@ -287,9 +297,8 @@ double SurfaceSweep::node_apart_for(const Node& node) {
       if (!flat) return 0;
       const double share = apart_for(slab, surface_b().slabs.slab(level, found_[i]), floor_);
       if (share == 1) continue;
-      if (node.level > 0) return 0;
-      if (!apart_from_faces(slab, found_[i])) apart = std::min(apart, share);
-      if (kShareKept * apart * share_ < worth_) return 0;
+      if (node.level > 0 || !apart_from_faces(slab, found_[i])) apart = std::min(apart, share);
+      if (!is_enough(apart)) return 0;
     }
   }
   return apart;
@@ -364,6 +373,7 @@ void SurfaceSweep::place(std::uint32_t block) {
   Placement start = sweep_.start, end = sweep_.end;
   start.t += start.R * origin;
   end.t += end.R * origin;
+  const double way = (end.t - start.t).norm();
   middle_ = 0.5 * (start.t + end.t);
   start.t -= middle_;
   end.t -= middle_;
@@ -380,6 +390,8 @@ void SurfaceSweep::place(std::uint32_t block) {
   walk(box, 0);
   beside_.clear();
   face_ = faces_;
+  passed_ = asked_ = 0;
+  sizes_passed_ = way / faces.size;
 }
 
 AxisBox SurfaceSweep::face_box(std::uint32_t k) const {
@@ -391,10 +403,23 @@ AxisBox SurfaceSweep::face_box(std::uint32_t k) const {
 bool SurfaceSweep::next_beside() {
   if (faces_ == 0) return false;
   const std::uint32_t count = walk_.next(found_.data(), kBeside);
+  passed_ += count;
+  if (passed_ > kManyPassed && sizes_passed_ > kPassedWay) {
+    look_less_far();
+    return true;
+  }
   beside_.set(surface_b().blocks, surface_b().lanes, found_.data(), count, moved_, middle_, floor_);
   face_ = 0;
   if (count == 0) face_ = faces_ = 0;
   return count > 0;
+}
+
+/// Half as far as until now, from this block on.
+void SurfaceSweep::look_less_far() {
+  set_share(0.5 * share_);
+  sampled_share_ = std::min(sampled_share_, share_);
+  ended_early_ = halved_ = true;
+  place(block_);
 }
 
 void SurfaceSweep::look_at_face(std::uint32_t k) {
@@ -413,7 +438,11 @@ bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint
     if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;
     const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(block, lane);
     const Faces faces = faces_of(face, face_b);
-    if (keeps_apart(faces)) continue;
+    if (keeps_apart(faces)) {
+      if (++asked_ <= kManyAsked || sizes_passed_ < kAskedWay) continue;
+      look_less_far();
+      return false;
+    }
     if (layer_ != Layer::faces) {
       // Not solid, then.
       drawn_.reset();
@@ -423,13 +452,10 @@ bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint
     if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
     blocking_.push_back({near_[at_], face, face_b});
     meet(faces);
-    ended_by_blocks_ = false;
-    if (look_ == Look::blocks && share_ < worth_) {
-      look_at_all_faces();
-    } else {
-      // Over a shorter way from here on.
-      place(block_);
-    }
+    sampled_share_ = std::min(sampled_share_, share_);
+    ended_early_ = halved_ = false;
+    // Over a shorter way from here on.
+    place(block_);
     return false;
   }
   return true;

@@ -22,8 +22,8 @@ namespace tegotae {
 /// What is wanted of a look at a motion.
 struct SweepAim {
   double clearance;  ///< separations below do not count, m
-  /// Where so much of the motion (m) or more is free that whole blocks of faces tell, a tenth of the work, no more is
-  /// looked for.
+  /// Whole blocks of faces, a tenth of the work, may end the motion a seventh before faces would, and where they tell
+  /// little more, wherever so much of it (m) or more is free.
   double worth = std::numeric_limits<double>::infinity();
   /// What a few faces tell to be in the way ends the motion so far (m) before it is touched: nearer, the planes of
   /// faces that lie on each other keep few of their neighbors apart.
@@ -39,7 +39,7 @@ struct SweepAim {
 class SurfaceSweep {
  public:
   /// Larger surfaces are not looked at as a whole: blocks of a million faces would take 0.2 s at every start.
-  static constexpr std::size_t kMostFaces = 1U << 18;
+  static constexpr std::size_t kMostFaces = 1U << 20;
 
   /// `center` (m, file frame) is A's center of mass; `facing` of A, if it bounds a solid, and `backing` if it has one.
   /// At most `blocking` triangle pairs are told.
@@ -65,11 +65,12 @@ class SurfaceSweep {
   /// When done: the part of the motion, from its start, that is free. What is met ends it, a little before it is
   /// touched where that can be.
   double share() const { return share_; }
-  /// When done: what was met, the nearest last; at most as many as the constructor was told. Nothing where only whole
-  /// blocks met.
+  /// When done: what was met, the nearest last; at most as many as the constructor was told. Nothing where the motion
+  /// was ended early.
   const std::vector<FacePair>& blocking() const { return blocking_; }
-  /// When done: whole blocks ended the motion, and more of it may be free.
-  bool ended_by_blocks() const { return ended_by_blocks_; }
+  /// When done: whole blocks ended the motion, or looking farther would have taken too long, and more of it may be
+  /// free.
+  bool ended_early() const { return ended_early_; }
 
  private:
   /// The faces of a tree.
@@ -93,8 +94,8 @@ class SurfaceSweep {
     std::array<Vec3, 3> a, b;
     double reach = 0;  ///< of A's, m
   };
-  /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks, if
-  /// that may be enough, and all faces, if it was not.
+  /// What is done, one after the other: a few of A's faces tell about how far the motion goes, then whole blocks and
+  /// the faces of those that are not enough, or all faces.
   enum class Look : std::uint8_t { sample, blocks, faces };
   /// Of A drawn out what is looked at, one after the other: nothing may meet it, and it never recedes. Then A's faces.
   enum class Layer : std::uint8_t { walls, moved_faces, faces };
@@ -110,8 +111,9 @@ class SurfaceSweep {
   bool next_block();
   bool next_node();
   double node_apart_for(const Node& node);
+  bool is_enough(double apart) const;
+  bool may_search() const;
   bool apart_from_faces(const MovedSlab& slab, std::uint32_t block);
-  void look_at_all_faces();
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
   void walk_beside(const Node& node, std::uint32_t level);
@@ -122,6 +124,7 @@ class SurfaceSweep {
   AxisBox face_box(std::uint32_t k) const;
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
+  void look_less_far();
   void look_at_face(std::uint32_t k);
   bool look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint32_t open);
   Faces faces_of(std::uint32_t face, std::uint32_t face_b) const;
@@ -158,8 +161,9 @@ class SurfaceSweep {
   Pose X_;
   Displacement d_;
   double clearance_ = 0, kept_ = 0, worth_ = 0, share_ = 1;
-  double sampled_share_ = 1;           ///< that the sample left
-  bool ended_by_blocks_ = false;       ///< of what was met last, no more is known
+  double sampled_share_ = 1;           ///< that faces have left
+  bool ended_early_ = false;           ///< share_ is no more than that, and nothing was met at it
+  bool halved_ = false;                ///< sampled_share_ is what it is because all of it would have taken too long
   std::uint32_t searched_blocks_ = 0;  ///< of A, face by face, while whole ones were looked at
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
@@ -179,6 +183,8 @@ class SurfaceSweep {
   double floor_ = 0;  ///< of straight ways: the clearance and what arcs may leave of them, m
 
   std::uint32_t block_ = 0, face_ = 0, faces_ = 0;  ///< of A, which is looked at
+  std::uint32_t passed_ = 0, asked_ = 0;            ///< blocks of B beside it, and exact answers, until now
+  double sizes_passed_ = 0;                         ///< its way as times of its size
   std::uint32_t skipped_ = 0;                       ///< a bit for each face of it that recedes
   MovedLanes moved_;
   Vec3 middle_ = Vec3::Zero();
