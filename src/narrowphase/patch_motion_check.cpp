@@ -302,8 +302,8 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
   const bool asked = std::exchange(asked_, true);
   const MotionAnswer answer = ask(X, d, clearance, blocking);
   if (answer == MotionAnswer::free && instead_ && !declined(X)) {
-    offered_ = X;
-    offered_at_ = now_;
+    offered_[next_offered_] = {X, now_};
+    next_offered_ = (next_offered_ + 1) % offered_.size();
   }
   // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
   // them costs a search, and few go together again in a call that ends so.

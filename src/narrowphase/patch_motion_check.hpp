@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -107,6 +109,12 @@ class PatchMotionCheck final : public MotionCheck {
   struct Stretch {
     ProvedWay way;
     std::vector<FacePair> met;
+  };
+
+  /// Where A was when a motion was proved instead of the one that was asked about.
+  struct Offered {
+    Pose X;
+    std::uint64_t at = 0;  ///< the begin(); 0: none
   };
 
   /// How far ahead a front has been asked at rest.
@@ -229,8 +237,8 @@ class PatchMotionCheck final : public MotionCheck {
   std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then
   std::vector<Stretch> ways_;  ///< of it, each from the end of the one before; A is on the first, or beside it
   std::size_t ways_known_ = 0;
-  std::optional<Pose> offered_;       ///< where A was when a motion was proved instead of the one asked about
-  std::uint64_t offered_at_ = 0;      ///< the begin() of that
+  std::array<Offered, 4> offered_;  ///< the last of them
+  std::size_t next_offered_ = 0;
   ProvedWay line_;                    ///< what is looked at, as if it were proved
   std::vector<std::uint32_t> swept_;  ///< parts
   std::vector<bool> outside_;         ///< of each of them: see SurfaceSweep::begin()

@@ -121,10 +121,12 @@ void PatchMotionCheck::add_way() noexcept {
   added.met = sweep_->blocking();
 }
 
-/// Whether A was not moved, in a tick before, by a motion that was proved instead of the one that was asked about: it
-/// led nowhere that A is to go.
+/// Whether A is where a motion was proved instead of the one that was asked about, a few of them ago: it was not made,
+/// or led to and fro.
 bool PatchMotionCheck::declined(const Pose& X) const noexcept {
-  return offered_ && offered_at_ != now_ && X.p == offered_->p && X.q.coeffs() == offered_->q.coeffs();
+  return std::any_of(offered_.begin(), offered_.end(), [&](const Offered& o) {
+    return o.at != 0 && o.at != now_ && size(displacement(o.X, X, center_)) < kStill;
+  });
 }
 
 bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
