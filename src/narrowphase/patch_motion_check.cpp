@@ -119,6 +119,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       effort_(effort),
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
+      ways_(center, radius, fixed.size() + 1, kMaxBlocking),
       line_(center, radius, fixed.size() + 1),
       edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
@@ -170,10 +171,6 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   outside_.reserve(fixed.size() + 1);
   left_out_.assign(fixed.size(), false);
   for (const std::uint32_t part : left_out) left_out_[part] = true;
-  for (std::size_t i = 0; i < kWays; ++i) {
-    ways_.push_back({ProvedWay(center_, radius_, fixed.size() + 1), {}});
-    ways_.back().met.reserve(kMaxBlocking);
-  }
 }
 
 /// For scenes of many parts. Bores and threads are not in it, since their fronts are faster, unless there are far more

@@ -64,8 +64,6 @@ class PatchMotionCheck final : public MotionCheck {
   static constexpr std::uint32_t kNobody = 0xffffffffu;
   /// Where cells or fronts were behind in so many ticks in a row, motions through the air are looked at as a whole.
   static constexpr int kTicksBehind = 2;
-  /// Ways that are known at once, one after the other.
-  static constexpr std::size_t kWays = 8;
   /// What has not moved for so many ticks meanwhile has to be looked at as a whole.
   static constexpr int kTicksStill = 8;
 
@@ -103,12 +101,6 @@ class PatchMotionCheck final : public MotionCheck {
     double moved = 0, cells_pace = 0, sweeps_pace = 0;
     Pose X;                   ///< of A
     std::uint64_t since = 0;  ///< the begin() of the last tick
-  };
-
-  /// A way that is proved, and what was met at its end.
-  struct Stretch {
-    ProvedWay way;
-    std::vector<FacePair> met;
   };
 
   /// Where A was when a motion was proved instead of the one that was asked about.
@@ -149,10 +141,6 @@ class PatchMotionCheck final : public MotionCheck {
   bool may_sweep() const noexcept;
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;
-  void come_to(const Pose& X) noexcept;
-  void drop_ways() noexcept { ways_known_ = 0; }
-  /// The end of the ways from here on; none where there is none.
-  Stretch* last_way() noexcept { return ways_known_ > 0 ? &ways_[ways_known_ - 1] : nullptr; }
   /// What was looked at is a way from now on, after those that are known.
   void add_way() noexcept;
   bool at_end_of_way(const Pose& X) const noexcept;
@@ -235,9 +223,8 @@ class PatchMotionCheck final : public MotionCheck {
   LeavingCheck leaving_;
   bool behind_ = false;                  ///< the cells ran out of time when they were asked last
   std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then
-  std::vector<Stretch> ways_;  ///< of it, each from the end of the one before; A is on the first, or beside it
-  std::size_t ways_known_ = 0;
-  std::array<Offered, 4> offered_;  ///< the last of them
+  ProvedWays ways_;                      ///< of it
+  std::array<Offered, 4> offered_;       ///< the last of them
   std::size_t next_offered_ = 0;
   ProvedWay line_;                    ///< what is looked at, as if it were proved
   std::vector<std::uint32_t> swept_;  ///< parts

@@ -19,7 +19,7 @@ constexpr std::uint64_t kLongestWait = 32;
 }  // namespace
 
 void PatchMotionCheck::jumped() noexcept {
-  drop_ways();
+  ways_.drop();
   sweeping_ = looks_ahead_ = false;
   sides_.assign(sides_.size(), Sides{});
 }

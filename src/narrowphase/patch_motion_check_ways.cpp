@@ -102,25 +102,6 @@ bool PatchMotionCheck::may_go_along() const noexcept {
   return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
 }
 
-/// On the way, or on one of the next.
-void PatchMotionCheck::come_to(const Pose& X) noexcept {
-  if (ways_known_ == 0) return;
-  ways_[0].way.come_to(X);
-  while (ways_known_ > 1 && ways_[1].way.is_on(X)) {
-    std::rotate(ways_.begin(), ways_.begin() + 1, ways_.end());
-    --ways_known_;
-    ways_[0].way.come_to(X);
-  }
-}
-
-void PatchMotionCheck::add_way() noexcept {
-  const Stretch* last = last_way();
-  if (last == nullptr || ways_known_ == ways_.size() || !last->way.is_on(sweep_->start())) ways_known_ = 0;
-  Stretch& added = ways_[ways_known_++];
-  added.way.set(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near());
-  added.met = sweep_->blocking();
-}
-
 /// Whether A is where a motion was proved instead of the one that was asked about, a few of them ago: it was not made,
 /// or led to and fro.
 bool PatchMotionCheck::declined(const Pose& X) const noexcept {
@@ -130,7 +111,7 @@ bool PatchMotionCheck::declined(const Pose& X) const noexcept {
 }
 
 bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
-  return ways_known_ > 0 && ways_[0].way.is_on(X) && ways_[0].way.ends_at(X);
+  return !ways_.empty() && ways_.first().way.is_on(X) && ways_.first().way.ends_at(X);
 }
 
 /// Of large parts, fronts may be behind as soon as they touch.
@@ -140,15 +121,14 @@ bool PatchMotionCheck::may_look_ahead() const noexcept {
 
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
   if (!may_look_ahead()) return false;
-  come_to(X);
-  if (!may_go_along()) return false;
-  if (ways_known_ == 0) return false;
-  const auto& [way, met] = ways_[0];
+  ways_.come_to(X);
+  if (!may_go_along() || ways_.empty()) return false;
+  const auto& [way, met] = ways_.first();
   const auto along = way.toward(X, d);
   if (!along || !covers_near(way.parts())) return false;
   // Near the end, what nearly touches turns a motion away from the way: it is come to all the same, and where the next
   // way is looked at that begins there.
-  const bool leads_on = !met.empty() || ways_known_ > 1 || (looks_ahead_ && line_.is_on(way.end()));
+  const bool leads_on = !met.empty() || ways_.lead_on() || (looks_ahead_ && line_.is_on(way.end()));
   const bool to_end = way.ends_at(displaced(X, center_, *along));
   const bool arrives = leads_on && !way.done() && size(*along) > kStands && to_end;
   if (left_of(X, d, *along) > kWayLeaves * size(d) && !arrives) return false;
@@ -161,8 +141,8 @@ bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vec
 std::optional<Displacement> PatchMotionCheck::onto_way(const Pose& X, const Displacement& d) const noexcept {
   if (!may_look_ahead()) return std::nullopt;
   const double most = may_go_along() ? kWayLeaves : kBesideWay;
-  for (const ProvedWay* way : {&ways_[0].way, &line_}) {
-    if (!(way == &line_ ? looks_ahead_ : ways_known_ > 0) || !covers_near(way->parts())) continue;
+  for (const ProvedWay* way : {&ways_.first().way, &line_}) {
+    if (!(way == &line_ ? looks_ahead_ : !ways_.empty()) || !covers_near(way->parts())) continue;
     const auto onto = way->join(X, d);
     if (onto && left_of(X, d, *onto) <= most * size(d)) return onto;
   }
@@ -251,6 +231,10 @@ double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& a
   return std::min(std::max(ticks * size(pen_), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
 }
 
+void PatchMotionCheck::add_way() noexcept {
+  ways_.add(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near(), sweep_->blocking());
+}
+
 void PatchMotionCheck::finish_way() noexcept {
   looks_ahead_ = false;
   if (sweep_->share() > 0) add_way();
@@ -260,7 +244,7 @@ void PatchMotionCheck::finish_way() noexcept {
 /// come to by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
   if (!may_look_ahead() || sweeping_ || !(size(pen_) > kStands)) return;
-  come_to(X);
+  ways_.come_to(X);
   looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
   if (!looks_ahead_ && !begin_ahead(X)) return;
   looks_ahead_ = true;
@@ -268,16 +252,14 @@ void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
 }
 
 bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
-  const Stretch* last = last_way();
   const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, pen_); };
-  const bool on_way = last != nullptr && covers_near(last->way.parts()) && leads_on(ways_[0].way);
-  // What is met there, and blocks of faces that ended a way would end the next one at once.
-  if (on_way && (ways_known_ == ways_.size() || !last->met.empty() || !same_way(last->way.motion(), pen_)))
-    return false;
+  const bool on_way = !ways_.empty() && covers_near(ways_.last().way.parts()) && leads_on(ways_.first().way);
+  // What is met there would end the next one at once.
+  if (on_way && (ways_.full() || !ways_.last().met.empty() || !same_way(ways_.last().way.motion(), pen_))) return false;
   const double faces = static_cast<double>(held_->mesh().triangles.size());
   const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(pen_));
-  const Pose from = on_way ? last->way.end() : X;
-  if (left_of(X, {}, displacement(X, from, center_)) > far * size(pen_)) return false;
+  const Pose from = on_way ? ways_.last().way.end() : X;
+  if (size(displacement(X, from, center_)) > far * size(pen_)) return false;
   if (!find_swept(X, from, far * pen_)) return false;
   look_at(from, far * pen_, clearance_, worth({}, far * pen_));
   return true;
@@ -292,10 +274,10 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
-  drop_ways();
+  ways_.drop();
   add_way();
-  const auto& [way, met] = ways_[0];
-  come_to(X);
+  ways_.come_to(X);
+  const auto& [way, met] = ways_.first();
   share_ = 1;
   // What was met is told where the pen has come to it.
   const auto along = way.toward(X, d);

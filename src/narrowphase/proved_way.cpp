@@ -56,4 +56,29 @@ bool ProvedWay::leads_on(const Pose& X, const Displacement& d) const noexcept {
   return share <= 1 && size(displacement(at(std::max(0.0, share)), to, center_)) <= kOffWay * size(d);
 }
 
+ProvedWays::ProvedWays(const Vec3& center, double radius, std::size_t parts, std::size_t met) {
+  for (std::size_t i = 0; i < kMost; ++i) {
+    stretches_.push_back({ProvedWay(center, radius, parts), {}});
+    stretches_.back().met.reserve(met);
+  }
+}
+
+void ProvedWays::come_to(const Pose& X) noexcept {
+  if (count_ == 0) return;
+  stretches_[0].way.come_to(X);
+  while (count_ > 1 && stretches_[1].way.is_on(X)) {
+    std::rotate(stretches_.begin(), stretches_.begin() + 1, stretches_.end());
+    --count_;
+    stretches_[0].way.come_to(X);
+  }
+}
+
+void ProvedWays::add(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& parts,
+                     const std::vector<FacePair>& met) noexcept {
+  if (count_ > 0 && (full() || !last().way.is_on(X))) count_ = 0;
+  Stretch& added = stretches_[count_++];
+  added.way.set(X, d, parts);
+  added.met.assign(met.begin(), met.end());
+}
+
 }  // namespace tegotae

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "narrowphase/face_pair.hpp"
 #include "tegotae/core/pose.hpp"
 
 namespace tegotae {
@@ -60,6 +61,39 @@ class ProvedWay {
   double from_ = 1;     ///< where A came to it, as a share of it
   double to_ = 0;       ///< how far it has come on it
   std::vector<std::uint32_t> parts_;
+};
+
+/// Ways that are proved, each from the end of the one before; A is on the first, or beside it. No call but the
+/// constructor allocates.
+class ProvedWays {
+ public:
+  struct Stretch {
+    ProvedWay way;
+    std::vector<FacePair> met;  ///< at its end
+  };
+
+  /// As ProvedWay(), with at most `met` pairs of faces at each end.
+  ProvedWays(const Vec3& center, double radius, std::size_t parts, std::size_t met);
+
+  bool empty() const { return count_ == 0; }
+  bool full() const { return count_ == stretches_.size(); }
+  /// Whether one begins at the end of the first.
+  bool lead_on() const { return count_ > 1; }
+  const Stretch& first() const { return stretches_.front(); }     ///< if there is one
+  const Stretch& last() const { return stretches_[count_ - 1]; }  ///< the same
+  /// A is at `X`, on the first way or on one of the next, which is the first from now on.
+  void come_to(const Pose& X) noexcept;
+  /// The way from `X` by `d` is free of `parts`, and `met` at its end. The others go if it does not begin on the last
+  /// of them, or if they are full.
+  void add(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& parts,
+           const std::vector<FacePair>& met) noexcept;
+  void drop() noexcept { count_ = 0; }
+
+ private:
+  static constexpr std::size_t kMost = 8;
+
+  std::vector<Stretch> stretches_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace tegotae

@@ -41,6 +41,7 @@ constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
 }  // namespace
 
 SurfaceSweep::Surface::Surface(const PatchTree& tree) : blocks(tree), slabs(tree, blocks) {
+  lanes.reserve(blocks.count());
   for (std::uint32_t block = 0; block < blocks.count(); ++block) lanes.emplace_back(tree, blocks, block);
 }
 
