@@ -24,6 +24,8 @@ typedef float Lane __attribute__((vector_size(kLane * sizeof(float)), may_alias)
 typedef std::int32_t LaneBits __attribute__((vector_size(kLane * sizeof(float)), may_alias));
 static_assert(kBlockFaces == 2 * kLane);
 
+typedef std::array<float, 3> Float3;
+
 struct Lanes3 {
   Lane x, y, z;
 };
@@ -120,47 +122,74 @@ TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t f
   return greater(gap, greater(low + moved - load(b.normal_high, first), load(b.normal_low, first) - (high + moved)));
 }
 
-TEGOTAE_INLINE bool any(const LaneBits& bits) {
-  std::array<std::uint64_t, kLane / 2> in_pairs;
-  std::memcpy(in_pairs.data(), &bits, sizeof bits);
-  return (in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) != 0;
-}
+/// A direction that may keep a face apart from others, and where the face is along it.
+struct Along {
+  std::array<float, 3> n;
+  float low, high;
+};
 
-/// A bit for each of eight faces of `b` that has less than `floor`.
 template <typename One>
-TEGOTAE_INLINE std::uint32_t eight_below(const One& a, const FaceLanes& b, std::uint32_t first,
-                                         const std::array<float, 3>& shift, float floor) {
-  LaneBits open = (LaneBits)(axis_gaps(a, b, first, shift) < floor);
-  if (!any(open)) return 0;
-  open &= (LaneBits)(plane_gaps(a, b, first, shift) < floor);
-  if (!any(open)) return 0;
-  std::uint32_t out = 0;
-  for (std::uint32_t k = 0; k < kLane; ++k) out |= (static_cast<std::uint32_t>(open[k]) & 1U) << k;
+TEGOTAE_INLINE Along along(const std::array<float, 3>& n, const One& a) {
+  Along out{n, 0, 0};
+  for (std::size_t c = 0; c < One::kCorners; ++c) {
+    const float x = n[0] * a.corner(c, 0) + n[1] * a.corner(c, 1) + n[2] * a.corner(c, 2);
+    out.low = c == 0 ? x : std::min(out.low, x);
+    out.high = c == 0 ? x : std::max(out.high, x);
+  }
   return out;
 }
 
+/// The gap along it to eight faces of `b`.
+TEGOTAE_INLINE Lane gaps_along(const Along& a, const FaceLanes& b, std::uint32_t first,
+                               const std::array<float, 3>& shift) {
+  const float up = a.n[0] * shift[0] + a.n[1] * shift[1] + a.n[2] * shift[2];
+  const Lane p = dot(load3(b.corner[0], first), a.n), q = dot(load3(b.corner[1], first), a.n),
+             r = dot(load3(b.corner[2], first), a.n);
+  return greater((a.low + up) - greater(greater(p, q), r), lesser(lesser(p, q), r) - (a.high + up));
+}
+
+/// All bits of eight numbers in one.
+TEGOTAE_INLINE std::uint32_t together(const LaneBits& bits) {
+  std::array<std::uint64_t, kLane / 2> in_pairs;
+  std::memcpy(in_pairs.data(), &bits, sizeof bits);
+  const std::uint64_t pair = in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3];
+  return static_cast<std::uint32_t>(pair | pair >> 32);
+}
+
+/// A bit for each face of `b` that has less than `floor`. Both halves go together: one by one, as many branches would
+/// be guessed wrongly again.
 template <typename One>
-TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const FaceLanes& b, const std::array<float, 3>& shift,
-                                        float floor) {
-  return eight_below(a, b, 0, shift, floor) | eight_below(a, b, kLane, shift, floor) << kLane;
+TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const Along& guess, const FaceLanes& b,
+                                        const std::array<float, 3>& shift, float floor) {
+  LaneBits one = (LaneBits)(axis_gaps(a, b, 0, shift) < floor),
+           other = (LaneBits)(axis_gaps(a, b, kLane, shift) < floor);
+  if (together(one | other) == 0) return 0;
+  one &= (LaneBits)(plane_gaps(a, b, 0, shift) < floor);
+  other &= (LaneBits)(plane_gaps(a, b, kLane, shift) < floor);
+  if (together(one | other) == 0) return 0;
+  one &= (LaneBits)(gaps_along(guess, b, 0, shift) < floor);
+  other &= (LaneBits)(gaps_along(guess, b, kLane, shift) < floor);
+  constexpr LaneBits kOf = {1, 2, 4, 8, 16, 32, 64, 128};
+  return together((one & kOf) | (other & (kOf << kLane)));
 }
 
 TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
-  return gaps_below(a, b, shift, floor);
+  return gaps_below(a, Along{}, b, shift, floor);
 }
 
 TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
-  return gaps_below(a, b, shift, floor);
+  return gaps_below(a, Along{}, b, shift, floor);
 }
 
-TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const BoxLanes* boxes, const BesideFaces::Block* blocks,
-                                      std::uint32_t count, std::uint32_t& at) {
+TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const std::array<float, 3>& direction, const BoxLanes* boxes,
+                                      const BesideFaces::Block* blocks, std::uint32_t count, std::uint32_t& at) {
   const AxisBox box = {{a.low(0), a.low(1), a.low(2)}, {a.high(0), a.high(1), a.high(2)}};
+  const Along guess = along(direction, a);
   for (std::uint32_t first = at / BoxLanes::kBoxes * BoxLanes::kBoxes; first < count; first += BoxLanes::kBoxes) {
     const std::uint32_t bits = overlap(boxes[first / BoxLanes::kBoxes], box);
     for (at = std::max(at, first); at < first + BoxLanes::kBoxes; ++at) {
       if ((bits >> (at - first) & 1) == 0) continue;
-      const std::uint32_t open = gaps_below(a, *blocks[at].faces, blocks[at].shift, blocks[at].floor);
+      const std::uint32_t open = gaps_below(a, guess, *blocks[at].faces, blocks[at].shift, blocks[at].floor);
       if (open != 0) return open;
     }
   }
@@ -213,10 +242,10 @@ constexpr std::uint32_t kAcross = 16;
 typedef std::array<FaceLanes::Field, 3> Across;
 static_assert(kAcross == kBlockFaces);
 
-/// The greatest of the gaps along eight directions has at least `floor` along its own.
-TEGOTAE_INLINE bool any_apart(const Across& left, const Across& right, std::uint32_t first,
-                              const std::array<std::array<float, 3>, 6>& p,
-                              const std::array<std::array<float, 3>, 3>& q, float floor2) {
+/// One of eight directions along which there is at least `floor`; none: kAcross.
+TEGOTAE_INLINE std::uint32_t one_apart(const Across& left, const Across& right, std::uint32_t first,
+                                       const std::array<std::array<float, 3>, 6>& p,
+                                       const std::array<std::array<float, 3>, 3>& q, float floor2) {
   const Lanes3 l = load3(left, first), r = load3(right, first);
   const Lanes3 n = {l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
   Lane low = dot(n, p[0]), high = low;
@@ -231,30 +260,34 @@ TEGOTAE_INLINE bool any_apart(const Across& left, const Across& right, std::uint
   // Squares below are too near to the least numbers of single precision.
   const Lane least = greater((n.x * n.x + n.y * n.y + n.z * n.z) * floor2, Lane{} + 1e-36F);
   const LaneBits apart = square > least;
-  std::array<std::uint64_t, kLane / 2> in_pairs;
-  std::memcpy(in_pairs.data(), &apart, sizeof apart);
-  return (in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3]) != 0;
+  if (together(apart) == 0) return kAcross;
+  std::uint32_t k = 0;
+  while (apart[k] == 0) ++k;
+  return first + k;
 }
 
-TEGOTAE_WIDE bool across_edges(const Across& left, const Across& right, const std::array<std::array<float, 3>, 6>& p,
-                               const std::array<std::array<float, 3>, 3>& q, float floor2) {
-  return any_apart(left, right, 0, p, q, floor2) || any_apart(left, right, kLane, p, q, floor2);
+TEGOTAE_WIDE std::uint32_t across_edges(const Across& left, const Across& right,
+                                        const std::array<std::array<float, 3>, 6>& p,
+                                        const std::array<std::array<float, 3>, 3>& q, float floor2) {
+  const std::uint32_t one = one_apart(left, right, 0, p, q, floor2);
+  return one < kAcross ? one : one_apart(left, right, kLane, p, q, floor2);
 }
-
-typedef std::array<float, 3> Float3;
 
 Float3 difference(const Float3& x, const Float3& y) {
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
 
-/// Of unit length, about; zero for a face without one. Any direction will do that keeps faces apart.
-Float3 normal_of(const Float3& p, const Float3& q, const Float3& r) {
-  const Float3 x = difference(q, p), y = difference(r, p);
+/// Across both, of unit length, about; zero where there is no such direction. Any will do that keeps faces apart.
+Float3 across(const Float3& x, const Float3& y) {
   const Float3 n = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
   const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   if (!(square > std::numeric_limits<float>::min())) return {0, 0, 0};
   const float scale = 1 / std::sqrt(square);
   return {scale * n[0], scale * n[1], scale * n[2]};
+}
+
+Float3 normal_of(const Float3& p, const Float3& q, const Float3& r) {
+  return across(difference(q, p), difference(r, p));
 }
 
 Float3 in_single(const Vec3& v) {
@@ -351,8 +384,9 @@ void BesideFaces::set(const FaceBlocks& blocks, const std::vector<FaceLanes>& la
   }
 }
 
-std::uint32_t BesideFaces::next_not_kept_apart(const MovedLanes& a, std::uint32_t k, std::uint32_t& at) const noexcept {
-  return next_below(OneFace{a, k}, boxes_.data(), blocks_.data(), count_, at);
+std::uint32_t BesideFaces::next_not_kept_apart(const MovedLanes& a, std::uint32_t k, const Float3& guess,
+                                               std::uint32_t& at) const noexcept {
+  return next_below(OneFace{a, k}, guess, boxes_.data(), blocks_.data(), count_, at);
 }
 
 std::uint32_t not_kept_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, const Vec3& shift,
@@ -365,7 +399,7 @@ std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& 
 }
 
 bool edges_keep_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, std::uint32_t k_b, const Vec3& shift,
-                      double floor) noexcept {
+                      double floor, Float3& direction) noexcept {
   std::array<Float3, 6> p;
   std::array<Float3, 3> q;
   Float3 normal_a, normal_b;
@@ -393,7 +427,10 @@ bool edges_keep_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, 
   }
   add(normal_a, normal_b);
   const float least = floor_in_single(a.size, b, shift, floor);
-  return across_edges(left, right, p, q, least * least);
+  const std::uint32_t one = across_edges(left, right, p, q, least * least);
+  if (one == kAcross) return false;
+  direction = across({left[0][one], left[1][one], left[2][one]}, {right[0][one], right[1][one], right[2][one]});
+  return true;
 }
 
 }  // namespace tegotae

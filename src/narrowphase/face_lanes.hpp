@@ -65,8 +65,10 @@ class BesideFaces {
   void set(const FaceBlocks& blocks, const std::vector<FaceLanes>& lanes, const std::uint32_t* found,
            std::uint32_t count, const MovedLanes& a, const Vec3& origin, double floor) noexcept;
   /// Goes on from block `at`, to the next of which not all faces are kept apart from face `k` of `a` as by
-  /// not_kept_apart(): a bit for each of them. None: all are.
-  std::uint32_t next_not_kept_apart(const MovedLanes& a, std::uint32_t k, std::uint32_t& at) const noexcept;
+  /// not_kept_apart() or by a direction that is likely to, of no more than unit length: a bit for each of them. None:
+  /// all are.
+  std::uint32_t next_not_kept_apart(const MovedLanes& a, std::uint32_t k, const std::array<float, 3>& guess,
+                                    std::uint32_t& at) const noexcept;
 
  private:
   std::array<BoxLanes, kMost / BoxLanes::kBoxes> boxes_;  ///< grown by what is to be kept
@@ -83,8 +85,8 @@ std::uint32_t not_kept_apart(const MovedLanes& a, std::uint32_t k, const FaceLan
 std::uint32_t not_kept_apart(const MovedBox& a, const FaceLanes& b, const Vec3& shift, double floor) noexcept;
 
 /// Whether a direction across two edges, or across an edge in the plane of its face, keeps face `k_b` of `b` apart from
-/// face `k` of `a` in the same way.
+/// face `k` of `a` in the same way. To `direction` then, of unit length.
 bool edges_keep_apart(const MovedLanes& a, std::uint32_t k, const FaceLanes& b, std::uint32_t k_b, const Vec3& shift,
-                      double floor) noexcept;
+                      double floor, std::array<float, 3>& direction) noexcept;
 
 }  // namespace tegotae

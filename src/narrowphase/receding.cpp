@@ -20,6 +20,10 @@ bool PassingPoints::recedes(const NormalCone& cone, const Vec3& at, double radiu
   return cone.least(v) > dr_.norm() * (radius + distance_) + center_ + slack;
 }
 
+bool PassingPoints::meets(const NormalCone& cone, const Vec3& at) const {
+  return cone.turned().least(sign_ * (dp_ + dr_.cross(at))) > 0;
+}
+
 /// A's point at x has the velocity dp + dr × (x − c), c = c0 + s dp up to what the other reading leaves.
 PassingPoints PassingPoints::seen_from_b(const Sweep& w) {
   PassingPoints out;

@@ -15,6 +15,8 @@ class PassingPoints {
   /// Whether all faces under the cone recede from all points within `radius` of `at`, during the whole motion and with
   /// that during each first part of it. `at` is from A's center of mass at the start, in the faces' frame.
   bool recedes(const NormalCone& cone, const Vec3& at, double radius) const;
+  /// Whether all faces under the cone approach what is at `at`: it is not worth asking of each whether it recedes.
+  bool meets(const NormalCone& cone, const Vec3& at) const;
 
  private:
   Vec3 dp_ = Vec3::Zero(), dr_ = Vec3::Zero();

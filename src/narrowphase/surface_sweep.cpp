@@ -349,10 +349,16 @@ bool SurfaceSweep::recedes(const Node& node) const {
                           kRadiusSlack * slab.half.norm());
 }
 
+/// Whether no face of A's block recedes, by what is known of them together.
+bool SurfaceSweep::none_recedes(std::uint32_t block) const {
+  const Slab& slab = surface_a_->slabs.slab(0, block);
+  return passing_.meets(seen(cones().nodes[0][block]), slab.center + offset_a_);
+}
+
 /// Whether all faces of A's block recede from the part, and so need not be looked at.
 bool SurfaceSweep::all_recede(std::uint32_t block) {
   skipped_ = 0;
-  if (!may_recede()) return false;
+  if (!may_recede() || none_recedes(block)) return false;
   const std::uint32_t faces = surface_a_->blocks.faces(block);
   for (std::uint32_t k = 0; k < faces; ++k) {
     const std::uint32_t face = surface_a_->blocks.face(block, k);
@@ -426,7 +432,7 @@ void SurfaceSweep::look_less_far() {
 void SurfaceSweep::look_at_face(std::uint32_t k) {
   if ((skipped_ >> k & 1) != 0) return;
   for (std::uint32_t at = 0; at < beside_.count(); ++at) {
-    const std::uint32_t open = beside_.next_not_kept_apart(moved_, k, at);
+    const std::uint32_t open = beside_.next_not_kept_apart(moved_, k, across_, at);
     if (open != 0 && !look_at_pairs(k, found_[at], open)) return;
   }
 }
@@ -436,7 +442,7 @@ bool SurfaceSweep::look_at_pairs(std::uint32_t k, std::uint32_t block, std::uint
   const FaceLanes& b = surface_b().lanes[block];
   for (std::uint32_t lane = 0; open != 0; ++lane, open >>= 1) {
     if ((open & 1) == 0 || lane >= surface_b().blocks.faces(block)) continue;
-    if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_)) continue;
+    if (edges_keep_apart(moved_, k, b, lane, middle_ - b.origin, floor_, across_)) continue;
     const std::uint32_t face = surface_a_->blocks.face(block_, k), face_b = surface_b().blocks.face(block, lane);
     const Faces faces = faces_of(face, face_b);
     if (keeps_apart(faces)) {

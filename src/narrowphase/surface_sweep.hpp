@@ -119,6 +119,7 @@ class SurfaceSweep {
   void walk_beside(const Node& node, std::uint32_t level);
   void walk(const AxisBox& box, std::uint32_t level);
   bool recedes(const Node& node) const;
+  bool none_recedes(std::uint32_t block) const;
   bool all_recede(std::uint32_t block);
   void place(std::uint32_t block);
   AxisBox face_box(std::uint32_t k) const;
@@ -194,6 +195,7 @@ class SurfaceSweep {
   std::uint32_t tops_count_ = 0;  ///< none: from the root
   std::array<std::uint32_t, kBeside> found_;
   BesideFaces beside_;                                  ///< of found_, beside A's block
+  std::array<float, 3> across_{};                       ///< a direction that kept two faces apart, in B's axes
   MovingPlane last_plane_{Vec3::Zero(), Vec3::Zero()};  ///< that kept two faces apart
 };
 

@@ -199,9 +199,20 @@ TEST_CASE("slabs hold the faces of their blocks, and blocks that they keep apart
   CHECK(parted > 2000);
 }
 
+/// How far (m) a face is kept from another by a direction, where it comes from and where it goes to.
+double gap_along(const Vec3& n, const Corners& from, const Corners& to, const Corners& other) {
+  using AlongOne = Eigen::Matrix<double, 1, 1>;
+  Eigen::AlignedBox1d a, b;
+  for (std::size_t c = 0; c < 3; ++c) {
+    a.extend(AlongOne(n.dot(from[c]))).extend(AlongOne(n.dot(to[c])));
+    b.extend(AlongOne(n.dot(other[c])));
+  }
+  return std::max(a.min()[0] - b.max()[0], b.min()[0] - a.max()[0]);
+}
+
 TEST_CASE("faces that are kept apart do not meet on their straight ways, however small or far from the origin") {
   std::mt19937 rng(32);
-  int apart = 0, by_edges = 0, wrong = 0, near = 0;
+  int apart = 0, by_edges = 0, wrong = 0, near = 0, not_along = 0;
   for (int n = 0; n < 6000; ++n) {
     const double size = std::pow(10.0, uniform(rng, -4, -1));
     const Vec3 far = random_in_ball(rng, 2);
@@ -231,11 +242,18 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
     const Vec3 shift = origin - lanes.origin;
     const std::uint32_t open = not_kept_apart(moved, 0, lanes, shift, kClearance);
     for (std::uint32_t k = 0; k < blocks.faces(0); ++k) {
-      const bool planes = (open >> k & 1) == 0, edges = edges_keep_apart(moved, 0, lanes, k, shift, kClearance);
+      std::array<float, 3> direction{};
+      const bool planes = (open >> k & 1) == 0,
+                 edges = edges_keep_apart(moved, 0, lanes, k, shift, kClearance, direction);
       apart += planes;
       by_edges += edges && !planes;
       if (!planes && !edges) continue;
       const Corners b = corners(*mesh, blocks.face(0, k), Pose{Quat::Identity(), -tree.origin()});
+      if (edges) {
+        const Vec3 told(direction[0], direction[1], direction[2]);
+        CHECK(std::abs(told.norm() - 1) < 1e-5);
+        not_along += gap_along(told, from, to, b) < 0.9 * kClearance;
+      }
       for (int i = 0; i <= 8; ++i) {
         Corners a;
         for (std::size_t c = 0; c < 3; ++c) a[c] = from[c] + (i / 8.0) * (to[c] - from[c]);
@@ -247,13 +265,14 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
   }
   CHECK(wrong == 0);
   CHECK(near == 0);
+  CHECK(not_along == 0);
   CHECK(apart > 20000);
   CHECK(by_edges > 500);
 }
 
 TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
-  std::mt19937 rng(39);
-  std::size_t near = 0, most = 0;
+  std::mt19937 rng(39), rng_guess(40);
+  std::size_t near = 0, most = 0, guessed = 0;
   for (int n = 0; n < 400; ++n) {
     const auto mesh = soup(rng, 300, 0.05, uniform(rng, 0.005, 0.05));
     const PatchTree tree(mesh);
@@ -278,20 +297,35 @@ TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
     const Vec3 origin_a = FaceLanes(tree_a, blocks_a, 0).origin;
     for (std::uint32_t k = 0; k < blocks_a.faces(0); ++k) {
       Eigen::AlignedBox3d way;
+      Corners from, to;
       for (int c = 0; c < 3; ++c) {
         const Vec3 at = start.R * (tree_a.corner(blocks_a.face(0, k), c) - tree_a.origin() - origin_a) + origin;
+        from[static_cast<std::size_t>(c)] = at;
+        to[static_cast<std::size_t>(c)] = at + end.t;
         way.extend(at).extend(at + end.t);
       }
+      const Vec3 guess = random_in_ball(rng_guess, 1).normalized();
+      const std::array<float, 3> guessed_n = {static_cast<float>(guess.x()), static_cast<float>(guess.y()),
+                                              static_cast<float>(guess.z())};
       std::map<std::uint32_t, std::uint32_t> told;
       for (std::uint32_t at = 0; at < beside.count(); ++at)
-        if (const std::uint32_t open = beside.next_not_kept_apart(moved, k, at); open != 0) told[at] = open;
+        if (const std::uint32_t open = beside.next_not_kept_apart(moved, k, guessed_n, at); open != 0) told[at] = open;
       for (std::uint32_t i = 0; i < found.size(); ++i) {
         const FaceLanes& b = lanes[found[i]];
-        const std::uint32_t open = not_kept_apart(moved, k, b, origin - b.origin, kClearance);
+        std::uint32_t open = not_kept_apart(moved, k, b, origin - b.origin, kClearance);
         near += open != 0;
-        if (told.count(i) != 0) {
-          CHECK(told.at(i) == open);
-        } else if (open != 0) {
+        const std::uint32_t known = told.count(i) != 0 ? told.at(i) : 0;
+        CHECK((known & ~open) == 0);
+        // Places without a face repeat the last one.
+        open &= ~known & ((1U << blocks.faces(found[i])) - 1);
+        for (std::uint32_t f = 0; f < blocks.faces(found[i]); ++f) {
+          if ((open >> f & 1) == 0) continue;
+          const Corners other = corners(*mesh, blocks.face(found[i], f), Pose{Quat::Identity(), -tree.origin()});
+          if (gap_along(guess, from, to, other) < 0.999 * kClearance) continue;
+          open &= ~(1U << f);
+          ++guessed;
+        }
+        if (open != 0) {
           // Boxes are told apart with less rounding.
           Eigen::AlignedBox3d box;
           for (std::uint32_t f = 0; f < blocks.faces(found[i]); ++f)
@@ -303,6 +337,7 @@ TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
     }
   }
   CHECK(near > 3000);
+  CHECK(guessed > 200);
   CHECK(most > 8);
 }
 
