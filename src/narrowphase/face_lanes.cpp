@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "narrowphase/box_overlap.hpp"
@@ -21,7 +20,7 @@ constexpr float kBoxError = 1e-6F;
 /// Conditions on vectors longer than a register would go number by number.
 constexpr std::uint32_t kLane = 8;
 typedef float Lane __attribute__((vector_size(kLane * sizeof(float)), may_alias));
-typedef std::int32_t LaneBits __attribute__((vector_size(kLane * sizeof(float)), may_alias));
+typedef EightBits LaneBits;
 static_assert(kBlockFaces == 2 * kLane);
 
 typedef std::array<float, 3> Float3;
@@ -44,7 +43,7 @@ TEGOTAE_INLINE Lane lesser(Lane a, Lane b) {
 TEGOTAE_INLINE Lane greater(Lane a, Lane b) {
   return a > b ? a : b;
 }
-TEGOTAE_INLINE Lane dot(const Lanes3& a, const std::array<float, 3>& b) {
+TEGOTAE_INLINE Lane dot(const Lanes3& a, const Float3& b) {
   return a.x * b[0] + a.y * b[1] + a.z * b[2];
 }
 
@@ -86,8 +85,7 @@ struct OneBox {
 
 /// The greatest of the gaps along the axes between `a` and eight faces of `b`.
 template <typename One>
-TEGOTAE_INLINE Lane axis_gaps(const One& a, const FaceLanes& b, std::uint32_t first,
-                              const std::array<float, 3>& shift) {
+TEGOTAE_INLINE Lane axis_gaps(const One& a, const FaceLanes& b, std::uint32_t first, const Float3& shift) {
   Lane gap = greater(load(b.low[0], first) - (a.high(0) + shift[0]), (a.low(0) + shift[0]) - load(b.high[0], first));
   for (std::size_t i = 1; i < 3; ++i) {
     gap = greater(gap, load(b.low[i], first) - (a.high(i) + shift[i]));
@@ -103,9 +101,8 @@ TEGOTAE_INLINE Lane along_corner(const Lanes3& n, const One& a, std::size_t c) {
 
 /// The same along the normals of both.
 template <typename One>
-TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t first,
-                               const std::array<float, 3>& shift) {
-  const std::array<float, 3> along = {a.normal(0), a.normal(1), a.normal(2)};
+TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t first, const Float3& shift) {
+  const Float3 along = {a.normal(0), a.normal(1), a.normal(2)};
   const float up = along[0] * shift[0] + along[1] * shift[1] + along[2] * shift[2];
   const Lane p = dot(load3(b.corner[0], first), along), q = dot(load3(b.corner[1], first), along),
              r = dot(load3(b.corner[2], first), along);
@@ -124,12 +121,12 @@ TEGOTAE_INLINE Lane plane_gaps(const One& a, const FaceLanes& b, std::uint32_t f
 
 /// A direction that may keep a face apart from others, and where the face is along it.
 struct Along {
-  std::array<float, 3> n;
+  Float3 n;
   float low, high;
 };
 
 template <typename One>
-TEGOTAE_INLINE Along along(const std::array<float, 3>& n, const One& a) {
+TEGOTAE_INLINE Along along(const Float3& n, const One& a) {
   Along out{n, 0, 0};
   for (std::size_t c = 0; c < One::kCorners; ++c) {
     const float x = n[0] * a.corner(c, 0) + n[1] * a.corner(c, 1) + n[2] * a.corner(c, 2);
@@ -140,27 +137,18 @@ TEGOTAE_INLINE Along along(const std::array<float, 3>& n, const One& a) {
 }
 
 /// The gap along it to eight faces of `b`.
-TEGOTAE_INLINE Lane gaps_along(const Along& a, const FaceLanes& b, std::uint32_t first,
-                               const std::array<float, 3>& shift) {
+TEGOTAE_INLINE Lane gaps_along(const Along& a, const FaceLanes& b, std::uint32_t first, const Float3& shift) {
   const float up = a.n[0] * shift[0] + a.n[1] * shift[1] + a.n[2] * shift[2];
   const Lane p = dot(load3(b.corner[0], first), a.n), q = dot(load3(b.corner[1], first), a.n),
              r = dot(load3(b.corner[2], first), a.n);
   return greater((a.low + up) - greater(greater(p, q), r), lesser(lesser(p, q), r) - (a.high + up));
 }
 
-/// All bits of eight numbers in one.
-TEGOTAE_INLINE std::uint32_t together(const LaneBits& bits) {
-  std::array<std::uint64_t, kLane / 2> in_pairs;
-  std::memcpy(in_pairs.data(), &bits, sizeof bits);
-  const std::uint64_t pair = in_pairs[0] | in_pairs[1] | in_pairs[2] | in_pairs[3];
-  return static_cast<std::uint32_t>(pair | pair >> 32);
-}
-
 /// A bit for each face of `b` that has less than `floor`. Both halves go together: one by one, as many branches would
 /// be guessed wrongly again.
 template <typename One>
-TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const Along& guess, const FaceLanes& b,
-                                        const std::array<float, 3>& shift, float floor) {
+TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const Along& guess, const FaceLanes& b, const Float3& shift,
+                                        float floor) {
   LaneBits one = (LaneBits)(axis_gaps(a, b, 0, shift) < floor),
            other = (LaneBits)(axis_gaps(a, b, kLane, shift) < floor);
   if (together(one | other) == 0) return 0;
@@ -173,15 +161,15 @@ TEGOTAE_INLINE std::uint32_t gaps_below(const One& a, const Along& guess, const 
   return together((one & kOf) | (other & (kOf << kLane)));
 }
 
-TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
+TEGOTAE_WIDE std::uint32_t below(const OneFace& a, const FaceLanes& b, const Float3& shift, float floor) {
   return gaps_below(a, Along{}, b, shift, floor);
 }
 
-TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const std::array<float, 3>& shift, float floor) {
+TEGOTAE_WIDE std::uint32_t below(const OneBox& a, const FaceLanes& b, const Float3& shift, float floor) {
   return gaps_below(a, Along{}, b, shift, floor);
 }
 
-TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const std::array<float, 3>& direction, const BoxLanes* boxes,
+TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const Float3& direction, const BoxLanes* boxes,
                                       const BesideFaces::Block* blocks, std::uint32_t count, std::uint32_t& at) {
   const AxisBox box = {{a.low(0), a.low(1), a.low(2)}, {a.high(0), a.high(1), a.high(2)}};
   const Along guess = along(direction, a);
@@ -198,8 +186,8 @@ TEGOTAE_WIDE std::uint32_t next_below(const OneFace& a, const std::array<float, 
 
 /// A Placement in single precision.
 struct Moved {
-  std::array<std::array<float, 3>, 3> R;  ///< rows
-  std::array<float, 3> t;
+  std::array<Float3, 3> R;  ///< rows
+  Float3 t;
 };
 
 Moved in_single(const Placement& at) {
@@ -244,8 +232,7 @@ static_assert(kAcross == kBlockFaces);
 
 /// One of eight directions along which there is at least `floor`; none: kAcross.
 TEGOTAE_INLINE std::uint32_t one_apart(const Across& left, const Across& right, std::uint32_t first,
-                                       const std::array<std::array<float, 3>, 6>& p,
-                                       const std::array<std::array<float, 3>, 3>& q, float floor2) {
+                                       const std::array<Float3, 6>& p, const std::array<Float3, 3>& q, float floor2) {
   const Lanes3 l = load3(left, first), r = load3(right, first);
   const Lanes3 n = {l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
   Lane low = dot(n, p[0]), high = low;
@@ -266,9 +253,8 @@ TEGOTAE_INLINE std::uint32_t one_apart(const Across& left, const Across& right, 
   return first + k;
 }
 
-TEGOTAE_WIDE std::uint32_t across_edges(const Across& left, const Across& right,
-                                        const std::array<std::array<float, 3>, 6>& p,
-                                        const std::array<std::array<float, 3>, 3>& q, float floor2) {
+TEGOTAE_WIDE std::uint32_t across_edges(const Across& left, const Across& right, const std::array<Float3, 6>& p,
+                                        const std::array<Float3, 3>& q, float floor2) {
   const std::uint32_t one = one_apart(left, right, 0, p, q, floor2);
   return one < kAcross ? one : one_apart(left, right, kLane, p, q, floor2);
 }
