@@ -3,7 +3,7 @@
 #   format        clang-format, nothing is changed
 #   asan          all tests but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer, built by clang with
 #                 warnings as errors; --quick: the tests of what reads bytes and indexes memory
-#   tsan          servo, shared memory, device, recorder and view with ThreadSanitizer
+#   tsan          servo, shared memory, device, recorder, view and helper threads with ThreadSanitizer
 #   rtsan         servo and device with RealtimeSanitizer (clang 20 or newer)
 #   headers       every public header compiles alone with the newest clang and the newest standard library that are here
 #   clang         library, programs and tests with clang, warnings as errors (nothing is optimized)
@@ -80,7 +80,7 @@ check_asan() {
 }
 
 check_tsan() {
-  local tests=(servo device record view change)
+  local tests=(servo device record view change sweep_helpers helper_threads)
   if ! runs_here "${CXX:-c++}" -fsanitize=thread; then
     skipped="programs with ThreadSanitizer do not run here"
     return

@@ -24,6 +24,14 @@ constexpr double kMaxShift = 3;
 // Share of the tick's budget for the test whether a pair that touched at the start has separated.
 constexpr double kPollShare = 0.25;
 
+// Parts of fewer triangles need no helpers.
+constexpr std::size_t kHelpedFaces = 4096;
+
+int helpers_of(const Part& held, const ContactSettings& settings) {
+  if (deadline_after(0, settings.tick_budget) == kNoDeadline || held.mesh->triangles.size() < kHelpedFaces) return 0;
+  return *settings.helper_threads;
+}
+
 /// Meshes and poses of the fixed parts, and of what stands in for some of them.
 struct FixedParts {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;
@@ -44,7 +52,8 @@ std::unique_ptr<MotionCheck> make_check(const Part& held, const FixedParts& fixe
                                         const Vec3& center, double radius, const std::vector<std::uint32_t>& left_out,
                                         ProofEffort effort) {
   if (settings.narrowphase != NarrowPhase::fcl)
-    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses, left_out, effort);
+    return std::make_unique<PatchMotionCheck>(held.mesh, center, radius, fixed.meshes, fixed.poses, left_out, effort,
+                                              helpers_of(held, settings));
   std::vector<const TriangleMesh*> meshes;
   for (const auto& mesh : fixed.meshes) meshes.push_back(mesh.get());
   return std::make_unique<FclMotionCheck>(*held.mesh, center, radius, meshes, fixed.poses, *settings.l_0);

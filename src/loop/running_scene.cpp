@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "broadphase/bounding_spheres.hpp"
+#include "core/usable_processors.hpp"
 #include "core/valid_pose.hpp"
 #include "loop/contact_loop.hpp"
 #include "loop/friction_pairs.hpp"
@@ -23,6 +24,8 @@ namespace {
 constexpr double kLMinShare = 8e-4, kMinLMin = 4e-6, kMaxLMin = 2e-5;
 // Back-off in units of l_min.
 constexpr double kDefaultL0 = 10;
+// Helper threads at most where their number is not set: the machine has other work, too.
+constexpr int kDefaultHelpers = 7;
 
 CouplingSettings fitted(const Scene& scene, const MassProperties& mass) {
   CouplingSettings coupling = scene.coupling;
@@ -62,6 +65,9 @@ ContactSettings completed(ContactSettings s, double radius) {
   check_not_negative("impulse.micro_speed", s.impulse.micro_speed);
   check_not_negative("penalty.damping", s.penalty.damping);
   require(s.tick_budget > 0, "tick_budget", " must be positive", s.tick_budget);
+  if (!s.helper_threads) s.helper_threads = std::min(usable_processors() - 1, kDefaultHelpers);
+  require(*s.helper_threads >= 0 && *s.helper_threads <= ContactSettings::kMostHelpers, "helper_threads",
+          " must be from 0 to 64", *s.helper_threads);
   check_not_negative("touch_tolerance", s.touch_tolerance);
   return s;
 }

@@ -112,7 +112,7 @@ double mean_edge(const TriangleMesh& mesh) {
 PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed,
                                    std::vector<Pose> poses, const std::vector<std::uint32_t>& left_out,
-                                   ProofEffort effort)
+                                   ProofEffort effort, int helpers)
     : center_(center),
       radius_(radius),
       held_(cached_patch_tree(held)),
@@ -156,9 +156,9 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
   front_of_.assign(fixed.size(), kNobody);
   const std::size_t cells = kMinCells + kCellsPerPart * fixed.size() +
                             static_cast<std::size_t>(kCellsPerFace * static_cast<double>(held->triangles.size()));
-  if (effort_ == ProofEffort::full && held->triangles.size() <= SurfaceSweep::kMostFaces) {
+  if (effort_ == ProofEffort::full && held->triangles.size() <= SweepModel::kMostFaces) {
     backing_ = Backing::of(held_, held_body_.facing.get());
-    sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, backing_, kMaxBlocking);
+    sweep_ = std::make_unique<SurfaceSweep>(held_, center_, parts, held_body_.facing, backing_, kMaxBlocking, helpers);
   }
   cells_ =
       std::make_unique<CellFront>(held_, center_, std::move(parts), static_cast<std::uint32_t>(cells), kMaxBlocking);

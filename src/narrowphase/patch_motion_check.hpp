@@ -36,10 +36,11 @@ enum class ProofEffort : std::uint8_t {
 class PatchMotionCheck final : public MotionCheck {
  public:
   /// `fixed` and `poses` by part number; hierarchies are built once for each distinct mesh. `radius` of A about its
-  /// center of mass `center` (m, file frame). Parts in `left_out` may be left out of begin() although they are near.
+  /// center of mass `center` (m, file frame). Parts in `left_out` may be left out of begin() although they are near. So
+  /// many `helpers` look at motions as a whole besides (see SurfaceSweep).
   PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& held, const Vec3& center, double radius,
                    const std::vector<std::shared_ptr<const TriangleMesh>>& fixed, std::vector<Pose> poses,
-                   const std::vector<std::uint32_t>& left_out, ProofEffort effort = ProofEffort::full);
+                   const std::vector<std::uint32_t>& left_out, ProofEffort effort = ProofEffort::full, int helpers = 0);
 
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   void trust_start() noexcept override { trusted_ = true; }

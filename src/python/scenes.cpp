@@ -142,6 +142,10 @@ void bind_contact_settings(nb::class_<Scene>& c) {
       c, "tick_budget", [](Scene & s) -> auto& { return s.contact.tick_budget; },
       "s: time that a tick may take in real time; the next tick does what remains. Has no effect in simulated time.");
   number(
+      c, "helper_threads", [](Scene & s) -> auto& { return s.contact.helper_threads; },
+      "Threads, 0 to 64, that share the work of a tick in real time where thousands of triangles lie on others. None:\n"
+      "one fewer than the processors that the process may use, at most 7. Has no effect in simulated time.");
+  number(
       c, "touch_tolerance", [](Scene & s) -> auto& { return s.contact.touch_tolerance; },
       "m: parts with a gap or an overlap of up to this at the start touch.");
   number(

@@ -146,6 +146,7 @@ void read_contact(const TomlTable& t, ContactSettings& s) {
   if (t.has("l_0")) s.l_0 = t.positive("l_0", 0);
   s.density = t.positive("density", s.density);
   s.tick_budget = t.positive("tick_budget", s.tick_budget);
+  if (t.has("helper_threads")) s.helper_threads = t.whole("helper_threads", 0, ContactSettings::kMostHelpers);
   s.resolver = resolver_kind(one_of(t, "resolver", to_string(s.resolver), resolver_names()));
   s.narrowphase = one_of(t, "narrowphase", "patch", {"patch", "fcl"}) == "fcl" ? NarrowPhase::fcl : NarrowPhase::patch;
   s.touch_tolerance = t.at_least_zero("touch_tolerance", s.touch_tolerance);
@@ -252,8 +253,8 @@ SceneFile load_scene(const std::string& path, const SceneOptions& options) {
   std::vector<std::string> files = {path};
   Scene scene;
   // Settings first: a mistake in them need not wait for large meshes.
-  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "touch_tolerance",
-                                     "initial_overlap", "density", "impulse", "penalty"}),
+  read_contact(top.table("contact", {"l_min", "l_0", "resolver", "narrowphase", "tick_budget", "helper_threads",
+                                     "touch_tolerance", "initial_overlap", "density", "impulse", "penalty"}),
                scene.contact);
   const TomlTable coupling =
       top.table("coupling", {"stiffness", "damping", "torsional_stiffness", "torsional_damping"});

@@ -152,6 +152,13 @@ double TomlTable::at_least_zero(const char* key, double fallback) const {
   return value;
 }
 
+int TomlTable::whole(const char* key, int least, int most) const {
+  const double value = number(key, -1);
+  if (value >= least && value <= most && value == std::floor(value)) return static_cast<int>(value);
+  fail(key, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) + " (it is " +
+                shown(value) + ")");
+}
+
 std::vector<double> TomlTable::numbers(const char* key, std::size_t least, std::size_t most) const {
   const toml::node* node = table_.get(key);
   const toml::array* array = node ? node->as_array() : nullptr;

@@ -32,6 +32,7 @@ class TomlTable {
   double number(const char* key, double fallback) const;    ///< finite
   double positive(const char* key, double fallback) const;  ///< finite, > 0
   double at_least_zero(const char* key, double fallback) const;
+  int whole(const char* key, int least, int most) const;  ///< required
   /// `count` finite numbers.
   std::vector<double> numbers(const char* key, std::size_t count) const { return numbers(key, count, count); }
   std::vector<double> numbers(const char* key, std::size_t least, std::size_t most) const;

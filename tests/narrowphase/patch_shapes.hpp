@@ -103,6 +103,14 @@ inline MeshPtr knot(double R, double r, int triangles) {
   return mesh;
 }
 
+/// One face of a mesh.
+inline MeshPtr single(const TriangleMesh& m, std::uint32_t face) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const std::uint32_t v : m.triangles[face]) mesh->vertices.push_back(m.vertices[v]);
+  mesh->triangles.push_back({0, 1, 2});
+  return mesh;
+}
+
 /// Box with the half extents `h`, 12 triangles.
 inline MeshPtr box(const Vec3& h) {
   auto mesh = std::make_shared<TriangleMesh>();

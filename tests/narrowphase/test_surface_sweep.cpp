@@ -59,13 +59,6 @@ Corners corners(const TriangleMesh& m, std::uint32_t face, const Pose& X) {
   return {X * m.vertices[t[0]], X * m.vertices[t[1]], X * m.vertices[t[2]]};
 }
 
-MeshPtr single(const TriangleMesh& m, std::uint32_t face) {
-  auto mesh = std::make_shared<TriangleMesh>();
-  for (const std::uint32_t v : m.triangles[face]) mesh->vertices.push_back(m.vertices[v]);
-  mesh->triangles.push_back({0, 1, 2});
-  return mesh;
-}
-
 /// An upper bound of the distance of two triangles: of many points of both.
 double nearly(const Corners& a, const Corners& b, int n) {
   const auto at = [n](const Corners& t, int i, int k) -> Vec3 {

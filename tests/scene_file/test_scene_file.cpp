@@ -112,6 +112,7 @@ position = [1, 2.5, -3]
 l_min = 1e-6
 l_0 = 2e-6
 resolver = "lp"
+helper_threads = 5
 touch_tolerance = 3e-6
 initial_overlap = "ignore"
 density = 7800
@@ -152,6 +153,7 @@ hand = { stiffness = 11, damping = 12, torsional_stiffness = 13, torsional_dampi
   CHECK(contact.l_0 == 2e-6);
   CHECK(contact.resolver == ResolverKind::lp);
   CHECK(contact.density == 7800);
+  CHECK(contact.helper_threads == 5);
   CHECK(contact.touch_tolerance == 3e-6);
   CHECK(contact.initial_overlap == InitialOverlap::ignore);
   const CouplingSettings& coupling = file.scene.coupling;
@@ -282,6 +284,11 @@ TEST_CASE("what is wrong is named with file, line and key", "[scene_file]") {
        "scene.toml:11: part.rpy_deg: "},
       {good + "[contact]\nl_min = 0\n", "scene.toml:13: contact.l_min: must be greater than zero"},
       {good + "[contact]\nl_0 = -1e-6\n", "scene.toml:13: contact.l_0: must be greater than zero"},
+      {good + "[contact]\nhelper_threads = -1\n",
+       "scene.toml:13: contact.helper_threads: must be a whole number from 0 to 64 (it is -1)"},
+      {good + "[contact]\nhelper_threads = 1.5\n", "scene.toml:13: contact.helper_threads: must be a whole number"},
+      {good + "[contact]\nhelper_threads = 65\n", "scene.toml:13: contact.helper_threads: must be a whole number"},
+      {good + "[contact]\nhelper_threads = true\n", "scene.toml:13: contact.helper_threads: must be a number"},
       {good + "[contact]\ndensity = inf\n", "scene.toml:13: contact.density: must be finite"},
       {good + "[contact]\nresolver = \"magic\"\n", "scene.toml:13: contact.resolver: "},
       {good + "[contact.impulse]\nrestitution = 1.5\n",

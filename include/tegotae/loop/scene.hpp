@@ -69,6 +69,11 @@ struct ContactSettings {
   /// Time (s) that a tick of HapticLoop::step may take; the next tick does what remains. Infinite: only the amount of
   /// work bounds a tick, so that the same pen gives the same motion bit for bit on any machine.
   double tick_budget = 0.8e-3;
+  static constexpr int kMostHelpers = 64;
+  /// Threads (0 to kMostHelpers) that share the work of proving motions where thousands of the held part's triangles
+  /// lie on other parts. Otherwise they sleep, and where `tick_budget` is infinite there are none. They run at the
+  /// priority of ordinary programs. Not set: one fewer than the processors that the process may use, at most 7.
+  std::optional<int> helper_threads = {};
   double touch_tolerance = 10e-6;  ///< m: parts with a gap or an overlap of up to this at the start touch
   InitialOverlap initial_overlap = InitialOverlap::refuse;  ///< treatment of deeper overlaps at the start
   /// Density of the held part, kg/m³. It gives the mass for the weight and for "impulse"; for "lp" only the

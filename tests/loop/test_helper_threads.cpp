@@ -1,0 +1,127 @@
+// Threads that share the work of a tick: how many there are, when, and that nothing else changes.
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "alloc_guard.hpp"
+#include "bodies.hpp"
+#include "catch.hpp"
+#include "fcl_oracle.hpp"
+#include "tegotae/core/error.hpp"
+#include "tegotae/loop/haptic_loop.hpp"
+
+using namespace tegotae;
+using namespace tegotae::test;
+
+namespace {
+
+/// Open sheet of n × n fields of 0.1 m with waves both ways.
+std::shared_ptr<const TriangleMesh> waves(int n) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (int i = 0; i <= n; ++i) {
+    for (int k = 0; k <= n; ++k) {
+      const double x = 0.1 * i / n - 0.05, y = 0.1 * k / n - 0.05;
+      mesh->vertices.emplace_back(x, y, 0.004 * std::sin(125 * x) * std::sin(125 * y));
+    }
+  }
+  const auto at = [n](int i, int k) { return static_cast<std::uint32_t>(i * (n + 1) + k); };
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      mesh->triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+      mesh->triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+    }
+  }
+  return mesh;
+}
+
+Scene sheet_over_die(int n, std::optional<int> helpers) {
+  Scene scene;
+  scene.contact.helper_threads = helpers;
+  scene.parts = {{"die", waves(n + 13), Pose()}, {"sheet", waves(n), {Quat::Identity(), {0, 0, 0.002}}, true}};
+  return scene;
+}
+
+/// Threads of this process.
+std::ptrdiff_t threads() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return std::distance(begin(tasks), end(tasks));
+}
+
+}  // namespace
+
+TEST_CASE("there are as many helpers as are asked for, where a tick has an end and the part is large") {
+  const std::ptrdiff_t before = threads();
+  {
+    HapticLoop loop(sheet_over_die(60, 3));
+    CHECK(threads() == before + 3);
+    CHECK(loop.contact().helper_threads == 3);
+  }
+  CHECK(threads() == before);
+  {
+    const HapticLoop none(sheet_over_die(60, 0)), small(sheet_over_die(10, 3));
+    CHECK(threads() == before);
+    Scene scene = sheet_over_die(60, 3);
+    scene.contact.tick_budget = INFINITY;
+    const HapticLoop virtual_time(scene);
+    CHECK(threads() == before);
+  }
+  const HapticLoop loop(sheet_over_die(60, {}));
+  REQUIRE(loop.contact().helper_threads.has_value());
+  CHECK(*loop.contact().helper_threads <= 7);
+  CHECK(*loop.contact().helper_threads < static_cast<int>(std::thread::hardware_concurrency()));
+  CHECK(threads() == before + *loop.contact().helper_threads);
+}
+
+TEST_CASE("a number of helpers that cannot be is refused") {
+  for (const int helpers : {-1, ContactSettings::kMostHelpers + 1}) {
+    try {
+      const HapticLoop loop(sheet_over_die(10, helpers));
+      FAIL("accepted " << helpers);
+    } catch (const Error& e) {
+      CHECK(e.kind() == ErrorKind::setting);
+      CHECK(e.place().key == "contact.helper_threads");
+      CHECK_THAT(e.what(), Catch::Matchers::Contains("from 0 to 64"));
+    }
+  }
+}
+
+TEST_CASE("with helpers a sheet comes down on its die, slides and comes off, and never enters it") {
+  Scene scene = sheet_over_die(90, 2);
+  scene.contact.tick_budget = 1e-4;  // too short for one thread
+  HapticLoop loop(scene);
+  const FclOracle oracle(scene);
+  const auto pen = [](int tick) -> Pose {
+    const double t = 1e-3 * tick;
+    const double down = tick < 700 ? 0.002 - 0.01 * t : -0.005 + 0.05 * (t - 0.7);
+    return {rotation({0, 0, 0.02 * std::sin(9 * t)}), {0.002 * std::sin(7 * t), 0.002 * std::cos(5 * t), down}};
+  };
+  std::uint64_t allocations = 0;
+  int touching = 0, intersecting = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    const Pose Y = pen(tick);
+    const AllocGuard guard;
+    const TickReport& r = loop.step(Y, 1e-3);
+    allocations += guard.count();
+    touching += r.proxy.touching;
+    if (tick % 10 == 0) intersecting += static_cast<int>(oracle.intersecting(r.proxy.X).size());
+  }
+  CHECK(allocations == 0);
+  CHECK(touching > 50);
+  CHECK(intersecting == 0);
+  // However slow the machine is.
+  const Pose away = {Quat::Identity(), {0, 0, 0.02}};
+  int ticks = 0;
+  while (ticks < 20000 && (loop.step(away, 1e-3).proxy.X.p - away.p).norm() > 1e-6) ++ticks;
+  CHECK(ticks < 20000);
+}
+
+TEST_CASE("a scene that changes has helpers, too, and those of the one before the last are gone") {
+  HapticLoop loop(sheet_over_die(60, 2));
+  const std::ptrdiff_t before = threads();
+  const Pose Y{Quat::Identity(), {0, 0, 0.002}};
+  loop.change(sheet_over_die(70, 1));
+  loop.step(Y, 1e-3);
+  loop.change(sheet_over_die(60, 0));
+  loop.step(Y, 1e-3);
+  CHECK(threads() == before - 1);
+}
