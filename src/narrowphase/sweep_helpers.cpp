@@ -56,6 +56,7 @@ void SweepHelpers::start(const std::shared_ptr<const SweepModel>& model) {
     pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
     help(*worker);
   });
+  pthread_setname_np(threads_.back().native_handle(), "tegotae-helper");
 }
 
 void SweepHelpers::stop() noexcept {

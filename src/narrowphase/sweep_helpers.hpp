@@ -15,7 +15,7 @@ namespace tegotae {
 class SweepWorker;
 
 /// Threads that do pieces of the task of another one. They sleep where there is none, run at the priority of ordinary
-/// programs, and handle no signals.
+/// programs, handle no signals, and are called "tegotae-helper" where threads are shown.
 class SweepHelpers {
  public:
   /// Throws Error if the system gives no more threads.
