@@ -165,6 +165,7 @@ class PatchMotionCheck final : public MotionCheck {
   /// Whether those that a way or a sweep is about are all that are near.
   bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
+  MotionAnswer blocked_at_once(const Pose& X, std::vector<FacePair>& blocking) noexcept;
   MotionAnswer ask_sweep(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   void look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept;
   bool empty_full_front(std::uint32_t part, const CertifyReport& report) noexcept;
@@ -229,6 +230,10 @@ class PatchMotionCheck final : public MotionCheck {
   std::size_t next_offered_ = 0;
   ProvedWay line_;                    ///< what is looked at, as if it were proved
   std::vector<std::uint32_t> swept_;  ///< parts
+  struct {
+    Pose X;
+    int count = 0;
+  } blocked_;  ///< where a few faces ended looks at once, and how often
   std::vector<bool> outside_;         ///< of each of them: see SurfaceSweep::begin()
   std::vector<bool> left_out_;        ///< of each part: it may be
   double clearance_ = 0;              ///< of the last check, m

@@ -36,6 +36,8 @@ constexpr int kTurnsInARow = 6;
 constexpr int kTurnWaits = 8;
 // How often as long as a look cells have the time where the pen stands.
 constexpr std::uint64_t kPatience = 4;
+// How often at one place a few faces that met something are enough.
+constexpr int kMostBlocked = 8;
 // What has come less far (m) stands.
 constexpr double kStill = 1e-6;
 
@@ -48,7 +50,10 @@ bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexce
 }
 
 void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
-  sweep_->begin(X, d, swept_, outside_, {clearance, worth, kKeptOfContact * contact_gap_, drawn_for(X, d)});
+  SweepAim aim{clearance, worth, kKeptOfContact * contact_gap_};
+  if (touches_ && blocked_.count < kMostBlocked) aim.blocked_within = contact_gap_;
+  aim.drawn = drawn_for(X, d);
+  sweep_->begin(X, d, swept_, outside_, aim);
   line_.set(X, d, swept_);
 }
 
@@ -265,6 +270,17 @@ bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
   return true;
 }
 
+/// A few faces were in the way: what they met turns the motion aside before all others are looked at for nothing.
+MotionAnswer PatchMotionCheck::blocked_at_once(const Pose& X, std::vector<FacePair>& blocking) noexcept {
+  blocked_.count = size(displacement(blocked_.X, X, center_)) < kStill ? blocked_.count + 1 : 1;
+  blocked_.X = X;
+  swept_until_ = 0;
+  share_ = 0;
+  instead_.reset();
+  tell(sweep_->blocking(), blocking);
+  return answer(blocking);
+}
+
 MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
                                          std::vector<FacePair>& blocking) noexcept {
   blocking.clear();
@@ -274,6 +290,7 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
+  if (!(sweep_->share() > 0)) return blocked_at_once(X, blocking);
   ways_.drop();
   add_way();
   ways_.come_to(X);

@@ -35,7 +35,9 @@ void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = model_->facing && outside[i];
   clearance_ = aim.clearance;
   kept_ = std::max(aim.kept, aim.clearance);
-  worth_ = aim.worth / (d.dp.norm() + model_->reach * d.dr.norm());
+  const double length = d.dp.norm() + model_->reach * d.dr.norm();
+  worth_ = aim.worth / length;
+  blocked_within_ = aim.blocked_within / length;
   drawn_ = model_->backing ? aim.drawn : std::nullopt;
   under_way_ = true;
   start_looks();
@@ -129,6 +131,9 @@ void SurfaceSweep::next_part() {
   if (++at_ < near_.size()) return;
   if (layer_ != Layer::faces) {
     start_layer(layer_ == Layer::walls ? Layer::moved_faces : Layer::faces);
+  } else if (look_ == Look::sample && end_.share < blocked_within_ && !blocking_.empty()) {
+    end_.share = 0;
+    under_way_ = false;
   } else if (look_ == Look::sample) {
     start_look(std::isfinite(worth_) ? Look::blocks : Look::faces);
   } else {

@@ -24,6 +24,9 @@ struct SweepAim {
   /// What a few faces tell to be in the way ends the motion so far (m) before it is touched: nearer, the planes of
   /// faces that lie on each other keep few of their neighbors apart.
   double kept = 12e-6;
+  /// Where a few faces meet something within so much (m), they are told and nothing else is looked at: no share is free
+  /// then.
+  double blocked_within = 0;
   /// A side to which A may be drawn out at the start with no point of a part's pieces inside (see Backing). It is not,
   /// where something meets what was drawn.
   std::optional<Backing::Side> drawn = std::nullopt;
@@ -86,7 +89,7 @@ class SurfaceSweep {
   bool under_way_ = false;
   Pose X_;
   Displacement d_;
-  double clearance_ = 0, kept_ = 0, worth_ = 0;
+  double clearance_ = 0, kept_ = 0, worth_ = 0, blocked_within_ = 0;  ///< the last two as shares of the motion
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
   std::optional<Backing::Side> drawn_;
