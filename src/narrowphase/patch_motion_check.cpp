@@ -117,6 +117,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       radius_(radius),
       held_(cached_patch_tree(held)),
       effort_(effort),
+      helpers_(helpers),
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
       ways_(center, radius, fixed.size() + 1, kMaxBlocking),

@@ -200,6 +200,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::shared_ptr<const PatchTree> held_;
   std::vector<std::shared_ptr<const PatchTree>> fixed_;
   const ProofEffort effort_;
+  const int helpers_;
   std::optional<AxisPairing> pairing_;              ///< none: no axes are looked for
   std::vector<const std::vector<AxisPair>*> axes_;  ///< of each part with the held one
   std::vector<Pose> poses_;

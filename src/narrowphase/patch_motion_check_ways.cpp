@@ -232,7 +232,7 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
 double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& all) const noexcept {
   const std::size_t faces = held_->mesh().triangles.size();
   if (touches_ || faces < kManyFaces) return std::numeric_limits<double>::infinity();
-  const double ticks = kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces);
+  const double ticks = kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces) / (1 + helpers_);
   return std::min(std::max(ticks * size(pen_), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
 }
 
