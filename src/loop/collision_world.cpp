@@ -25,7 +25,7 @@ constexpr double kMaxShift = 3;
 constexpr double kPollShare = 0.25;
 
 // Parts of fewer triangles need no helpers.
-constexpr std::size_t kHelpedFaces = 4096;
+constexpr std::size_t kHelpedFaces = 1024;
 
 int helpers_of(const Part& held, const ContactSettings& settings) {
   if (deadline_after(0, settings.tick_budget) == kNoDeadline || held.mesh->triangles.size() < kHelpedFaces) return 0;

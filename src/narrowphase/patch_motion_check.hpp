@@ -234,15 +234,15 @@ class PatchMotionCheck final : public MotionCheck {
   struct {
     Pose X;
     int count = 0;
-  } blocked_;  ///< where a few faces ended looks at once, and how often
-  std::vector<bool> outside_;         ///< of each of them: see SurfaceSweep::begin()
-  std::vector<bool> left_out_;        ///< of each part: it may be
-  double clearance_ = 0;              ///< of the last check, m
-  bool looks_ahead_ = false;          ///< it is at a way that A has not come to yet
-  Displacement pen_;                  ///< see heads()
-  int behind_for_ = 0;                ///< ticks in a row, up to
-  std::uint64_t behind_since_ = 0;    ///< the begin() of the last of them
-  int still_for_ = 0;                 ///< ticks in a row in which A stood at still_X_ and they were behind
+  } blocked_;                       ///< where a few faces ended looks at once, and how often
+  std::vector<bool> outside_;       ///< of each of them: see SurfaceSweep::begin()
+  std::vector<bool> left_out_;      ///< of each part: it may be
+  double clearance_ = 0;            ///< of the last check, m
+  bool looks_ahead_ = false;        ///< it is at a way that A has not come to yet
+  Displacement pen_;                ///< see heads()
+  int behind_for_ = 0;              ///< ticks in a row, up to
+  std::uint64_t behind_since_ = 0;  ///< the begin() of the last of them
+  int still_for_ = 0;               ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them
   Turn turn_;

@@ -21,8 +21,7 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
   near_.reserve(fixed.size());
   outside_.assign(fixed.size(), false);
   blocking_.reserve(blocking);
-  for (int i = 0; i <= helpers; ++i)
-    tasks_.push_back(std::make_unique<SweepTask>(SweepWorker::most_pieces(*model_)));
+  for (int i = 0; i <= helpers; ++i) tasks_.push_back(std::make_unique<SweepTask>(SweepWorker::most_pieces(*model_)));
   if (helpers > 0) helpers_ = std::make_unique<SweepHelpers>(model_, helpers);
 }
 
@@ -79,8 +78,7 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
 }
 
 void SurfaceSweep::start_part() {
-  SweepTask::Question question{X_,    d_,     clearance_, kept_,     worth_,        look_,
-                               layer_, drawn_, near_[at_], outside_[at_], 0};
+  SweepTask::Question question{X_, d_, clearance_, kept_, worth_, look_, layer_, drawn_, near_[at_], outside_[at_], 0};
   question.pieces = SweepWorker::pieces(*model_, question);
   // Each helper is inside one at most.
   task_ = std::find_if(tasks_.begin(), tasks_.end(), [](const auto& task) { return task->is_empty(); })->get();

@@ -13,6 +13,8 @@ namespace {
 
 /// Nodes of this level know what of B is beside them.
 constexpr std::uint32_t kTopLevel = 2;
+/// Fewer pieces are few.
+constexpr std::uint32_t kFewPieces = 16;
 /// Blocks of A that are looked at first: so many, and one of so many.
 constexpr std::uint32_t kSample = 32, kSampleShare = 100;
 /// How exactly it is found where the motion ends (m), and the halvings that takes at most.
@@ -35,10 +37,10 @@ constexpr double kEnough = 0.85;
 /// Blocks that may be looked at face by face before all are: so many, and one for so many of A's.
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
 
-
-/// Pieces are nodes of this level.
+/// Pieces are nodes of this level, or of the one below where there would be few.
 std::uint32_t piece_level(const FaceBlocks& blocks) {
-  return std::min(kTopLevel, blocks.levels() - 1);
+  const std::uint32_t level = std::min(kTopLevel, blocks.levels() - 1);
+  return level > 0 && blocks.nodes(level) < kFewPieces ? level - 1 : level;
 }
 
 std::uint32_t sample_stride(const FaceBlocks& blocks) {
@@ -308,7 +310,8 @@ bool SweepWorker::all_recede(std::uint32_t block) {
     const Vec3 middle = (p + q + r) / 3;
     const double radius =
         std::sqrt(std::max({(p - middle).squaredNorm(), (q - middle).squaredNorm(), (r - middle).squaredNorm()}));
-    if (passing_.recedes(seen((*cones().faces)[face]), middle - model_->center, kRadiusSlack * radius)) skipped_ |= 1U << k;
+    if (passing_.recedes(seen((*cones().faces)[face]), middle - model_->center, kRadiusSlack * radius))
+      skipped_ |= 1U << k;
   }
   return skipped_ == (1U << faces) - 1;
 }

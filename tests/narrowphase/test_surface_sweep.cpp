@@ -430,6 +430,39 @@ TEST_CASE("a sheet comes down on its die to where FCL finds touching") {
   }
 }
 
+TEST_CASE("what a few faces meet at once is told, and nothing is free then") {
+  const MeshPtr sheet = wave(0.1, 0.01, 0.05, 60), die = wave(0.1, 0.01, 0.05, 60);
+  SurfaceSweep sweep = sweep_past(sheet, die, Vec3::Zero());
+  const double within = 20e-6;
+  const auto look = [&](double above, const Displacement& d, double blocked_within) {
+    SweepAim aim;
+    aim.clearance = kClearance;
+    aim.blocked_within = blocked_within;
+    sweep.begin({Quat::Identity(), Vec3(0, 0, above)}, d, {0}, {false}, aim);
+    sweep.go_on(kNoDeadline);
+    return sweep.share();
+  };
+  // Along the seat the flanks are met soon, and far above it nothing is.
+  const Displacement along{{1e-3, 0, 0}, {0, 0, 0}}, down{{0, 0, -1e-3}, {0, 0, 0}};
+  const double share = look(8e-6, along, 0);
+  REQUIRE(share > 0);
+  REQUIRE(share * along.dp.norm() < within);
+  CHECK(look(8e-6, along, within) == 0);
+  CHECK(!sweep.ended_early());
+  REQUIRE(!sweep.blocking().empty());
+  for (const FacePair& met : sweep.blocking()) {
+    const Oracle pair(single(*sheet, met.a), single(*die, met.b));
+    CHECK(pair.path_distance({Quat::Identity(), Vec3(0, 0, 8e-6)}, Vec3::Zero(), (within / 1e-3) * along, 20) <
+          kEndsBefore);
+  }
+  CHECK(look(2e-3, down, within) == 1);
+  CHECK(sweep.blocking().empty());
+  // What is met later ends the motion there.
+  const double later = look(3e-4, down, within);
+  CHECK(later == look(3e-4, down, 0));
+  CHECK(later > 0.2);
+}
+
 TEST_CASE("a sweep that is interrupted at every step ends like one that is not") {
   const MeshPtr sheet = wave(0.1, 0.01, 0.05, 30), die = wave(0.1, 0.01, 0.05, 41);
   SurfaceSweep at_once = sweep_past(sheet, die, Vec3::Zero()), in_steps = sweep_past(sheet, die, Vec3::Zero());

@@ -207,10 +207,9 @@ TEST_CASE("past many parts each is looked at, with helpers") {
 
 TEST_CASE("a helper that never comes back does not keep a look from its end") {
   const Sheets sheets;
-  const auto model = std::make_shared<const SweepModel>(std::make_shared<const PatchTree>(sheets.sheet), Vec3::Zero(),
-                                                        std::vector<CellFront::FixedPart>{
-                                                            {std::make_shared<const PatchTree>(sheets.die), Pose{}}},
-                                                        nullptr, nullptr);
+  const auto model = std::make_shared<const SweepModel>(
+      std::make_shared<const PatchTree>(sheets.sheet), Vec3::Zero(),
+      std::vector<CellFront::FixedPart>{{std::make_shared<const PatchTree>(sheets.die), Pose{}}}, nullptr, nullptr);
   SweepTask::Question question;
   question.X = {Quat::Identity(), Vec3(0, 0, 0.005)};
   question.d = {Vec3(0, 0, -0.004), Vec3::Zero()};

@@ -69,7 +69,7 @@ struct ContactSettings {
   /// Time (s) that a tick of HapticLoop::step may take; the next tick does what remains. Infinite: only the amount of
   /// work bounds a tick, so that the same pen gives the same motion bit for bit on any machine.
   double tick_budget = 0.8e-3;
-  static constexpr int kMostHelpers = 64;
+  static constexpr int kMostHelpers = 64;  ///< bound of helper_threads
   /// Threads (0 to kMostHelpers) that share the work of proving motions where thousands of the held part's triangles
   /// lie on other parts. Otherwise they sleep, and where `tick_budget` is infinite there are none. They run at the
   /// priority of ordinary programs. Not set: one fewer than the processors that the process may use, at most 7.
