@@ -290,7 +290,7 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
-  if (!(sweep_->share() > 0)) return blocked_at_once(X, blocking);
+  if (sweep_->met_at_once()) return blocked_at_once(X, blocking);
   ways_.drop();
   add_way();
   ways_.come_to(X);

@@ -46,6 +46,7 @@ void SurfaceSweep::start_looks() {
   blocking_.clear();
   end_ = faces_end_ = {1, false};
   searched_ = 0;
+  met_at_once_ = false;
   start_look(Look::sample);
 }
 
@@ -131,6 +132,7 @@ void SurfaceSweep::next_part() {
     start_layer(layer_ == Layer::walls ? Layer::moved_faces : Layer::faces);
   } else if (look_ == Look::sample && end_.share < blocked_within_ && !blocking_.empty()) {
     end_.share = 0;
+    met_at_once_ = true;
     under_way_ = false;
   } else if (look_ == Look::sample) {
     start_look(std::isfinite(worth_) ? Look::blocks : Look::faces);

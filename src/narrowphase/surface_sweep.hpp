@@ -43,6 +43,9 @@ class SurfaceSweep {
   SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& center, const std::vector<CellFront::FixedPart>& fixed,
                std::shared_ptr<const Facing> facing, std::shared_ptr<const Backing> backing, std::uint32_t blocking,
                int helpers = 0);
+  ~SurfaceSweep() { drop_task(); }
+  SurfaceSweep(const SurfaceSweep&) = delete;
+  SurfaceSweep& operator=(const SurfaceSweep&) = delete;
 
   /// Begins with the motion s -> displaced(X, center, s·d), s in [0, 1], past the parts in `near`, and likewise the one
   /// between the same two poses whose file-frame origin moves linearly (see Sweep). `outside` tells of which of them
@@ -66,6 +69,8 @@ class SurfaceSweep {
   /// When done: what was met, the nearest last; at most as many as the constructor was told. Nothing where the motion
   /// was ended early.
   const std::vector<FacePair>& blocking() const { return blocking_; }
+  /// When done: a few faces met something at once (see SweepAim::blocked_within).
+  bool met_at_once() const { return met_at_once_; }
   /// When done: whole blocks ended the motion, or looking farther would have taken too long, and more of it may be
   /// free.
   bool ended_early() const { return end_.early; }
@@ -86,7 +91,7 @@ class SurfaceSweep {
   std::shared_ptr<const SweepModel> model_;
   std::vector<FacePair> blocking_;
 
-  bool under_way_ = false;
+  bool under_way_ = false, met_at_once_ = false;
   Pose X_;
   Displacement d_;
   double clearance_ = 0, kept_ = 0, worth_ = 0, blocked_within_ = 0;  ///< the last two as shares of the motion

@@ -31,6 +31,16 @@ class NoSignals {
   sigset_t before_;
 };
 
+/// A thread has the priority of the one that starts it, which may be the contact loop's.
+void leave_real_time() noexcept {
+  int policy = SCHED_OTHER;
+  sched_param parameters{};
+  pthread_getschedparam(pthread_self(), &policy, &parameters);
+  if (policy != SCHED_FIFO && policy != SCHED_RR) return;
+  parameters.sched_priority = 0;
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameters);
+}
+
 }  // namespace
 
 SweepHelpers::SweepHelpers(const std::shared_ptr<const SweepModel>& model, int count) {
@@ -51,9 +61,7 @@ SweepHelpers::~SweepHelpers() {
 
 void SweepHelpers::start(const std::shared_ptr<const SweepModel>& model) {
   threads_.emplace_back([this, worker = std::make_unique<SweepWorker>(model)] {
-    // Not what the thread has that starts it.
-    sched_param ordinary{};
-    pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
+    leave_real_time();
     help(*worker);
   });
   pthread_setname_np(threads_.back().native_handle(), "tegotae-helper");

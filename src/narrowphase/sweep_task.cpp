@@ -19,7 +19,6 @@ void SweepTask::open(const Question& question, const SharedLimit::Value& end_unt
   for (std::uint32_t piece = 0; piece < question.pieces; ++piece) done_[piece].store(0, std::memory_order_relaxed);
   for (auto& faces : met_faces_) faces.store(kNoFaces, std::memory_order_relaxed);
   next_.store(0);
-  finished_.store(0);
   met_.store(0);
   ending_.store(Ending::none);
   closed_.store(false);

@@ -100,10 +100,7 @@ class SweepTask {
   /// A piece to do; none: all are done.
   std::optional<std::uint32_t> take() noexcept;
   bool is_done(std::uint32_t piece) const noexcept { return done_[piece].load(std::memory_order_acquire) != 0; }
-  void finish(std::uint32_t piece) noexcept {
-    if (done_[piece].exchange(1) == 0) finished_.fetch_add(1);
-  }
-  bool is_finished() const noexcept { return finished_.load() >= question_.pieces; }
+  void finish(std::uint32_t piece) noexcept { done_[piece].store(1, std::memory_order_release); }
   /// Whether there is no use in going on.
   bool is_over() const noexcept {
     return closed_.load(std::memory_order_relaxed) || ending() != Ending::none || !(end.value().share > 0);
@@ -112,7 +109,7 @@ class SweepTask {
   void end_with(Ending ending) noexcept { ending_.store(ending); }
 
   void add_met(const Met& met) noexcept;
-  /// Owner, when it is finished: what was met, the nearest last. How many there are.
+  /// Owner, when there is no piece to do: what was met, the nearest last. How many there are.
   std::size_t met(std::array<Met, kMostMet>& out) const noexcept;
 
   SharedLimit end;                         ///< of what is free; early: not since something was met
@@ -122,7 +119,7 @@ class SweepTask {
  private:
   Question question_;
   std::uint64_t id_ = 0;
-  std::atomic<std::uint32_t> inside_{0}, next_{0}, finished_{0}, met_{0};
+  std::atomic<std::uint32_t> inside_{0}, next_{0}, met_{0};
   std::atomic<bool> closed_{true};
   std::atomic<Ending> ending_{Ending::none};
   std::vector<std::atomic<std::uint8_t>> done_;

@@ -447,7 +447,9 @@ TEST_CASE("what a few faces meet at once is told, and nothing is free then") {
   const double share = look(8e-6, along, 0);
   REQUIRE(share > 0);
   REQUIRE(share * along.dp.norm() < within);
+  CHECK(!sweep.met_at_once());
   CHECK(look(8e-6, along, within) == 0);
+  CHECK(sweep.met_at_once());
   CHECK(!sweep.ended_early());
   REQUIRE(!sweep.blocking().empty());
   for (const FacePair& met : sweep.blocking()) {
@@ -456,6 +458,7 @@ TEST_CASE("what a few faces meet at once is told, and nothing is free then") {
           kEndsBefore);
   }
   CHECK(look(2e-3, down, within) == 1);
+  CHECK(!sweep.met_at_once());
   CHECK(sweep.blocking().empty());
   // What is met later ends the motion there.
   const double later = look(3e-4, down, within);
