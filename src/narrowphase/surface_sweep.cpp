@@ -28,16 +28,16 @@ SurfaceSweep::SurfaceSweep(std::shared_ptr<const PatchTree> a, const Vec3& cente
 void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& near,
                          const std::vector<bool>& outside, const SweepAim& aim) noexcept {
   drop_task();
-  X_ = X;
-  d_ = d;
+  question_.X = X;
+  question_.d = d;
   near_.assign(near.begin(), near.end());
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = model_->facing && outside[i];
-  clearance_ = aim.clearance;
-  kept_ = std::max(aim.kept, aim.clearance);
+  question_.clearance = aim.clearance;
+  question_.kept = std::max(aim.kept, aim.clearance);
   const double length = d.dp.norm() + model_->reach * d.dr.norm();
-  worth_ = aim.worth / length;
+  question_.worth = aim.worth / length;
   blocked_within_ = aim.blocked_within / length;
-  drawn_ = model_->backing ? aim.drawn : std::nullopt;
+  question_.drawn = model_->backing ? aim.drawn : std::nullopt;
   under_way_ = true;
   start_looks();
 }
@@ -52,14 +52,14 @@ void SurfaceSweep::start_looks() {
 
 void SurfaceSweep::start_look(Look look) {
   // Of what was drawn, blocks have told as much as faces would.
-  const bool drawn_again = drawn_ && !(look_ == Look::blocks && look == Look::faces);
-  look_ = look;
+  const bool drawn_again = question_.drawn && !(question_.look == Look::blocks && look == Look::faces);
+  question_.look = look;
   start_layer(drawn_again ? Layer::walls : Layer::faces);
 }
 
 void SurfaceSweep::start_layer(Layer layer) {
-  const bool no_walls = layer == Layer::walls && !model_->walls[static_cast<std::size_t>(*drawn_)];
-  layer_ = no_walls ? Layer::moved_faces : layer;
+  const bool no_walls = layer == Layer::walls && !model_->walls[static_cast<std::size_t>(*question_.drawn)];
+  question_.layer = no_walls ? Layer::moved_faces : layer;
   at_ = 0;
 }
 
@@ -79,15 +79,16 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
 }
 
 void SurfaceSweep::start_part() {
-  SweepTask::Question question{X_, d_, clearance_, kept_, worth_, look_, layer_, drawn_, near_[at_], outside_[at_], 0};
-  question.pieces = SweepWorker::pieces(*model_, question);
+  question_.part = near_[at_];
+  question_.outside = outside_[at_];
+  question_.pieces = SweepWorker::pieces(*model_, question_);
   // Each helper is inside one at most.
   task_ = std::find_if(tasks_.begin(), tasks_.end(), [](const auto& task) { return task->is_empty(); })->get();
-  task_->open(question, end_, faces_end_, searched_);
+  task_->open(question_, end_, faces_end_, searched_);
   if (!worker_.begin(*task_)) {
     drop_task();
     next_part();
-  } else if (helpers_ && question.pieces >= kWorthHelp) {
+  } else if (helpers_ && question_.pieces >= kWorthHelp) {
     helpers_->offer(*task_);
   }
 }
@@ -107,7 +108,7 @@ void SurfaceSweep::finish_part() {
   collect_met();
   drop_task();
   if (ending == SweepTask::Ending::not_solid) {
-    drawn_.reset();
+    question_.drawn.reset();
     start_looks();
   } else if (ending == SweepTask::Ending::many_faces) {
     end_ = faces_end_;
@@ -128,14 +129,14 @@ void SurfaceSweep::collect_met() {
 
 void SurfaceSweep::next_part() {
   if (++at_ < near_.size()) return;
-  if (layer_ != Layer::faces) {
-    start_layer(layer_ == Layer::walls ? Layer::moved_faces : Layer::faces);
-  } else if (look_ == Look::sample && end_.share < blocked_within_ && !blocking_.empty()) {
+  if (question_.layer != Layer::faces) {
+    start_layer(question_.layer == Layer::walls ? Layer::moved_faces : Layer::faces);
+  } else if (question_.look == Look::sample && end_.share < blocked_within_ && !blocking_.empty()) {
     end_.share = 0;
     met_at_once_ = true;
     under_way_ = false;
-  } else if (look_ == Look::sample) {
-    start_look(std::isfinite(worth_) ? Look::blocks : Look::faces);
+  } else if (question_.look == Look::sample) {
+    start_look(std::isfinite(question_.worth) ? Look::blocks : Look::faces);
   } else {
     under_way_ = false;
   }

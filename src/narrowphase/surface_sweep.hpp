@@ -60,8 +60,8 @@ class SurfaceSweep {
   /// Begun and not done.
   bool under_way() const { return under_way_; }
 
-  const Pose& start() const { return X_; }
-  const Displacement& motion() const { return d_; }
+  const Pose& start() const { return question_.X; }
+  const Displacement& motion() const { return question_.d; }
   const std::vector<std::uint32_t>& near() const { return near_; }
   /// When done: the part of the motion, from its start, that is free. What is met ends it, a little before it is
   /// touched where that can be.
@@ -92,15 +92,11 @@ class SurfaceSweep {
   std::vector<FacePair> blocking_;
 
   bool under_way_ = false, met_at_once_ = false;
-  Pose X_;
-  Displacement d_;
-  double clearance_ = 0, kept_ = 0, worth_ = 0, blocked_within_ = 0;  ///< the last two as shares of the motion
+  SweepTask::Question question_;  ///< of the step that is done
+  double blocked_within_ = 0;     ///< as a share of the motion
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
-  std::optional<Backing::Side> drawn_;
-  Look look_ = Look::sample;
-  Layer layer_ = Layer::faces;
-  std::uint32_t at_ = 0;  ///< of near_
+  std::uint32_t at_ = 0;       ///< of near_
   // Until now, as those of the task.
   SharedLimit::Value end_{1, false}, faces_end_{1, false};
   std::uint32_t searched_ = 0;

@@ -9,6 +9,7 @@
 #include "bodies.hpp"
 #include "catch.hpp"
 #include "fcl_oracle.hpp"
+#include "models/height_field.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 
@@ -17,23 +18,8 @@ using namespace tegotae::test;
 
 namespace {
 
-/// Open sheet of n × n fields of 0.1 m with waves both ways.
 std::shared_ptr<const TriangleMesh> waves(int n) {
-  auto mesh = std::make_shared<TriangleMesh>();
-  for (int i = 0; i <= n; ++i) {
-    for (int k = 0; k <= n; ++k) {
-      const double x = 0.1 * i / n - 0.05, y = 0.1 * k / n - 0.05;
-      mesh->vertices.emplace_back(x, y, 0.004 * std::sin(125 * x) * std::sin(125 * y));
-    }
-  }
-  const auto at = [n](int i, int k) { return static_cast<std::uint32_t>(i * (n + 1) + k); };
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < n; ++k) {
-      mesh->triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
-      mesh->triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
-    }
-  }
-  return mesh;
+  return shared(shapes::sheet({0.1, 0.1, n, n}, shapes::waves(0.004, 0.05)));
 }
 
 Scene sheet_over_die(int n, std::optional<int> helpers, double height = 0.002) {
