@@ -299,7 +299,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
                                      std::vector<FacePair>& blocking) noexcept {
   const bool asked = std::exchange(asked_, true);
   const MotionAnswer answer = ask(X, d, clearance, blocking);
-  if (answer == MotionAnswer::free && instead_ && !declined(X)) {
+  if (answer != MotionAnswer::unknown && instead_ && !declined(X)) {
     offered_[next_offered_] = {X, now_};
     next_offered_ = (next_offered_ + 1) % offered_.size();
   }
