@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "loop/contact_margin.hpp"
 #include "loop/friction_pairs.hpp"
@@ -80,10 +81,20 @@ constexpr double kPrepareShare = 0.9;
 constexpr double kNearerOnTrail = 0.8;
 // What it touched there is looked for in this share of a tick more.
 constexpr double kLateShare = 0.2;
+// A motion of less than this share of the margin is nearly none: where it was out of time in so many ticks in a row, it
+// is not asked about again until the pen has moved by a margin.
+constexpr double kHair = 0.05;
+constexpr int kLateHairs = 30;
 // Contacts that all open by this share of the way to the pen, and more, are left.
 constexpr double kOpens = 0.05;
+// What is no farther than this share of the part's radius, and kMaxUnexplainedLag, holds a part that is out of time.
+constexpr double kNearShare = 1.5e-3;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
+
+bool same(const Displacement& a, const Displacement& b) {
+  return a.dp == b.dp && a.dr == b.dr;
+}
 
 }  // namespace
 
@@ -102,6 +113,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   trust_ = substep_cap_ = at_.check->longest_motion();
   max_margin_ = margin_ = kMarginShare * *settings_.l_min;
   min_margin_ = scene.contact.l_min ? max_margin_ : std::min(kMinMargin, max_margin_);
+  near_gap_ = std::max(*settings_.l_min, std::min(kNearShare * at_.radius, kMaxUnexplainedLag));
   recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
@@ -175,6 +187,10 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   moved_ = size(moved);
   count_swings(Y);
   const double left = size(displacement(X_, Y, center_));
+  // Out of time a little above what it comes to, the part is where it should be, but for less than needs to be
+  // explained.
+  if (report.contacts == 0 && left > lag_bound(at_.radius) && moved_ <= lag_bound(at_.radius))
+    if (const double gap = gap_in_the_way(Y); gap <= near_gap_) at_.fill_report(gap, report);
   report.lag_reason = reason_for(left, report);
   // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
   // that removed what it touched, it comes back to the pen through the air.
@@ -216,7 +232,7 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
   at_.check->trust_start();
   if (track()) adapt_margin(Y);
-  at_.check->heads(pen, touches() && !leaves(Y), margin_ / kMarginShare);
+  at_.check->heads({pen, touches() && !leaves(Y), margin_ / kMarginShare, near_gap_});
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
   if (at_.check->prefers_long()) trust_ = substep_cap_;
@@ -321,10 +337,8 @@ bool ContactLoop::track() {
 double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) {
   held_by_planes_ = false;
   if (!track()) return 0;
-  if (owed_) {
-    take_in(*owed_);
-    owed_.reset();
-  }
+  const std::optional<Displacement> taken_in = std::exchange(owed_, std::nullopt);
+  if (taken_in) take_in(*taken_in);
   metric_.set_orientation(X_.q);
   Displacement error = displacement(X_, Y, center_);
   const double turn = error.dr.norm();
@@ -342,7 +356,14 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
       if (has_cutting_planes()) shorter_than(cap);
       return 0;
     }
+    const bool hair = size(trial.d) < kHair * margin_;
+    if (hair && gives_up_on_hairs(Y)) {
+      held_by_contacts_ = only_contacts();
+      return 0;
+    }
     free = is_free(trial, report);
+    if (!hair || !late()) late_hairs_ = 0;
+    if (hair && late() && ++late_hairs_ == 1) hairs_Y_ = Y;
     if (const auto other = at_.check->instead()) {
       trial.d = *other;
       Trial part = trial;
@@ -363,7 +384,9 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
     } else if (free) {
       break;
     }
-    if (late() && !blocking_.empty()) owed_ = trial.d;
+    // What was in the way of the same motion once and is so again does not turn it.
+    const bool again = taken_in && same(*taken_in, trial.d);
+    if (late() && !blocking_.empty() && !again) owed_ = trial.d;
     if ((blocking_.empty() || late()) && at_.check->free_share() > 0) {
       // Out of time or work: what is proved of the motion is made, and the next sub-step is not much longer, or as long
       // as all that was proved in this tick.
@@ -394,6 +417,12 @@ double ContactLoop::move_substep(const Pose& Y, double cap, TickReport& report) 
   go_to(trial);
   queried_ = false;
   return size(trial.d);
+}
+
+/// At rest on a large seat, a motion of nearly nothing would take every tick whole.
+bool ContactLoop::gives_up_on_hairs(const Pose& Y) {
+  if (size(displacement(hairs_Y_, Y, center_)) > margin_) late_hairs_ = 0;
+  return late_hairs_ >= kLateHairs;
 }
 
 void ContactLoop::go_to(const Trial& trial) {
@@ -461,6 +490,14 @@ bool ContactLoop::touches() const {
   const auto& constraints = at_.contacts->constraints();
   return std::any_of(constraints.begin(), constraints.end(),
                      [this](const Contact& c) { return c.age != kOneShotAge && c.gap <= margin_ / kMarginShare; });
+}
+
+double ContactLoop::gap_in_the_way(const Pose& Y) const {
+  const Displacement d = displacement(X_, Y, center_);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Contact& c : at_.contacts->constraints())
+    if (c.age != kOneShotAge && -c.n.dot(d.dp + d.dr.cross(c.r)) > c.gap) nearest = std::min(nearest, c.gap);
+  return nearest;
 }
 
 bool ContactLoop::leaves(const Pose& Y) const {

@@ -74,8 +74,12 @@ class ContactLoop final : public ProxyLoop {
   bool take_in(const Displacement& d);
   bool shorten(Trial& trial, TickReport& report);
   void go_to(const Trial& trial);
+  /// Whether motions of nearly nothing are left alone, since they were out of time for long with the pen here.
+  bool gives_up_on_hairs(const Pose& Y);
   /// Whether a contact is within reach.
   bool touches() const;
+  /// The gap (m) of the nearest contact that the part would enter on its way to the pen; +inf where there is none.
+  double gap_in_the_way(const Pose& Y) const;
   /// Whether all that touches opens on the way to the pen.
   bool leaves(const Pose& Y) const;
   bool leads_nearer(const Trial& trial, const Pose& goal) const;
@@ -160,8 +164,11 @@ class ContactLoop final : public ProxyLoop {
   Swings swings_;        ///< under a pen that has stood still for long
   double margin_;        ///< gap that contacts keep, m, between the next two
   double min_margin_, max_margin_;
+  double near_gap_;       ///< a contact that is in the way and no farther (m) explains a lag
   double recover_below_;  ///< share of the kept gap below which gaps recover
   int ticks_ = 0;
+  int late_hairs_ = 0;  ///< ticks in a row that were out of time for motions of nearly nothing
+  Pose hairs_Y_;        ///< the pen's pose at the first of them
   std::optional<Displacement>
       owed_;                     ///< motion of the last tick that blocking_ stopped when no time was left for contacts
   bool tracked_ = false;         ///< the contacts are those of X_

@@ -22,6 +22,15 @@ enum class OtherParts : std::uint8_t {
   ignored  ///< they do not matter, wherever they are
 };
 
+/// What a tick knows of where A goes.
+struct Heading {
+  Displacement pen;            ///< the pen's way in a tick, about
+  bool touches = false;        ///< something is no farther from A than the next
+  double contact_gap = 20e-6;  ///< m
+  /// What is in A's way and no farther explains that it does not follow the pen, m.
+  double near_gap = 20e-6;
+};
+
 /// Narrow phase of the contact loop: whether a motion of A keeps clear of the fixed parts. A motion runs from `X` (A's
 /// file frame in the world) by `d` of its center of mass; both in the world.
 class MotionCheck {
@@ -35,11 +44,8 @@ class MotionCheck {
   virtual void trust_start() noexcept {}
   /// A is where no motion that was checked has brought it.
   virtual void jumped() noexcept {}
-  /// Until the next begin(): in a tick the pen goes on by `pen` about, and A `touches` something or not, which is what
-  /// is no farther than `contact_gap` (m).
-  virtual void heads(const Displacement& pen, bool touches, double contact_gap) noexcept {
-    static_cast<void>(pen), static_cast<void>(touches), static_cast<void>(contact_gap);
-  }
+  /// Until the next begin().
+  virtual void heads(const Heading& heading) noexcept { static_cast<void>(heading); }
   /// Whether A can make the motion and come no nearer than `clearance` (m). Fills `blocking` (never past its capacity).
   virtual MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                              std::vector<FacePair>& blocking) noexcept = 0;

@@ -45,16 +45,12 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   void trust_start() noexcept override { trusted_ = true; }
   void jumped() noexcept override;
-  void heads(const Displacement& pen, bool touches, double contact_gap) noexcept override {
-    pen_ = pen;
-    touches_ = touches;
-    contact_gap_ = contact_gap;
-  }
+  void heads(const Heading& heading) noexcept override { heading_ = heading; }
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
   std::optional<Displacement> instead() const override { return instead_; }
-  bool prefers_long() const override { return behind_for_ >= kTicksBehind && (!touches_ || stands_still()); }
+  bool prefers_long() const override { return behind_for_ >= kTicksBehind && (!heading_.touches || stands_still()); }
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -136,7 +132,7 @@ class PatchMotionCheck final : public MotionCheck {
   void count_still(const Pose& X) noexcept;
   void take_turns(const Pose& X) noexcept;
   /// Where something touches, whether the cells bring A on as fast as looks at all of it.
-  bool cells_turn() const { return touches_ && turn_.of_cells && !stands_still(); }
+  bool cells_turn() const { return heading_.touches && turn_.of_cells && !stands_still(); }
   bool stands_still() const { return still_for_ >= kTicksStill; }
   bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
@@ -230,6 +226,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::array<Offered, 4> offered_;       ///< the last of them
   std::size_t next_offered_ = 0;
   ProvedWay line_;                    ///< what is looked at, as if it were proved
+  bool line_touches_ = false;         ///< A touched something when that began
   std::vector<std::uint32_t> swept_;  ///< parts
   struct {
     Pose X;
@@ -239,7 +236,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<bool> left_out_;      ///< of each part: it may be
   double clearance_ = 0;            ///< of the last check, m
   bool looks_ahead_ = false;        ///< it is at a way that A has not come to yet
-  Displacement pen_;                ///< see heads()
+  Heading heading_;                 ///< see heads()
   int behind_for_ = 0;              ///< ticks in a row, up to
   std::uint64_t behind_since_ = 0;  ///< the begin() of the last of them
   int still_for_ = 0;               ///< ticks in a row in which A stood at still_X_ and they were behind
@@ -249,8 +246,8 @@ class PatchMotionCheck final : public MotionCheck {
   std::uint64_t swept_since_ = 0,
                 swept_until_ = 0;  ///< the begin() since which A waited for the last sweep, and of its end
   std::uint64_t swept_for_ = 0;    ///< and the ticks that it took
-  bool touches_ = false;           ///< see heads()
-  double contact_gap_ = 20e-6;     ///< see heads(), m
+  Pose swept_from_;                ///< where it began
+  Displacement swept_motion_;      ///< and what it was about
   bool sweeping_ = false;          ///< it was begun, and its answer not yet given
   std::optional<Displacement> instead_;
   std::uint64_t wait_ = 0, retry_leaving_ = 0;  ///< ticks, and the one, until leaving is looked at thoroughly again

@@ -30,6 +30,8 @@ constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
 // What a few faces tell to be in the way is come to as near as this share of the gap that counts as contact.
 constexpr double kKeptOfContact = 0.6;
+// What a few faces meet after a way of so many times the gap that explains a lag is told before the look is done.
+constexpr double kNearTold = 4;
 // Turns of one kind after which the other is tried.
 constexpr int kTurnsInARow = 6;
 // Ticks in which a look may wait for its turn to begin.
@@ -45,16 +47,24 @@ constexpr double kStill = 1e-6;
 
 bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexcept {
   if (!may_sweep() || !line_.is_on(X) || !covers_near(line_.parts())) return false;
+  // Away from what it touches, the way is another one, and looked at in no time.
+  if (line_touches_ && !heading_.touches) return false;
   const Displacement& other = line_.motion();
   return d.dp.dot(other.dp) + radius_ * radius_ * d.dr.dot(other.dr) > 0;
 }
 
 void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
-  SweepAim aim{clearance, worth, kKeptOfContact * contact_gap_};
-  if (touches_ && blocked_.count < kMostBlocked) aim.blocked_within = contact_gap_;
+  SweepAim aim{clearance, worth, kKeptOfContact * heading_.contact_gap};
+  if (!heading_.touches && held_->mesh().triangles.size() >= kManyFaces) {
+    aim.kept_far = kKeptOfContact * heading_.near_gap;
+    aim.far = heading_.near_gap;
+    aim.near_within = kNearTold * heading_.near_gap;
+  }
+  if (heading_.touches && blocked_.count < kMostBlocked) aim.blocked_within = heading_.contact_gap;
   aim.drawn = drawn_for(X, d);
   sweep_->begin(X, d, swept_, outside_, aim);
   line_.set(X, d, swept_);
+  line_touches_ = heading_.touches;
 }
 
 void PatchMotionCheck::count_still(const Pose& X) noexcept {
@@ -71,7 +81,7 @@ void PatchMotionCheck::take_turns(const Pose& X) noexcept {
   turn_.since = now_;
   const double moved = size(displacement(turn_.X, X, center_));
   turn_.X = X;
-  if (!touches_ || behind_for_ < kTicksBehind) {
+  if (!heading_.touches || behind_for_ < kTicksBehind) {
     turn_.ticks = 0;
     turn_.moved = 0;
     return;
@@ -92,9 +102,9 @@ void PatchMotionCheck::take_turns(const Pose& X) noexcept {
 /// took where the pen moves on, and some times as long where it stands.
 bool PatchMotionCheck::rests(const Pose& X, const Displacement& d) const noexcept {
   if (size(d) < kStill) return true;
-  if (!touches_ || size(displacement(sweep_->start(), X, center_)) > kStill) return false;
-  if (!(size(pen_) > kStands)) return now_ < swept_until_ + kPatience * swept_for_;
-  return now_ < swept_until_ + swept_for_ && same_way(d, sweep_->motion());
+  if (!heading_.touches || size(displacement(swept_from_, X, center_)) > kStill) return false;
+  if (!(size(heading_.pen) > kStands)) return now_ < swept_until_ + kPatience * swept_for_;
+  return now_ < swept_until_ + swept_for_ && same_way(d, swept_motion_);
 }
 
 bool PatchMotionCheck::may_sweep() const noexcept {
@@ -104,7 +114,7 @@ bool PatchMotionCheck::may_sweep() const noexcept {
 
 /// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind.
 bool PatchMotionCheck::may_go_along() const noexcept {
-  return may_sweep() && trusted_ && !touches_ && (!near_cells_.empty() || behind_);
+  return may_sweep() && trusted_ && !heading_.touches && (!near_cells_.empty() || behind_);
 }
 
 /// Whether A is where a motion was proved instead of the one that was asked about, a few of them ago: it was not made,
@@ -127,7 +137,7 @@ bool PatchMotionCheck::may_look_ahead() const noexcept {
     return held_->mesh().triangles.size() >= kManyFaces &&
            !std::all_of(near_fronts_.begin(), near_fronts_.end(), on_axis);
   };
-  return may_sweep() && trusted_ && !touches_ && (may_go_along() || may_be_behind());
+  return may_sweep() && trusted_ && !heading_.touches && (may_go_along() || may_be_behind());
 }
 
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
@@ -226,10 +236,12 @@ bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) co
 bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept {
   // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that, and
   // where something touches, they let A go where `d` leads.
-  const double ticks =
-      same_way(d, pen_) ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(pen_), kStands)) : 0;
-  const Displacement all = touches_ ? (1 + ticks * size(pen_) / std::max(size(d), kStands)) * d
-                                    : Displacement{d.dp + ticks * pen_.dp, d.dr + ticks * pen_.dr};
+  const double ticks = same_way(d, heading_.pen)
+                           ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands))
+                           : 0;
+  const Displacement all = heading_.touches
+                               ? (1 + ticks * size(heading_.pen) / std::max(size(d), kStands)) * d
+                               : Displacement{d.dp + ticks * heading_.pen.dp, d.dr + ticks * heading_.pen.dr};
   if (!find_swept(X, X, all)) return false;
   look_at(X, all, clearance, worth(d, all));
   return true;
@@ -237,9 +249,9 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
 
 double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& all) const noexcept {
   const std::size_t faces = held_->mesh().triangles.size();
-  if (touches_ || faces < kManyFaces) return std::numeric_limits<double>::infinity();
+  if (heading_.touches || faces < kManyFaces) return std::numeric_limits<double>::infinity();
   const double ticks = kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces) / (1 + helpers_);
-  return std::min(std::max(ticks * size(pen_), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
+  return std::min(std::max(ticks * size(heading_.pen), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
 }
 
 void PatchMotionCheck::add_way() noexcept {
@@ -254,25 +266,26 @@ void PatchMotionCheck::finish_way() noexcept {
 /// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
 /// come to by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
-  if (!may_look_ahead() || sweeping_ || !(size(pen_) > kStands)) return;
+  if (!may_look_ahead() || sweeping_ || !(size(heading_.pen) > kStands)) return;
   ways_.come_to(X);
-  looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), pen_) && covers_near(sweep_->near());
+  looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), heading_.pen) && covers_near(sweep_->near());
   if (!looks_ahead_ && !begin_ahead(X)) return;
   looks_ahead_ = true;
   if (sweep_->go_on(limit_.deadline_ns)) finish_way();
 }
 
 bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
-  const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, pen_); };
+  const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, heading_.pen); };
   const bool on_way = !ways_.empty() && covers_near(ways_.last().way.parts()) && leads_on(ways_.first().way);
   // What is met there would end the next one at once.
-  if (on_way && (ways_.full() || !ways_.last().met.empty() || !same_way(ways_.last().way.motion(), pen_))) return false;
+  if (on_way && (ways_.full() || !ways_.last().met.empty() || !same_way(ways_.last().way.motion(), heading_.pen)))
+    return false;
   const double faces = static_cast<double>(held_->mesh().triangles.size());
-  const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(pen_));
+  const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(heading_.pen));
   const Pose from = on_way ? ways_.last().way.end() : X;
-  if (size(displacement(X, from, center_)) > far * size(pen_)) return false;
-  if (!find_swept(X, from, far * pen_)) return false;
-  look_at(from, far * pen_, clearance_, worth({}, far * pen_));
+  if (size(displacement(X, from, center_)) > far * size(heading_.pen)) return false;
+  if (!find_swept(X, from, far * heading_.pen)) return false;
+  look_at(from, far * heading_.pen, clearance_, worth({}, far * heading_.pen));
   return true;
 }
 
@@ -293,6 +306,7 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
   instead_ = d;
   if (!sweep_->go_on(limit_.deadline_ns) || past(limit_.deadline_ns)) {
     share_ = 0;
+    if (sweep_->met_near()) tell(sweep_->blocking(), blocking);
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
@@ -308,6 +322,8 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
   if (way.ends_at(displaced(X, center_, *instead_))) tell(met, blocking);
   swept_for_ = now_ - swept_since_ + 1;
   swept_until_ = now_;
+  swept_from_ = sweep_->start();
+  swept_motion_ = sweep_->motion();
   forget_small_cells(*instead_);
   return answer(blocking);
 }

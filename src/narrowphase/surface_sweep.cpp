@@ -34,9 +34,12 @@ void SurfaceSweep::begin(const Pose& X, const Displacement& d, const std::vector
   for (std::size_t i = 0; i < near.size(); ++i) outside_[i] = model_->facing && outside[i];
   question_.clearance = aim.clearance;
   question_.kept = std::max(aim.kept, aim.clearance);
+  question_.kept_far = std::max(aim.kept_far, question_.kept);
+  question_.far = aim.far;
   const double length = d.dp.norm() + model_->reach * d.dr.norm();
   question_.worth = aim.worth / length;
   blocked_within_ = aim.blocked_within / length;
+  near_within_ = aim.near_within / length;
   question_.drawn = model_->backing ? aim.drawn : std::nullopt;
   under_way_ = true;
   start_looks();
@@ -46,7 +49,7 @@ void SurfaceSweep::start_looks() {
   blocking_.clear();
   end_ = faces_end_ = {1, false};
   searched_ = 0;
-  met_at_once_ = false;
+  met_at_once_ = met_near_ = false;
   start_look(Look::sample);
 }
 
@@ -136,6 +139,7 @@ void SurfaceSweep::next_part() {
     met_at_once_ = true;
     under_way_ = false;
   } else if (question_.look == Look::sample) {
+    met_near_ = end_.share < near_within_ && !blocking_.empty();
     start_look(std::isfinite(question_.worth) ? Look::blocks : Look::faces);
   } else {
     under_way_ = false;

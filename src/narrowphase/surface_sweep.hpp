@@ -24,9 +24,14 @@ struct SweepAim {
   /// What a few faces tell to be in the way ends the motion so far (m) before it is touched: nearer, the planes of
   /// faces that lie on each other keep few of their neighbors apart.
   double kept = 12e-6;
+  /// So far (m), for what is farther than `far` (m) at the start: there, whole blocks of faces tell as much as all
+  /// faces.
+  double kept_far = 0, far = std::numeric_limits<double>::infinity();
   /// Where a few faces meet something within so much (m), they are told and nothing else is looked at: no share is free
   /// then.
   double blocked_within = 0;
+  /// What a few faces meet within so much (m) is told before all are looked at; see met_near().
+  double near_within = 0;
   /// A side to which A may be drawn out at the start with no point of a part's pieces inside (see Backing). It is not,
   /// where something meets what was drawn.
   std::optional<Backing::Side> drawn = std::nullopt;
@@ -71,6 +76,8 @@ class SurfaceSweep {
   const std::vector<FacePair>& blocking() const { return blocking_; }
   /// When done: a few faces met something at once (see SweepAim::blocked_within).
   bool met_at_once() const { return met_at_once_; }
+  /// Before it is done: a few faces met something near (see SweepAim::near_within). It is in blocking().
+  bool met_near() const { return met_near_; }
   /// When done: whole blocks ended the motion, or looking farther would have taken too long, and more of it may be
   /// free.
   bool ended_early() const { return end_.early; }
@@ -91,9 +98,9 @@ class SurfaceSweep {
   std::shared_ptr<const SweepModel> model_;
   std::vector<FacePair> blocking_;
 
-  bool under_way_ = false, met_at_once_ = false;
-  SweepTask::Question question_;  ///< of the step that is done
-  double blocked_within_ = 0;     ///< as a share of the motion
+  bool under_way_ = false, met_at_once_ = false, met_near_ = false;
+  SweepTask::Question question_;                 ///< of the step that is done
+  double blocked_within_ = 0, near_within_ = 0;  ///< as shares of the motion
   std::vector<std::uint32_t> near_;
   std::vector<bool> outside_;  ///< of each of them: faces that recede from it are not looked at
   std::uint32_t at_ = 0;       ///< of near_

@@ -63,8 +63,8 @@ class SweepTask {
   struct Question {
     Pose X;
     Displacement d;
-    double clearance = 0, kept = 0;  ///< m, see SweepAim
-    double worth = 0;                ///< as a share of the motion
+    double clearance = 0, kept = 0, kept_far = 0, far = 0;  ///< m, see SweepAim
+    double worth = 0;                                       ///< as a share of the motion
     Look look = Look::sample;
     Layer layer = Layer::faces;
     std::optional<Backing::Side> drawn;

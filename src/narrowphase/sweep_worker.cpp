@@ -427,10 +427,10 @@ bool SweepWorker::keeps_apart(const Faces& faces) {
 
 /// Something is in the way: the motion ends before it.
 void SweepWorker::meet(const Faces& faces, std::uint32_t face, std::uint32_t face_b) {
-  const bool sample = question().look == Look::sample;
-  double until = free_until(faces, sample ? question().kept : question().clearance);
+  const bool far = question().kept_far > question().kept && free_until(faces, question().far) > 0;
+  double until = free_until(faces, far ? question().kept_far : question().kept);
   // It was nearer at the start.
-  if (until == 0 && sample) until = free_until(faces, question().clearance);
+  if (until == 0) until = free_until(faces, question().clearance);
   task_->add_met({until, face, face_b});
   task_->faces_end.lower({until, false});
   task_->end.lower({until, false});

@@ -113,7 +113,8 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
                            (X * middle - seat).dot(c.approach),
                            box.most_apart(X, Y),
                            r.proxy.touching ? force : 0,
-                           r.contacts};
+                           r.contacts,
+                           r.gap};
     judges.look(look);
     trace.look(tick, look, r);
     sample.look(tick, X);

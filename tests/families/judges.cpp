@@ -46,7 +46,9 @@ void Judges::look(const CaseTick& tick) {
   if (tick.phase == Phase::approach && free) worst_free_ = std::max(worst_free_, tick.off);
   if (tick.phase == Phase::rest && tick.last) rest_ = tick.part;
   look_at_force(tick);
-  if (tick.off > truth_.lag && tick.contacts == 0) {
+  // A contact farther off than that explains nothing.
+  const bool explained = tick.contacts > 0 && tick.gap <= truth_.lag;
+  if (tick.off > truth_.lag && !explained) {
     most_unexplained_ = std::max(most_unexplained_, ++unexplained_);
     unexplained_off_ = std::max(unexplained_off_, tick.off);
   } else {

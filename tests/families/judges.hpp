@@ -30,6 +30,7 @@ struct CaseTick {
   double off;    ///< m: how far the part is off the pen, at the corner of its box where that is most
   double force;  ///< N: stiffness times how far the center is off the pen, 0 without a contact
   int contacts;
+  double gap;  ///< m: the smallest of a contact
 };
 
 class Judges {

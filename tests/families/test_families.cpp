@@ -24,6 +24,7 @@ struct Part1d {
   bool felt = true;  ///< while it is held back
   double lags = 0;   ///< m behind the pen in free space
   int late = 0;      ///< ticks it stays where it was after the pen was lifted off
+  double gap = 0;    ///< m that its contacts are off
 };
 
 /// What the judges find on the case's own pen.
@@ -45,7 +46,8 @@ std::vector<Finding> judged(const Part1d& part, const CaseOptions& options = {})
     if (lifted && y < -truth.margin && late-- > 0) x = part.stops;
     const double off = std::abs(y - x);
     const bool contact = part.felt && x >= part.stops;
-    judges.look({phase, pen.last(tick), y, x, off, contact ? c.scene.coupling.stiffness * off : 0, contact ? 1 : 0});
+    judges.look(
+        {phase, pen.last(tick), y, x, off, contact ? c.scene.coupling.stiffness * off : 0, contact ? 1 : 0, part.gap});
   }
   return judges.findings(0);
 }
@@ -110,27 +112,30 @@ TEST_CASE("the same numbers give the same case, an unknown family is refused", "
 TEST_CASE("judges find nothing where a part behaves, and each fault where it does not", "[families]") {
   CHECK(judged({}).empty());
   CHECK(judged({}, {true, {}}).empty());
-  CHECK(judged({-15e-6, true, 0, 0}).empty());  // a gap is kept
+  CHECK(judged({-15e-6, true, 0, 0, 0}).empty());  // a gap is kept
 
-  const auto wall = judged({-0.3e-3, false, 0, 0});  // what the issue is about
+  const auto wall = judged({-0.3e-3, false, 0, 0, 0});  // what the issue is about
   CHECK(found(wall, "rests short"));
   CHECK(found(wall, "force at rest"));
   CHECK(found(wall, "held back without a contact"));
   CHECK(found(wall, "off the pen in free space"));
   CHECK(found(wall, "sliding on a plane seat"));
 
-  const auto through = judged({0.4e-3, true, 0, 0});
+  CHECK(found(judged({0, true, 0, 0, 1.1e-4}), "held back without a contact"));
+  CHECK(judged({0, true, 0, 0, 0.9e-4}).empty());
+
+  const auto through = judged({0.4e-3, true, 0, 0, 0});
   CHECK(found(through, "rests beyond its seat"));
   CHECK_FALSE(found(through, "rests short"));
 
-  const auto mute = judged({0, false, 0, 0});
+  const auto mute = judged({0, false, 0, 0, 0});
   CHECK(found(mute, "force at rest"));
   CHECK_FALSE(found(mute, "rests short"));
 
-  CHECK(found(judged({0, true, 2e-9, 0}), "off the pen in free space"));
-  CHECK(judged({0, true, 0, 49}).empty());
-  CHECK(found(judged({0, true, 0, 60}), "lifted, the part follows after"));
-  CHECK(found(judged({0, true, 0, 100000}), "lifted, the part does not follow"));
+  CHECK(found(judged({0, true, 2e-9, 0, 0}), "off the pen in free space"));
+  CHECK(judged({0, true, 0, 49, 0}).empty());
+  CHECK(found(judged({0, true, 0, 60, 0}), "lifted, the part follows after"));
+  CHECK(found(judged({0, true, 0, 100000, 0}), "lifted, the part does not follow"));
 }
 
 TEST_CASE("FCL sees where small parts intersect", "[families]") {

@@ -571,7 +571,7 @@ TEST_CASE("with little time a tick, a fine sheet comes down on its die by motion
     const std::int64_t deadline_ns = monotonic_ns() + 100000;
     check.begin(near, deadline_ns, OtherParts::far);
     check.trust_start();
-    check.heads(tick < 250 ? pen : Displacement{}, false, 20e-6);
+    check.heads({tick < 250 ? pen : Displacement{}});
     blocking.clear();
     check.check(X, d, kClearance, blocking);
     const auto other = check.instead();
@@ -587,4 +587,28 @@ TEST_CASE("with little time a tick, a fine sheet comes down on its die by motion
   CHECK(hits == 0);
   CHECK(instead > 0);
   CHECK(met == 1);
+}
+
+TEST_CASE("what is met ends a motion farther off where that is wanted, and is told before the look is done") {
+  // Closed forms: a box over another one.
+  const MeshPtr cube = box({0.01, 0.01, 0.01}), plate = box({0.05, 0.05, 0.01});
+  SurfaceSweep sweep = sweep_past(cube, plate, Vec3::Zero());
+  constexpr double kWay = 2e-3;
+  const auto left = [&](double gap, double near_within) {
+    SweepAim aim{kClearance};
+    aim.kept_far = 100e-6;
+    aim.far = 200e-6;
+    aim.near_within = near_within;
+    sweep.begin({Quat::Identity(), {0.003, 0.002, 0.02 + gap}}, {{0, 0, -kWay}, Vec3::Zero()}, {0}, {false}, aim);
+    sweep.go_on(kNoDeadline);
+    return gap - sweep.share() * kWay;
+  };
+  CHECK(left(1e-3, 1.1e-3) == Approx(100e-6).margin(1e-6));
+  CHECK(sweep.met_near());
+  REQUIRE_FALSE(sweep.blocking().empty());
+  CHECK(left(1e-3, 0.5e-3) == Approx(100e-6).margin(1e-6));
+  CHECK_FALSE(sweep.met_near());
+  CHECK(left(210e-6, 0) == Approx(100e-6).margin(1e-6));
+  // Nearer than that it is gone on to contact.
+  CHECK(left(190e-6, 0) == Approx(SweepAim{kClearance}.kept).margin(2e-6));
 }
