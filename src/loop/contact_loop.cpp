@@ -96,6 +96,11 @@ bool same(const Displacement& a, const Displacement& b) {
   return a.dp == b.dp && a.dr == b.dr;
 }
 
+/// By how much `d` opens a contact (m).
+double opening(const Contact& c, const Displacement& d) {
+  return c.n.dot(d.dp + d.dr.cross(c.r));
+}
+
 }  // namespace
 
 ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, const MassProperties& mass)
@@ -133,6 +138,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   last_Y_ = Y;
   tracked_ = touched_ = false;
   owed_.reset();
+  late_hairs_ = 0;
   swings_.forget();
   margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
   return true;
@@ -148,6 +154,7 @@ void ContactLoop::stand_at(const Pose& X) {
   at_.check->begin(near_, kNoDeadline, OtherParts::far);
   tracked_ = timed_out_ = comes_ = touched_ = queried_ = false;
   owed_.reset();
+  late_hairs_ = 0;
   margin_ = max_margin_;
   trust_ = substep_cap_;
   moved_ = 0;
@@ -496,7 +503,7 @@ double ContactLoop::gap_in_the_way(const Pose& Y) const {
   const Displacement d = displacement(X_, Y, center_);
   double nearest = std::numeric_limits<double>::infinity();
   for (const Contact& c : at_.contacts->constraints())
-    if (c.age != kOneShotAge && -c.n.dot(d.dp + d.dr.cross(c.r)) > c.gap) nearest = std::min(nearest, c.gap);
+    if (c.age != kOneShotAge && -opening(c, d) > c.gap) nearest = std::min(nearest, c.gap);
   return nearest;
 }
 
@@ -505,7 +512,7 @@ bool ContactLoop::leaves(const Pose& Y) const {
   const Displacement d = displacement(X_, Y, center_);
   const double least = kOpens * size(d);
   return std::all_of(constraints.begin(), constraints.end(), [&](const Contact& c) {
-    return c.age == kOneShotAge || c.gap > margin_ / kMarginShare || c.n.dot(d.dp + d.dr.cross(c.r)) > least;
+    return c.age == kOneShotAge || c.gap > margin_ / kMarginShare || opening(c, d) > least;
   });
 }
 

@@ -227,6 +227,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::size_t next_offered_ = 0;
   ProvedWay line_;                    ///< what is looked at, as if it were proved
   bool line_touches_ = false;         ///< A touched something when that began
+  bool near_told_ = false;            ///< of that: what was met near
   std::vector<std::uint32_t> swept_;  ///< parts
   struct {
     Pose X;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "narrowphase/patch_motion_check.hpp"
 #include "tegotae/core/clock.hpp"
@@ -65,6 +66,7 @@ void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clea
   sweep_->begin(X, d, swept_, outside_, aim);
   line_.set(X, d, swept_);
   line_touches_ = heading_.touches;
+  near_told_ = false;
 }
 
 void PatchMotionCheck::count_still(const Pose& X) noexcept {
@@ -306,7 +308,8 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
   instead_ = d;
   if (!sweep_->go_on(limit_.deadline_ns) || past(limit_.deadline_ns)) {
     share_ = 0;
-    if (sweep_->met_near()) tell(sweep_->blocking(), blocking);
+    // Once: its contacts are followed from then on.
+    if (sweep_->met_near() && !std::exchange(near_told_, true)) tell(sweep_->blocking(), blocking);
     return MotionAnswer::unknown;
   }
   sweeping_ = false;
