@@ -48,6 +48,41 @@ bool are_helpers(int count) {
   return helpers() == count;
 }
 
+/// Lowers a sheet on its die with so little time (s) a tick, and looks at the contacts of the ticks in which it stands
+/// farther above than contacts are else. How many there were.
+int ticks_held_above(double tick_budget) {
+  Scene scene = sheet_over_die(90, 0);
+  scene.contact.tick_budget = tick_budget;
+  HapticLoop loop(scene);
+  // Sheet and die are the same waves: along the normal they are as far apart as the sheet is high times the cosine of
+  // the slope (up to 0.5), but for what edges of 1.1 mm cut off.
+  constexpr double kCos = 0.89, kSagittas = 40e-6;
+  int far_off = 0;
+  Pose before;
+  for (int tick = 0; tick < 600; ++tick) {
+    const Pose Y = {Quat::Identity(), {0, 0, std::max(-0.003, 0.002 - 5e-5 * tick)}};
+    const TickReport& r = loop.step(Y, 1e-3);
+    const Pose X = r.proxy.X;
+    // Where it moves, contacts may be those of the pose before.
+    const bool stands = X.p == std::exchange(before, X).p;
+    if (!stands || r.contacts == 0 || r.gap <= *loop.contact().l_min) continue;
+    ++far_off;
+    CHECK(r.lag > loop.lag_bound());
+    CHECK(r.gap <= loop.lag_bound());
+    CHECK(r.gap < X.p.z() + kSagittas);
+    CHECK(r.gap > kCos * X.p.z() - kSagittas);
+    CHECK(r.proxy.touching);
+    bool in_the_way = false;
+    for (const ContactPoint& c : loop.contacts()) {
+      CHECK((c.point_a - c.point_b).norm() == Approx(c.gap).margin(1e-9));
+      // Where the pen wants the point is beyond the other surface.
+      in_the_way = in_the_way || c.normal.dot(Y * (X.inverse() * c.point_a) - c.point_b) < 0;
+    }
+    CHECK(in_the_way);
+  }
+  return far_off;
+}
+
 }  // namespace
 
 TEST_CASE("there are as many helpers as are asked for, where a tick has an end and the part is large") {
@@ -116,34 +151,11 @@ TEST_CASE("with helpers a sheet comes down on its die, slides and comes off, and
 }
 
 TEST_CASE("what is in the way of a part that is out of time is a contact, a little farther off than others") {
-  Scene scene = sheet_over_die(90, 0);
-  scene.contact.tick_budget = 1e-4;  // it waits above its seat
-  HapticLoop loop(scene);
-  // Sheet and die are the same waves: along the normal they are as far apart as the sheet is high times the cosine of
-  // the slope (up to 0.5), but for what edges of 1.1 mm cut off.
-  constexpr double kCos = 0.89, kSagittas = 40e-6;
+  // A tick with which it waits above its seat: long enough to know what is near, too short for a look at all of it. How
+  // long that is depends on the machine; from one length to four times as much it is so on all of them.
   int far_off = 0;
-  Pose before;
-  for (int tick = 0; tick < 600; ++tick) {
-    const Pose Y = {Quat::Identity(), {0, 0, std::max(-0.003, 0.002 - 5e-5 * tick)}};
-    const TickReport& r = loop.step(Y, 1e-3);
-    const Pose X = r.proxy.X;
-    // Where it moves, contacts may be those of the pose before.
-    const bool stands = X.p == std::exchange(before, X).p;
-    if (!stands || r.contacts == 0 || r.gap <= *loop.contact().l_min) continue;
-    ++far_off;
-    CHECK(r.lag > loop.lag_bound());
-    CHECK(r.gap <= loop.lag_bound());
-    CHECK(r.gap < X.p.z() + kSagittas);
-    CHECK(r.gap > kCos * X.p.z() - kSagittas);
-    CHECK(r.proxy.touching);
-    bool in_the_way = false;
-    for (const ContactPoint& c : loop.contacts()) {
-      CHECK((c.point_a - c.point_b).norm() == Approx(c.gap).margin(1e-9));
-      // Where the pen wants the point is beyond the other surface.
-      in_the_way = in_the_way || c.normal.dot(Y * (X.inverse() * c.point_a) - c.point_b) < 0;
-    }
-    CHECK(in_the_way);
+  for (const double tick_budget : {1e-4, 4e-4, 1.6e-3, 6.4e-3}) {
+    if (far_off == 0) far_off = ticks_held_above(tick_budget);
   }
   CHECK(far_off > 0);
 }
