@@ -27,6 +27,11 @@ constexpr float kLayers = 0.02F;
 /// and where a quarter of them or more look in one of a few directions, exact to this share of what all are, which is
 /// no less than so much.
 constexpr float kOneOfFew = 0.3F, kFewDirections = 0.2F;
+/// Where they turn along the other axes, they are parted along one that is at least this share of the longest.
+constexpr float kDrawnOut = 0.3F;
+/// A difference of depths that is none, as a share of the longest, and the share of the spread of normals that the
+/// place has to tell.
+constexpr float kFlat = 1e-4F, kTold = 0.2F;
 /// Faces of a stretch of the curve.
 constexpr std::size_t kStretch = 256 * std::size_t{kBlockFaces};
 
@@ -107,6 +112,36 @@ Way way_of(const Placed* faces, std::size_t count) {
   return way;
 }
 
+/// The axis along which faces are parted so that the halves are flat: along which they bend most over its length, or
+/// the longest. By how much normals turn with the place along each (least squares).
+std::size_t axis_to_part(const Placed* faces, std::size_t count, const Extent& e) {
+  std::size_t best = e.longest;
+  const float longest = e.high[e.longest] - e.low[e.longest];
+  const Way way = way_of(faces, count);
+  float deepest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float length = e.high[k] - e.low[k];
+    if (length < kDrawnOut * longest) continue;
+    const float middle = 0.5F * (e.low[k] + e.high[k]);
+    std::array<float, 3> turns{};
+    float places2 = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float at = faces[i].middle[k] - middle;
+      places2 += at * at;
+      for (std::size_t c = 0; c < 3; ++c) turns[c] += at * (faces[i].normal[c] - way.mean[c]);
+    }
+    if (!(places2 > 0)) continue;
+    // Of noise, as much as chance tells.
+    const float told = dot(turns, turns) / (places2 * static_cast<float>(count) * way.spread * way.spread);
+    const float depth = std::sqrt(dot(turns, turns)) / places2 * length * length;
+    if (told > kTold && depth > deepest + kFlat * longest) {
+      deepest = depth;
+      best = k;
+    }
+  }
+  return best;
+}
+
 /// The normal of the face that looks least in a direction.
 std::array<float, 3> farthest_from(const Placed* faces, std::size_t count, const std::array<float, 3>& n) {
   return std::min_element(faces, faces + count,
@@ -165,7 +200,9 @@ std::size_t part(Placed* faces, std::size_t count) {
   const std::size_t blocks = (count + kBlockFaces - 1) / kBlockFaces;
   half = blocks == 1 ? (count + 1) / 2 : (blocks + 1) / 2 * kBlockFaces;
   std::nth_element(faces, faces + half, faces + count,
-                   [axis = e.longest](const Placed& a, const Placed& b) { return a.middle[axis] < b.middle[axis]; });
+                   [axis = axis_to_part(faces, count, e)](const Placed& a, const Placed& b) {
+                     return a.middle[axis] < b.middle[axis];
+                   });
   return half;
 }
 

@@ -109,6 +109,32 @@ TEST_CASE("blocks are flat: no two sides of a sheet, no layers, no two direction
   for (std::uint32_t b = 0; b < blocks.count(); ++b) CHECK(slabs.slab(0, b).half.z() < 1e-9);
 }
 
+TEST_CASE("blocks of what is round are drawn out along it, and flat for it") {
+  // A tube of squares, two triangles each: around it, what is `n` squares wide is R (1 - cos(n pi / around)) deep.
+  constexpr int kAround = 240, kAlong = 120;
+  constexpr double kRadius = 0.1, kEdge = 2 * test::kPi * kRadius / kAround;
+  TriangleMesh tube;
+  for (int i = 0; i <= kAlong; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2 * test::kPi * k / kAround;
+      tube.vertices.emplace_back(kRadius * std::cos(angle), kRadius * std::sin(angle), i * kEdge);
+    }
+  const auto at = [](int i, int k) { return static_cast<std::uint32_t>(kAround * i + k % kAround); };
+  for (int i = 0; i < kAlong; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      tube.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k)});
+      tube.triangles.push_back({at(i + 1, k), at(i, k + 1), at(i + 1, k + 1)});
+    }
+  const PatchTree tree(std::make_shared<const TriangleMesh>(tube));
+  const FaceBlocks blocks(tree);
+  const BlockSlabs slabs(tree, blocks);
+  const auto depth = [&](double squares) { return kRadius * (1 - std::cos(squares * test::kPi / kAround)); };
+  double mean = 0;
+  for (std::uint32_t b = 0; b < blocks.count(); ++b) mean += 2 * slabs.slab(0, b).half.z() / blocks.count();
+  // Eight squares are four by two; as many blocks would lie either way if it did not matter.
+  CHECK(mean < depth(3));
+}
+
 TEST_CASE("slabs hold the faces of their blocks, and blocks that they keep apart do not meet") {
   std::mt19937 rng(35);
   int parted = 0, wrong = 0, near = 0;
