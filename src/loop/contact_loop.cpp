@@ -87,7 +87,7 @@ constexpr double kHair = 0.05;
 constexpr int kLateHairs = 30;
 // Contacts that all open by this share of the way to the pen, and more, are left.
 constexpr double kOpens = 0.05;
-// What is no farther than this share of the part's radius, and kMaxUnexplainedLag, holds a part that is out of time.
+// What is no farther than this share of the part's radius holds a part that is out of time.
 constexpr double kNearShare = 1.5e-3;
 // Parts that are nearer than this (m) touch, or hardly come nearer.
 constexpr double kNearGap = 100e-6;
@@ -118,7 +118,7 @@ ContactLoop::ContactLoop(const Scene& scene, const ContactSettings& settings, co
   trust_ = substep_cap_ = at_.check->longest_motion();
   max_margin_ = margin_ = kMarginShare * *settings_.l_min;
   min_margin_ = scene.contact.l_min ? max_margin_ : std::min(kMinMargin, max_margin_);
-  near_gap_ = std::max(*settings_.l_min, std::min(kNearShare * at_.radius, kMaxUnexplainedLag));
+  near_gap_ = std::max(*settings_.l_min, kNearShare * at_.radius);
   recover_below_ = kRecoverBelow;
   X_ = at_.X;
   last_Y_ = held_part(scene).pose;
