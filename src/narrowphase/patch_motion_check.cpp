@@ -121,6 +121,7 @@ PatchMotionCheck::PatchMotionCheck(const std::shared_ptr<const TriangleMesh>& he
       poses_(std::move(poses)),
       headway_(center, radius, kHeadwayEdges * mean_edge(*held)),
       ways_(center, radius, fixed.size() + 1, kMaxBlocking),
+      offered_(center, radius),
       line_(center, radius, fixed.size() + 1),
       edge_(mean_edge(*held)) {
   static const std::vector<AxisPair> kNoAxes;
@@ -299,10 +300,7 @@ MotionAnswer PatchMotionCheck::check(const Pose& X, const Displacement& d, doubl
                                      std::vector<FacePair>& blocking) noexcept {
   const bool asked = std::exchange(asked_, true);
   const MotionAnswer answer = ask(X, d, clearance, blocking);
-  if (answer != MotionAnswer::unknown && instead_ && !declined(X)) {
-    offered_[next_offered_] = {X, now_};
-    next_offered_ = (next_offered_ + 1) % offered_.size();
-  }
+  if (answer != MotionAnswer::unknown && instead_ && !offered_.declined(X, now_)) offered_.add(X, *instead_, now_);
   // Nothing is in the way but work, which pairs that were taken apart for motions elsewhere may have used up: each of
   // them costs a search, and few go together again in a call that ends so.
   if (answer != MotionAnswer::unknown || !asked || limit_.deadline_ns != kNoDeadline || effort_ == ProofEffort::quick)
@@ -320,7 +318,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   take_turns(X);
   if (sweeping_ && sweeps(X, wanted)) return ask_sweep(X, wanted, blocking);
   sweeping_ = false;
-  if (!declined(X)) {
+  if (!offered_.declined(X, now_)) {
     if (goes_along(X, wanted, blocking)) return answer(blocking);
     instead_ = onto_way(X, wanted);
   }
@@ -341,8 +339,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
     if (!near_cells_.empty()) behind_ |= ask_all_cells(X, d, clearance, blocking);
   }
   limit_.deadline_ns = deadline_ns;
-  behind_for_ = !behind_ ? 0 : behind_since_ == now_ ? behind_for_ : behind_for_ + 1;
-  behind_since_ = now_;
+  count_behind();
   // What was begun ahead of it may have come to here.
   const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || at_end_of_way(X));
   if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
@@ -352,6 +349,15 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
     if (sweeping_) return ask_sweep(X, wanted, blocking);
   }
   return answer(blocking);
+}
+
+/// A tick in which they ran out of time is one of those, whatever they answered before.
+void PatchMotionCheck::count_behind() noexcept {
+  if (std::exchange(behind_since_, now_) != now_) {
+    behind_before_ = behind_for_;
+    behind_for_ = 0;
+  }
+  if (behind_) behind_for_ = behind_before_ + 1;
 }
 
 bool PatchMotionCheck::ask_all_cells(const Pose& X, const Displacement& d, double clearance,

@@ -13,6 +13,7 @@
 #include "narrowphase/headway.hpp"
 #include "narrowphase/leaving.hpp"
 #include "narrowphase/motion_check.hpp"
+#include "narrowphase/offered_motions.hpp"
 #include "narrowphase/part_bundle.hpp"
 #include "narrowphase/patch_front.hpp"
 #include "narrowphase/proved_way.hpp"
@@ -100,12 +101,6 @@ class PatchMotionCheck final : public MotionCheck {
     std::uint64_t since = 0;  ///< the begin() of the last tick
   };
 
-  /// Where A was when a motion was proved instead of the one that was asked about.
-  struct Offered {
-    Pose X;
-    std::uint64_t at = 0;  ///< the begin(); 0: none
-  };
-
   /// How far ahead a front has been asked at rest.
   struct Ahead {
     Pose X;                                                    ///< where
@@ -130,6 +125,7 @@ class PatchMotionCheck final : public MotionCheck {
   /// Whether a motion is looked at as a whole that `X` is on, and that leads where `d` does.
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
+  void count_behind() noexcept;
   void take_turns(const Pose& X) noexcept;
   /// Where something touches, whether the cells bring A on as fast as looks at all of it.
   bool cells_turn() const { return heading_.touches && turn_.of_cells && !stands_still(); }
@@ -141,7 +137,6 @@ class PatchMotionCheck final : public MotionCheck {
   /// What was looked at is a way from now on, after those that are known.
   void add_way() noexcept;
   bool at_end_of_way(const Pose& X) const noexcept;
-  bool declined(const Pose& X) const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
   void fronts_left() noexcept;
@@ -223,12 +218,11 @@ class PatchMotionCheck final : public MotionCheck {
   bool behind_ = false;                  ///< the cells ran out of time when they were asked last
   std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then
   ProvedWays ways_;                      ///< of it
-  std::array<Offered, 4> offered_;       ///< the last of them
-  std::size_t next_offered_ = 0;
-  ProvedWay line_;                    ///< what is looked at, as if it were proved
-  bool line_touches_ = false;         ///< A touched something when that began
-  bool near_told_ = false;            ///< of that: what was met near
-  std::vector<std::uint32_t> swept_;  ///< parts
+  OfferedMotions offered_;               ///< the last of them
+  ProvedWay line_;                       ///< what is looked at, as if it were proved
+  bool line_touches_ = false;            ///< A touched something when that began
+  bool near_told_ = false;               ///< of that: what was met near
+  std::vector<std::uint32_t> swept_;     ///< parts
   struct {
     Pose X;
     int count = 0;
@@ -239,7 +233,8 @@ class PatchMotionCheck final : public MotionCheck {
   bool looks_ahead_ = false;        ///< it is at a way that A has not come to yet
   Heading heading_;                 ///< see heads()
   int behind_for_ = 0;              ///< ticks in a row, up to
-  std::uint64_t behind_since_ = 0;  ///< the begin() of the last of them
+  std::uint64_t behind_since_ = 0;  ///< the begin() of the last one in which they were asked
+  int behind_before_ = 0;           ///< ticks in a row before that
   int still_for_ = 0;               ///< ticks in a row in which A stood at still_X_ and they were behind
   Pose still_X_;
   std::uint64_t still_since_ = 0;  ///< the begin() of the last of them

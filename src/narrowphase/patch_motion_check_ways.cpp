@@ -27,7 +27,7 @@ constexpr double kSameWay = 0.95, kStands = 1e-7;
 // some faces and for each face: about as long as the look at all faces takes. No less than this share of what is
 // wanted, and no more than that of all that is looked at. Fewer faces are looked at one by one.
 constexpr double kWorthTicks = 2, kWorthTicksPerFace = 1e-4;
-constexpr double kWorthOfWanted = 0.25, kWorthOfAll = 0.7;
+constexpr double kWorthOfWanted = 0.7, kWorthOfAll = 0.7;
 constexpr std::size_t kManyFaces = 1U << 12;
 // What a few faces tell to be in the way is come to as near as this share of the gap that counts as contact.
 constexpr double kKeptOfContact = 0.6;
@@ -117,14 +117,6 @@ bool PatchMotionCheck::may_sweep() const noexcept {
 /// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind.
 bool PatchMotionCheck::may_go_along() const noexcept {
   return may_sweep() && trusted_ && !heading_.touches && (!near_cells_.empty() || behind_);
-}
-
-/// Whether A is where a motion was proved instead of the one that was asked about, a few of them ago: it was not made,
-/// or led to and fro.
-bool PatchMotionCheck::declined(const Pose& X) const noexcept {
-  return std::any_of(offered_.begin(), offered_.end(), [&](const Offered& o) {
-    return o.at != 0 && o.at != now_ && size(displacement(o.X, X, center_)) < kStill;
-  });
 }
 
 bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {

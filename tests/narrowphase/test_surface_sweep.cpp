@@ -3,6 +3,7 @@
 #include "catch.hpp"
 #include "core/numbers.hpp"
 #include "narrowphase/facing.hpp"
+#include "narrowphase/offered_motions.hpp"
 #include "narrowphase/patch_motion_check.hpp"
 #include "narrowphase/surface_sweep.hpp"
 #include "patch_oracle.hpp"
@@ -254,6 +255,26 @@ TEST_CASE("a way is gone along in both directions, but not back before where it 
   CHECK(way.is_on(displaced(beside, center, *way.join(beside, 0.25 * d))));
   way.drop();
   CHECK(!way.toward(half, d));
+}
+
+TEST_CASE("a motion is not offered again where it was not made, but a short one that was made does not count") {
+  OfferedMotions offered(Vec3(0.01, 0, 0), 0.05);
+  const Pose X{rotation(Vec3(0.1, 0.2, 0.3)), Vec3(1, 2, 3)};
+  CHECK(!offered.declined(X, 1));
+  const Displacement d{{0.01, 0, 0}, {0, 0, 0.1}}, hair{{3e-7, 0, 0}, Vec3::Zero()};
+  offered.add(X, d, 1);
+  CHECK(!offered.declined(X, 1));  // in the tick it is asked about again
+  CHECK(offered.declined(X, 2));
+  CHECK(offered.declined({X.q, X.p + Vec3(0, 0, 0.5e-6)}, 3));
+  CHECK(!offered.declined({X.q, X.p + Vec3(0, 0, 1.5e-6)}, 3));
+  // To the end of a way, which ends here: the next way begins there.
+  const Pose Z{X.q, X.p + Vec3(0, 0, 1)}, end = displaced(Z, Vec3(0.01, 0, 0), hair);
+  offered.add(Z, hair, 4);
+  CHECK(offered.declined(Z, 5));
+  CHECK(!offered.declined(end, 5));
+  // It remembers a few.
+  for (std::uint64_t tick = 5; tick < 9; ++tick) offered.add({X.q, Vec3(0, 0, static_cast<double>(tick))}, d, tick);
+  CHECK(!offered.declined(X, 9));
 }
 
 TEST_CASE("who asks about some of the parts is answered about the motion that was asked for") {
