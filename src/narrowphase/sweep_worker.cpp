@@ -32,10 +32,13 @@ constexpr double kShareKept = 0.999;
 /// that lie beside each other, or around in each other, takes seconds for a large part.
 constexpr std::uint32_t kManyPassed = 64, kManyAsked = 48;
 constexpr double kPassedWay = 4, kAskedWay = 1;
-/// What whole blocks leave of a motion is enough where it is so much of what faces have left.
-constexpr double kEnough = 0.85;
-/// Blocks that may be looked at face by face before all are: so many, and one for so many of A's.
+/// What whole blocks leave of a motion is enough where it is so much of what faces have left: less, the more blocks
+/// were looked at face by face.
+constexpr double kEnoughAtFirst = 0.98, kEnough = 0.85;
+/// Few of those: so many, and one for so many of A's.
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
+/// Where more of those that were looked at until then are, all of A's may be.
+constexpr double kFew = 0.125;
 
 /// Pieces are nodes of this level, or of the one below where there would be few.
 std::uint32_t piece_level(const FaceBlocks& blocks) {
@@ -220,12 +223,19 @@ void SweepWorker::next_node() {
 bool SweepWorker::is_enough(double apart) const {
   const double kept = kShareKept * apart * share_;
   if (question().look != Look::blocks || question().layer != Layer::faces) return false;
-  return kept >= kEnough * task_->faces_end.value().share || (!may_search() && kept >= question().worth);
+  const double searched = task_->searched.load() / few_blocks();
+  const double enough = kEnough + (kEnoughAtFirst - kEnough) * std::max(0.0, 1 - searched);
+  return kept >= enough * task_->faces_end.value().share || (!may_search() && kept >= question().worth);
 }
 
-/// Whether few blocks were looked at face by face until now.
+double SweepWorker::few_blocks() const {
+  return kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
+}
+
+/// Whether few blocks were looked at face by face until now, of all or of those that were looked at.
 bool SweepWorker::may_search() const {
-  return task_->searched.load() < kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
+  const double done = static_cast<double>(*piece_ + 1) / question().pieces;
+  return task_->searched.load() < std::max(few_blocks(), kFew * done * surface_a_->blocks.count());
 }
 
 /// The share of the motion in which all faces under A's node are apart from B, or less.

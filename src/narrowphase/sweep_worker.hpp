@@ -53,6 +53,7 @@ class SweepWorker {
   void next_node();
   double node_apart_for(const Node& node);
   bool is_enough(double apart) const;
+  double few_blocks() const;
   bool may_search() const;
   bool apart_from_faces(const MovedSlab& slab, std::uint32_t block);
   MovedSlab moved(const Slab& slab) const;
