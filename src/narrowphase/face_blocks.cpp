@@ -114,10 +114,9 @@ Way way_of(const Placed* faces, std::size_t count) {
 
 /// The axis along which faces are parted so that the halves are flat: along which they bend most over its length, or
 /// the longest. By how much normals turn with the place along each (least squares).
-std::size_t axis_to_part(const Placed* faces, std::size_t count, const Extent& e) {
+std::size_t axis_to_part(const Placed* faces, std::size_t count, const Extent& e, const Way& way) {
   std::size_t best = e.longest;
   const float longest = e.high[e.longest] - e.low[e.longest];
-  const Way way = way_of(faces, count);
   float deepest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const float length = e.high[k] - e.low[k];
@@ -150,8 +149,7 @@ std::array<float, 3> farthest_from(const Placed* faces, std::size_t count, const
 }
 
 /// Where faces look the other way than others, those come last; returns how many come first.
-std::size_t part_by_side(Placed* faces, std::size_t count) {
-  Way way = way_of(faces, count);
+std::size_t part_by_side(Placed* faces, std::size_t count, Way way) {
   if (way.length < kOneWay) way.mean = farthest_from(faces, count, faces[0].normal);
   const auto along = [&](const Placed& f) { return dot(f.normal, way.mean); };
   if (std::none_of(faces, faces + count, [&](const Placed& f) { return along(f) < kOtherWay; })) return count;
@@ -188,11 +186,11 @@ std::size_t part_by_layer(Placed* faces, std::size_t count, const Way& way, floa
 /// to, and in the middle of their longest extent.
 std::size_t part(Placed* faces, std::size_t count) {
   if (count == 1) return 1;
-  std::size_t half = part_by_side(faces, count);
+  const Way way = way_of(faces, count);
+  std::size_t half = part_by_side(faces, count, way);
   if (half < count) return half;
   const Extent e = extent_of(faces, count);
   if (count <= kBlockFaces) {
-    const Way way = way_of(faces, count);
     half = part_by_direction(faces, count, way);
     if (half == count) half = part_by_layer(faces, count, way, std::sqrt(e.diagonal2));
     if (half < count || e.diagonal2 < kLongest * kLongest * e.lengths2) return half;
@@ -200,7 +198,7 @@ std::size_t part(Placed* faces, std::size_t count) {
   const std::size_t blocks = (count + kBlockFaces - 1) / kBlockFaces;
   half = blocks == 1 ? (count + 1) / 2 : (blocks + 1) / 2 * kBlockFaces;
   std::nth_element(faces, faces + half, faces + count,
-                   [axis = axis_to_part(faces, count, e)](const Placed& a, const Placed& b) {
+                   [axis = axis_to_part(faces, count, e, way)](const Placed& a, const Placed& b) {
                      return a.middle[axis] < b.middle[axis];
                    });
   return half;

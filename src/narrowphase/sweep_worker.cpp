@@ -35,10 +35,11 @@ constexpr double kPassedWay = 4, kAskedWay = 1;
 /// What whole blocks leave of a motion is enough where it is so much of what faces have left: less, the more blocks
 /// were looked at face by face.
 constexpr double kEnoughAtFirst = 0.98, kEnough = 0.85;
-/// Few of those: so many, and one for so many of A's.
+/// Few blocks of A: so many, and one of so many.
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
-/// Where more of those that were looked at until then are, all of A's may be.
-constexpr double kFew = 0.125;
+/// Where more than few were looked at face by face, and more than this share of those that the look has come past, all
+/// are.
+constexpr double kMost = 0.125;
 
 /// Pieces are nodes of this level, or of the one below where there would be few.
 std::uint32_t piece_level(const FaceBlocks& blocks) {
@@ -232,10 +233,10 @@ double SweepWorker::few_blocks() const {
   return kFewBlocks + surface_a_->blocks.count() / kBlocksShare;
 }
 
-/// Whether few blocks were looked at face by face until now, of all or of those that were looked at.
+/// Whether few blocks were looked at face by face until now, of all or of those that the look has come past.
 bool SweepWorker::may_search() const {
   const double done = static_cast<double>(*piece_ + 1) / question().pieces;
-  return task_->searched.load() < std::max(few_blocks(), kFew * done * surface_a_->blocks.count());
+  return task_->searched.load() < std::max(few_blocks(), kMost * done * surface_a_->blocks.count());
 }
 
 /// The share of the motion in which all faces under A's node are apart from B, or less.
