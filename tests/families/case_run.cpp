@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "families/judges.hpp"
+#include "session/step_schedule.hpp"
+#include "tegotae/core/clock.hpp"
 #include "tegotae/core/error.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 
@@ -100,11 +102,16 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
   result.seconds_judges += cpu_seconds() - before;
   Trace trace(options.trace);
   const Vec3 middle = box.middle(), seat = c.seat * middle;
+  StepSchedule schedule(std::llround(1e9 * kPeriod));
+  schedule.begin(monotonic_ns());
   for (int tick = 0; tick < pen.ticks(); ++tick) {
+    // The threads that help go on in between, as they do beside a pen.
+    const std::int64_t begun = options.real_time ? schedule.wait() : 0;
     const Pose Y = pen.pose(tick);
     const double start = cpu_seconds();
     const TickReport& r = loop.step(Y, kPeriod);
     const double done = cpu_seconds();
+    if (options.real_time) schedule.done(begun, monotonic_ns());
     const Pose& X = r.proxy.X;
     const double force = c.scene.coupling.stiffness * (X * middle - Y * middle).norm();
     const CaseTick look = {pen.phase(tick),
