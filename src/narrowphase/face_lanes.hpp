@@ -19,6 +19,8 @@ struct alignas(64) FaceLanes {
   std::array<Field, 3> low, high;  ///< of the corners along the axes
   Vec3 origin;                     ///< from that of B's tree, m
   float size = 0;                  ///< largest coordinate, m
+  std::array<float, 3> mean;       ///< of the normals, likewise
+  float mean_low, mean_high;       ///< of all corners along it
 
   FaceLanes() = default;
   FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block);
@@ -32,6 +34,8 @@ struct alignas(64) MovedLanes {
   Field normal_low, normal_high;               ///< of the six corners along it
   std::array<Field, 3> low, high;              ///< of them along the axes
   float size = 0;                              ///< largest coordinate, m
+  std::array<float, 3> mean;                   ///< of the normals, likewise
+  float mean_low, mean_high;                   ///< of all corners along it
 
   /// `start` and `end` bring the faces, from their own origin, to where they are from the common one.
   void set(const FaceLanes& faces, const Placement& start, const Placement& end) noexcept;
@@ -47,33 +51,6 @@ struct MovedBox {
 
   /// The first three of `start` are of one side.
   MovedBox(const std::array<Vec3, 8>& start, const std::array<Vec3, 8>& end);
-};
-
-/// Blocks of B's faces beside a block of A's, as its faces are asked about them one by one.
-class BesideFaces {
- public:
-  static constexpr std::uint32_t kMost = 32;
-  struct Block {
-    const FaceLanes* faces;
-    std::array<float, 3> shift;  ///< the origin of A's faces from theirs, m
-    float floor;                 ///< m, with room for the rounding of all that is asked about
-  };
-
-  std::uint32_t count() const { return count_; }
-  void clear() { count_ = 0; }
-  /// The blocks `found` of B beside `a`, whose common point is `origin` from that of B's tree.
-  void set(const FaceBlocks& blocks, const std::vector<FaceLanes>& lanes, const std::uint32_t* found,
-           std::uint32_t count, const MovedLanes& a, const Vec3& origin, double floor) noexcept;
-  /// Goes on from block `at`, to the next of which not all faces are kept apart from face `k` of `a` as by
-  /// not_kept_apart() or by a direction that is likely to, of no more than unit length: a bit for each of them. None:
-  /// all are.
-  std::uint32_t next_not_kept_apart(const MovedLanes& a, std::uint32_t k, const std::array<float, 3>& guess,
-                                    std::uint32_t& at) const noexcept;
-
- private:
-  std::array<BoxLanes, kMost / BoxLanes::kBoxes> boxes_;  ///< grown by what is to be kept
-  std::array<Block, kMost> blocks_;
-  std::uint32_t count_ = 0;
 };
 
 /// Of the faces of `b`, those that neither the axes nor the planes of the two faces keep `floor` (m) apart from face

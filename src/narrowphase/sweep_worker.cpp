@@ -351,7 +351,6 @@ void SweepWorker::place(std::uint32_t block) {
     box.high[i] += at + slack;
   }
   walk(box, 0);
-  beside_.clear();
   face_ = faces_;
   passed_ = asked_ = 0;
   sizes_passed_ = way / faces.size;
@@ -388,9 +387,9 @@ void SweepWorker::look_less_far() {
 
 void SweepWorker::look_at_face(std::uint32_t k) {
   if ((skipped_ >> k & 1) != 0) return;
-  for (std::uint32_t at = 0; at < beside_.count(); ++at) {
-    const std::uint32_t open = beside_.next_not_kept_apart(moved_, k, across_, at);
-    if (open != 0 && !look_at_pairs(k, found_[at], open)) return;
+  for (std::uint32_t blocks = beside_.open(k), bit = 0; blocks != 0;) {
+    const std::uint32_t faces = beside_.next_not_kept_apart(moved_, k, across_, blocks, bit);
+    if (faces != 0 && !look_at_pairs(k, beside_.index(bit), faces)) return;
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "narrowphase/face_lanes.hpp"
+#include "narrowphase/beside_faces.hpp"
 #include "narrowphase/patch_separate.hpp"
 #include "narrowphase/receding.hpp"
 #include "narrowphase/sweep_model.hpp"

@@ -5,6 +5,7 @@
 
 #include "catch.hpp"
 #include "core/numbers.hpp"
+#include "narrowphase/beside_faces.hpp"
 #include "narrowphase/surface_sweep.hpp"
 #include "patch_oracle.hpp"
 #include "patch_scenes.hpp"
@@ -253,7 +254,7 @@ TEST_CASE("faces that are kept apart do not meet on their straight ways, however
 
 TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
   std::mt19937 rng(39), rng_guess(40);
-  std::size_t near = 0, most = 0, guessed = 0;
+  std::size_t near = 0, most = 0, guessed = 0, as_a_whole = 0, wrong = 0;
   for (int n = 0; n < 400; ++n) {
     const auto mesh = soup(rng, 300, 0.05, uniform(rng, 0.005, 0.05));
     const PatchTree tree(mesh);
@@ -289,13 +290,14 @@ TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
       const std::array<float, 3> guessed_n = {static_cast<float>(guess.x()), static_cast<float>(guess.y()),
                                               static_cast<float>(guess.z())};
       std::map<std::uint32_t, std::uint32_t> told;
-      for (std::uint32_t at = 0; at < beside.count(); ++at)
-        if (const std::uint32_t open = beside.next_not_kept_apart(moved, k, guessed_n, at); open != 0) told[at] = open;
+      for (std::uint32_t left = beside.open(k), bit = 0; left != 0;)
+        if (const std::uint32_t open = beside.next_not_kept_apart(moved, k, guessed_n, left, bit); open != 0)
+          told[beside.index(bit)] = open;
       for (std::uint32_t i = 0; i < found.size(); ++i) {
         const FaceLanes& b = lanes[found[i]];
         std::uint32_t open = not_kept_apart(moved, k, b, origin - b.origin, kKeptApart);
         near += open != 0;
-        const std::uint32_t known = told.count(i) != 0 ? told.at(i) : 0;
+        const std::uint32_t known = told.count(found[i]) != 0 ? told.at(found[i]) : 0;
         CHECK((known & ~open) == 0);
         // Places without a face repeat the last one.
         open &= ~known & ((1U << blocks.faces(found[i])) - 1);
@@ -306,12 +308,22 @@ TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
           open &= ~(1U << f);
           ++guessed;
         }
-        if (open != 0) {
-          // Boxes are told apart with less rounding.
-          Eigen::AlignedBox3d box;
-          for (std::uint32_t f = 0; f < blocks.faces(found[i]); ++f)
-            for (int c = 0; c < 3; ++c) box.extend(tree.corner(blocks.face(found[i], f), c) - tree.origin());
-          CHECK((way.min() - box.max()).cwiseMax(box.min() - way.max()).maxCoeff() > kKeptApart);
+        if (open == 0) continue;
+        // Boxes are told apart with less rounding.
+        Eigen::AlignedBox3d box;
+        for (std::uint32_t f = 0; f < blocks.faces(found[i]); ++f)
+          for (int c = 0; c < 3; ++c) box.extend(tree.corner(blocks.face(found[i], f), c) - tree.origin());
+        if ((way.min() - box.max()).cwiseMax(box.min() - way.max()).maxCoeff() > kKeptApart) continue;
+        // Or a direction keeps one face apart from all of the others.
+        for (std::uint32_t f = 0; f < blocks.faces(found[i]); ++f) {
+          if ((open >> f & 1) == 0) continue;
+          ++as_a_whole;
+          const Corners other = corners(*mesh, blocks.face(found[i], f), Pose{Quat::Identity(), -tree.origin()});
+          for (int s = 0; s <= 8; ++s) {
+            Corners on_way;
+            for (std::size_t c = 0; c < 3; ++c) on_way[c] = from[c] + (s / 8.0) * (to[c] - from[c]);
+            wrong += triangles_meet(on_way, other) || (n % 20 == 0 && nearly(on_way, other, 6) < kKeptApart);
+          }
         }
       }
       most = std::max(most, told.size());
@@ -319,5 +331,35 @@ TEST_CASE("all that is beside a block is asked about, whatever of it is near") {
   }
   CHECK(near > 3000);
   CHECK(guessed > 200);
+  CHECK(as_a_whole > 20);
+  CHECK(wrong == 0);
   CHECK(most > 8);
+}
+
+TEST_CASE("blocks of flat sheets are open to each other just where these come too near") {
+  std::mt19937 rng(41);
+  for (int n = 0; n < 200; ++n) {
+    const Mat3 turned = rotation(random_in_ball(rng, 3)).toRotationMatrix();
+    auto sheet = std::make_shared<TriangleMesh>(*wave(0.01, 0, 0.01, 8));
+    for (Vec3& v : sheet->vertices) v = turned * v;
+    const PatchTree tree(sheet);
+    const FaceBlocks blocks(tree);
+    std::vector<FaceLanes> lanes;
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t b = 0; b < blocks.count(); ++b) {
+      lanes.emplace_back(tree, blocks, b);
+      found.push_back(b);
+    }
+    REQUIRE(found.size() > 4);
+    // Above or below, aside, and at the end of the motion that far from each other.
+    const Vec3 up = (n % 2 == 0 ? 1 : -1) * turned.col(2), aside = 0.003 * (turned * Vec3(uniform(rng, -1, 1), 1, 0));
+    const bool apart = n % 4 < 2;
+    const double at_end = apart ? uniform(rng, kKeptApart + 1e-6, 1e-4) : uniform(rng, -1e-4, kKeptApart - 1e-6);
+    const Vec3 origin = aside + uniform(rng, 2e-4, 1e-3) * up, middle = lanes[0].origin + origin;
+    MovedLanes moved;
+    moved.set(lanes[0], {Mat3::Identity(), Vec3::Zero()}, {Mat3::Identity(), (at_end - origin.dot(up)) * up});
+    BesideFaces beside;
+    beside.set(blocks, lanes, found.data(), static_cast<std::uint32_t>(found.size()), moved, middle, kKeptApart);
+    for (std::uint32_t k = 0; k < kBlockFaces; ++k) CHECK(beside.open(k) == (apart ? 0 : (1U << found.size()) - 1));
+  }
 }
