@@ -365,8 +365,15 @@ std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {
       continue;
     }
     std::uint32_t bits = blocks_->boxes_below(node.level - 1, node.index).overlapping(box_);
-    for (std::uint32_t i = FaceBlocks::kFan * node.index; bits != 0; ++i, bits >>= 1)
-      if ((bits & 1) != 0) stack_[stacked_++] = {node.level - 1, i};
+    const bool told = node.level - 1 == level_ && found + FaceBlocks::kFan <= most;
+    for (; bits != 0; bits &= bits - 1) {
+      const std::uint32_t i = FaceBlocks::kFan * node.index + static_cast<std::uint32_t>(__builtin_ctz(bits));
+      if (told) {
+        out[found++] = i;
+      } else {
+        stack_[stacked_++] = {node.level - 1, i};
+      }
+    }
   }
   return found;
 }
