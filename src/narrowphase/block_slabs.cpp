@@ -10,8 +10,6 @@ namespace {
 
 /// Slabs are grown by this share of their coordinates, for rounding.
 constexpr double kSlabError = 1e-12;
-/// Edges whose product is shorter than the root of this are parallel.
-constexpr double kParallel = 1e-6;
 /// Faces of which edges are tried as the direction of a slab.
 constexpr std::size_t kEdgesTried = 8;
 
@@ -104,11 +102,6 @@ double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept {
   look_along(b.axes.col(2));
   for (int i = 2; i >= 0 && best < 1; --i) look_along(a.axes.col(i));
   for (int i = 0; i < 2 && best < 1; ++i) look_along(b.axes.col(i));
-  for (int i = 0; i < 3 && best < 1; ++i) look_along(Vec3::Unit(i));
-  for (int i = 0; i < 9 && best < 1; ++i) {
-    const Vec3 n = a.axes.col(i / 3).cross(b.axes.col(i % 3));
-    if (n.squaredNorm() > kParallel) look_along(n.normalized());
-  }
   return best;
 }
 

@@ -43,8 +43,8 @@ class BlockSlabs {
   std::vector<std::vector<Slab>> slabs_;  ///< of each level
 };
 
-/// The share of a straight motion, from its start, in which a fixed plane across faces or edges of the slabs keeps `a`
-/// at least `floor` (m) apart from `b`; 0 where they are nearer at the start.
+/// The share of a straight motion, from its start, in which a fixed plane along a side of a slab keeps `a` at
+/// least `floor` (m) apart from `b`; 0 where none does at the start.
 double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept;
 
 }  // namespace tegotae
