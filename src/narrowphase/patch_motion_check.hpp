@@ -125,7 +125,7 @@ class PatchMotionCheck final : public MotionCheck {
   /// Whether a motion is looked at as a whole that `X` is on, and that leads where `d` does.
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
-  void count_behind() noexcept;
+  void count_behind(const Displacement& d) noexcept;
   void take_turns(const Pose& X) noexcept;
   /// Where something touches, whether the cells bring A on as fast as looks at all of it.
   bool cells_turn() const { return heading_.touches && turn_.of_cells && !stands_still(); }
@@ -232,6 +232,7 @@ class PatchMotionCheck final : public MotionCheck {
   double clearance_ = 0;            ///< of the last check, m
   bool looks_ahead_ = false;        ///< it is at a way that A has not come to yet
   Heading heading_;                 ///< see heads()
+  bool fronts_busy_ = false;        ///< they took long when they were asked last
   int behind_for_ = 0;              ///< ticks in a row, up to
   std::uint64_t behind_since_ = 0;  ///< the begin() of the last one in which they were asked
   int behind_before_ = 0;           ///< ticks in a row before that

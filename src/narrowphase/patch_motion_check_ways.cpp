@@ -123,13 +123,13 @@ bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
   return !ways_.empty() && ways_.first().way.is_on(X) && ways_.first().way.ends_at(X);
 }
 
-/// Of large parts, fronts may be behind as soon as they touch, but for threads and bores: on those they keep up, and a
-/// look at a way along them would take all the time that ticks leave over.
+/// Of large parts, fronts may be behind as soon as they touch, but for threads and bores: on those they keep up, or
+/// tell before, and a look at a way along them would take all the time that ticks leave over.
 bool PatchMotionCheck::may_look_ahead() const noexcept {
   const auto on_axis = [this](std::uint32_t part) { return !axes_[part]->empty(); };
   const auto may_be_behind = [&] {
     return held_->mesh().triangles.size() >= kManyFaces &&
-           !std::all_of(near_fronts_.begin(), near_fronts_.end(), on_axis);
+           (fronts_busy_ || !std::all_of(near_fronts_.begin(), near_fronts_.end(), on_axis));
   };
   return may_sweep() && trusted_ && !heading_.touches && (may_go_along() || may_be_behind());
 }
