@@ -87,15 +87,6 @@ std::shared_ptr<const PatchTree> walls_under(const TriangleMesh& mesh,
   return std::make_shared<const PatchTree>(walls);
 }
 
-/// Whether the way from `from` by `along` may meet the ball around a node's box.
-bool may_meet(const PatchNode& n, const Vec3& from, const Vec3& along) {
-  const Vec3 p = n.center_vec() - from;
-  const double share = std::clamp(p.dot(along) / along.squaredNorm(), 0.0, 1.0);
-  const double radius =
-      std::sqrt(double{n.half[0]} * n.half[0] + double{n.half[1]} * n.half[1] + double{n.half[2]} * n.half[2]);
-  return (p - share * along).norm() <= 1.001 * radius + kNear * along.norm() + 1e-6 * p.norm();
-}
-
 }  // namespace
 
 std::shared_ptr<const Backing> Backing::of(const std::shared_ptr<const PatchTree>& tree, const Facing* facing) {
@@ -105,60 +96,46 @@ std::shared_ptr<const Backing> Backing::of(const std::shared_ptr<const PatchTree
   auto backing = std::shared_ptr<Backing>(new Backing(tree));
   backing->out_ = depth * shape.axis;
   std::vector<int> sides;
-  std::size_t drawn = 0;
+  std::vector<std::uint32_t> drawn;
   for (std::uint32_t f = 0; f < tree->order().size(); ++f) {
     const Vec3 n = normal_of(*tree, f);
     const double along = n.dot(shape.axis);
     const int side = along > kLeastFacing ? 1 : along < -kLeastFacing ? -1 : 0;
     sides.push_back(side);
-    drawn += side == 0 ? 0 : 1;
+    if (side != 0) drawn.push_back(f);
     backing->faces_.push_back(side == 0 ? NormalCone{} : NormalCone::about(side * n, 1));
   }
   const auto faces = static_cast<double>(sides.size());
   const auto edges = rims(tree->mesh(), sides);
-  if (static_cast<double>(drawn) < kEnoughFaces * faces) return nullptr;
+  if (static_cast<double>(drawn.size()) < kEnoughFaces * faces) return nullptr;
   if (2 * static_cast<double>(edges.size()) > kMostWalls * faces) return nullptr;
+  backing->columns_ = FaceColumns(*tree, shape.axis, drawn);
   for (const Side side : {Side::plus, Side::minus})
     backing->walls_[static_cast<std::size_t>(side)] = walls_under(tree->mesh(), edges, backing->drawn(side));
   return backing;
 }
 
 bool Backing::outside(const Vec3& p, Side side) const noexcept {
-  const Vec3 from = p - tree_->origin(), along = -drawn(side);
-  std::array<std::uint32_t, 128> stack;
-  std::size_t count = 0;
-  stack[count++] = 0;
-  while (count > 0) {
-    const PatchNode& node = tree_->nodes()[stack[--count]];
-    if (!may_meet(node, from, along)) continue;
-    if (!node.leaf()) {
-      if (count + 2 > stack.size()) return false;
-      stack[count++] = node.first;
-      stack[count++] = node.first + 1;
-      continue;
+  const Vec3 along = -drawn(side);
+  for (const std::uint32_t face : columns_.beside(p - tree_->origin())) {
+    std::array<Vec3, 3> v;
+    double size = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      v[k] = tree_->corner(face, static_cast<int>(k)) - p;
+      size = std::max(size, v[k].squaredNorm());
     }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t face = tree_->order()[i];
-      if (!(faces_[face].cos > 0)) continue;
-      std::array<Vec3, 3> v;
-      double size = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        v[k] = tree_->corner(face, static_cast<int>(k)) - p;
-        size = std::max(size, v[k].squaredNorm());
-      }
-      // On which side of each edge the line passes.
-      const double least = kGrazing * size * along.norm();
-      bool left = false, right = false;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double passes = along.dot(v[k].cross(v[(k + 1) % 3]));
-        left = left || passes > least;
-        right = right || passes < -least;
-      }
-      if (left && right) continue;
-      const Vec3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
-      const double share = normal.dot(v[0]) / normal.dot(along);
-      if (share > -kNear && share < 1 + kNear) return false;
+    // On which side of each edge the line passes.
+    const double least = kGrazing * size * along.norm();
+    bool left = false, right = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double passes = along.dot(v[k].cross(v[(k + 1) % 3]));
+      left = left || passes > least;
+      right = right || passes < -least;
     }
+    if (left && right) continue;
+    const Vec3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+    const double share = normal.dot(v[0]) / normal.dot(along);
+    if (share > -kNear && share < 1 + kNear) return false;
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "narrowphase/face_columns.hpp"
 #include "narrowphase/facing.hpp"
 #include "narrowphase/normal_cone.hpp"
 #include "narrowphase/patch_tree.hpp"
@@ -40,6 +41,7 @@ class Backing {
   std::shared_ptr<const PatchTree> tree_;
   Vec3 out_ = Vec3::Zero();  ///< along the axis, as long as the depth
   std::vector<NormalCone> faces_;
+  FaceColumns columns_;  ///< those that are drawn out, along the axis
   std::array<std::shared_ptr<const PatchTree>, 2> walls_;
 };
 

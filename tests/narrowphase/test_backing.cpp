@@ -59,6 +59,45 @@ TEST_CASE("what a sheet is drawn out to is inside, on its side and as deep") {
   CHECK(inside > 100);
 }
 
+TEST_CASE("of curved sheets however they lie, what each face is drawn out to is inside") {
+  std::mt19937 rng(53);
+  int inside = 0, outside = 0;
+  for (int n = 0; n < 12; ++n) {
+    // Somewhere in space, some with a second one of small faces.
+    auto sheet = std::make_shared<TriangleMesh>(*with_turned_faces(wave(0.1, 0.008, 0.05, n % 3 == 0 ? 24 : 40), rng));
+    if (n % 2 == 0) sheet = std::make_shared<TriangleMesh>(*both(sheet, wave(0.01, 0, 1, 12), Vec3(0.1, 0.02, 0.01)));
+    const Pose at{rotation(random_in_ball(rng, 3)), random_in_ball(rng, 1)};
+    for (Vec3& v : sheet->vertices) v = at * v;
+    const auto backing = Backing::of(hierarchy_of(sheet), nullptr);
+    REQUIRE(backing);
+    const Vec3 up = at.q * Vec3::UnitZ();
+    REQUIRE(backing->drawn(Side::plus).cross(up).norm() < 0.05 * backing->drawn(Side::plus).norm());
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 p = at * Vec3(uniform(rng, -0.06, 0.12), uniform(rng, -0.06, 0.06), uniform(rng, -0.02, 0.02));
+      for (const Side side : {Side::plus, Side::minus}) {
+        const Vec3 back = -backing->drawn(side);
+        bool expected = false, unsure = false;
+        for (const auto& t : sheet->triangles) {
+          // p + s back = a + u (b - a) + v (c - a)
+          const Vec3 &a = sheet->vertices[t[0]], &b = sheet->vertices[t[1]], &c = sheet->vertices[t[2]];
+          Mat3 system;
+          system << b - a, c - a, -back;
+          if (std::abs((b - a).cross(c - a).normalized().dot(back.normalized())) < 0.11) continue;
+          const Vec3 x = system.inverse() * (p - a);
+          const double least = std::min({x[0], x[1], 1 - x[0] - x[1], x[2], 1 - x[2]});
+          expected = expected || least > 0;
+          unsure = unsure || std::abs(least) < 1e-4;
+        }
+        if (unsure) continue;
+        CHECK(backing->outside(p, side) == !expected);
+        (expected ? inside : outside) += 1;
+      }
+    }
+  }
+  CHECK(inside > 2000);
+  CHECK(outside > 5000);
+}
+
 TEST_CASE("only what looks along one axis is drawn out, and no thick solid") {
   const auto backing_of = [](const MeshPtr& mesh) {
     const auto tree = hierarchy_of(mesh);
