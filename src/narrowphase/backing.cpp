@@ -116,8 +116,12 @@ std::shared_ptr<const Backing> Backing::of(const std::shared_ptr<const PatchTree
 }
 
 bool Backing::outside(const Vec3& p, Side side) const noexcept {
-  const Vec3 along = -drawn(side);
-  for (const std::uint32_t face : columns_.beside(p - tree_->origin())) {
+  const Vec3 from = p - tree_->origin(), along = -drawn(side);
+  const double depth = out_.norm(), at = from.dot(out_) / depth, slack = 2 * kNear * depth;
+  const double low = at - (side == Side::plus ? depth : 0) - slack,
+               high = at + (side == Side::plus ? 0 : depth) + slack;
+  for (const auto& [face_low, face_high, face] : columns_.beside(from)) {
+    if (face_high < low || face_low > high) continue;
     std::array<Vec3, 3> v;
     double size = 0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 /// Faces that a cell holds in the mean, if none were in two, and cells along an axis at most.
-constexpr double kFacesPerCell = 2, kMostCells = 4096;
+constexpr double kFacesPerCell = 8, kMostCells = 4096;
 /// Faces are taken to be larger by this share of the whole grid: points near their edges are asked about as well.
 constexpr double kSlack = 1e-6;
 
@@ -66,7 +66,16 @@ FaceColumns::FaceColumns(const PatchTree& tree, const Vec3& axis, const std::vec
   for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
   faces_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (const std::uint32_t face : faces) for_cells(face, [&](std::size_t cell) { faces_[next[cell]++] = face; });
+  for (const std::uint32_t face : faces) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int c = 0; c < 3; ++c) {
+      const double along = (tree.corner(face, c) - tree.origin()).dot(axis);
+      low = std::min(low, along - slack);
+      high = std::max(high, along + slack);
+    }
+    const Face told = {static_cast<float>(low), static_cast<float>(high), face};
+    for_cells(face, [&](std::size_t cell) { faces_[next[cell]++] = told; });
+  }
 }
 
 std::uint32_t FaceColumns::cell_of(double at, std::size_t i) const {

@@ -9,19 +9,24 @@
 namespace tegotae {
 
 /// Faces of a surface by where they are seen along an axis, in a grid across it: which of them a line along the axis
-/// may pass is known without a search. About 10 bytes a face. Immutable.
+/// may pass is known without a search. About 25 bytes a face. Immutable.
 class FaceColumns {
  public:
   FaceColumns() = default;
   /// Of those `faces`; `axis` is of unit length.
   FaceColumns(const PatchTree& tree, const Vec3& axis, const std::vector<std::uint32_t>& faces);
 
-  /// All faces, and maybe more, that the line through `p` (m, from the tree's origin) along the axis passes.
-  struct Faces {
-    const std::uint32_t *first, *last;
-    const std::uint32_t* begin() const { return first; }
-    const std::uint32_t* end() const { return last; }
+  /// A face, and from where to where it is along the axis, from the tree's origin, m, or a little more.
+  struct Face {
+    float low, high;
+    std::uint32_t face;
   };
+  struct Faces {
+    const Face *first, *last;
+    const Face* begin() const { return first; }
+    const Face* end() const { return last; }
+  };
+  /// All faces, and maybe more, that the line through `p` (m, from the tree's origin) along the axis passes.
   Faces beside(const Vec3& p) const noexcept;
 
  private:
@@ -36,7 +41,7 @@ class FaceColumns {
   std::array<double, 2> size_{1, 1};        ///< of a cell, m
   std::array<std::uint32_t, 2> cells_{{}};  ///< along each of the grid's axes
   std::vector<std::uint32_t> first_;        ///< of each cell, in faces_; the end after the last
-  std::vector<std::uint32_t> faces_;
+  std::vector<Face> faces_;
 };
 
 }  // namespace tegotae
