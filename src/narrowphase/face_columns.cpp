@@ -8,7 +8,7 @@ namespace tegotae {
 namespace {
 
 /// Faces that a cell holds in the mean, if none were in two, and cells along an axis at most.
-constexpr double kFacesPerCell = 8, kMostCells = 4096;
+constexpr double kFacesPerCell = 1, kMostCells = 4096;
 /// Faces are taken to be larger by this share of the whole grid: points near their edges are asked about as well.
 constexpr double kSlack = 1e-6;
 
