@@ -111,10 +111,13 @@ class Watcher final : public RunObserver {
     if (!there) since_ = -1;
     if (there && since_ < 0) since_ = tick.t;
     result_.time = there ? since_ : tick.t;
-    if ((there && tick.t - since_ >= kSettleTime) || stop_.load(std::memory_order_relaxed)) end = true;
+    settled_ = there && tick.t - since_ >= kSettleTime;
+    if (settled_ || stop_.load(std::memory_order_relaxed)) end = true;
     blocker_.after_tick(tick);
     clearance_.look(X, end);
   }
+  /// The part has stayed at its goal: nothing was left to do.
+  bool settled() const { return settled_; }
   double clearance() const { return clearance_.least(); }
   apps::Blocker blocker(const Scene& scene, const InitialContactReport& start) const {
     return blocker_.find(scene, start);
@@ -130,6 +133,7 @@ class Watcher final : public RunObserver {
   apps::BlockerWatch blocker_;
   LeastClearance clearance_;
   double since_ = -1;  // when the part came to its goal, s
+  bool settled_ = false;
 };
 
 /// Adds one task of a case to what there is.
@@ -241,7 +245,8 @@ bool run_task(const Task& task, const Attempt& a, const RecordTo& record_to, Res
     const RunSummary summary = run_session(file, settings);
     if (!summary.record_failure.empty()) throw Error(summary.record_failure);
     one.reached = summary.completed && summary.penetrating == 0;
-    if (a.stop && !one.reached) return false;
+    // Also where it was at its goal, and had not stayed there: forces and times were not those of the whole run.
+    if (a.stop && !watcher.settled()) return false;
     one.depth = summary.depth_m;
     one.force = summary.force_max_n;
     one.torque = summary.torque_max_nm;

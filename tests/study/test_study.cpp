@@ -1,14 +1,19 @@
 // Studies: which cases they have, what comes out of them where the answer is known, and what is refused.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include "catch.hpp"
+#include "study/case_table.hpp"
 #include "study/outcome.hpp"
 #include "study/study.hpp"
 #include "study/study_file.hpp"
 #include "study_scene.hpp"
 #include "tegotae/core/error.hpp"
+#include "tegotae/import/load.hpp"
 
 using namespace tegotae;
 using namespace tegotae::test;
@@ -140,6 +145,35 @@ TEST_CASE("draws keep their bounds and have the moments of their distributions")
     CHECK(sum / kDraws == Approx(2.5).margin(4 * std::sqrt(variance / kDraws)));
     CHECK(squares / kDraws == Approx(variance).epsilon(0.04));
   }
+}
+
+TEST_CASE("a case that is stopped at any moment is the whole case, or none") {
+  const TempFolder folder;
+  write_blocks(folder);
+  Study study;
+  study.scenes = {folder / "scene.toml"};
+  study.hold = "block";
+  study.goal = "0,0,0.01002";
+  study.seconds = 6;
+  const auto tasks =
+      load_tasks(study, [](const std::string& path, double unit_in_m) { return load_mesh(path, unit_in_m); });
+  const Case c = make_case(study, 0);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string whole = row_text(run_case(study, *tasks, c, std::atomic<bool>{false}).value());
+  const auto took = std::chrono::steady_clock::now() - begin;
+  int stopped = 0;
+  for (int i = 0; i < 60; ++i) {
+    std::atomic<bool> stop{false};
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(took * i / 50);
+      stop = true;
+    });
+    const auto result = run_case(study, *tasks, c, stop);
+    stopper.join();
+    if (result) CHECK(row_text(*result) == whole);
+    stopped += !result;
+  }
+  CHECK(stopped > 10);
 }
 
 TEST_CASE("what is wrong in a study file is told with line and key") {
