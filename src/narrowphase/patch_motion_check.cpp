@@ -84,8 +84,6 @@ constexpr double kShareKept = 0.999;
 constexpr double kShareBehind = 0.3, kSharePays = 0.5;
 // Fronts are busy that take more than this share of the time that there is, and may be behind soon.
 constexpr double kBusy = 0.15;
-// What is this share of the pen's motion in a tick keeps up with it.
-constexpr double kKeepsUp = 0.9;
 // The share of a tick's spare time that goes to the way ahead.
 constexpr double kWayShare = 0.9;
 
@@ -347,7 +345,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
     if (!near_cells_.empty()) behind_ |= ask_all_cells(X, d, clearance, blocking);
   }
   limit_.deadline_ns = deadline_ns;
-  count_behind(d);
+  count_behind();
   // What was begun ahead of it may have come to here.
   const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || at_end_of_way(X));
   if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
@@ -360,14 +358,12 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
 }
 
 /// A tick in which they ran out of time is one of those, whatever they answered before.
-void PatchMotionCheck::count_behind(const Displacement& d) noexcept {
+void PatchMotionCheck::count_behind() noexcept {
   if (std::exchange(behind_since_, now_) != now_) {
     behind_before_ = behind_for_;
     behind_for_ = 0;
   }
-  // A short motion that is in time after a longer one that was not does not keep up with the pen.
-  const bool keeps_up = heading_.touches || size(d) >= kKeepsUp * size(heading_.pen);
-  if (behind_ || !keeps_up) behind_for_ = behind_before_ + (behind_ ? 1 : 0);
+  if (behind_) behind_for_ = behind_before_ + 1;
 }
 
 bool PatchMotionCheck::ask_all_cells(const Pose& X, const Displacement& d, double clearance,

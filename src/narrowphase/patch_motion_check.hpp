@@ -125,7 +125,7 @@ class PatchMotionCheck final : public MotionCheck {
   /// Whether a motion is looked at as a whole that `X` is on, and that leads where `d` does.
   bool sweeps(const Pose& X, const Displacement& d) const noexcept;
   void count_still(const Pose& X) noexcept;
-  void count_behind(const Displacement& d) noexcept;
+  void count_behind() noexcept;
   void take_turns(const Pose& X) noexcept;
   /// Where something touches, whether the cells bring A on as fast as looks at all of it.
   bool cells_turn() const { return heading_.touches && turn_.of_cells && !stands_still(); }
