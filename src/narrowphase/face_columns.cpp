@@ -9,6 +9,8 @@ namespace {
 
 /// Faces that a cell holds in the mean, if none were in two, and cells along an axis at most.
 constexpr double kFacesPerCell = 1, kMostCells = 4096;
+/// Cells in which a face is listed, at most in the mean.
+constexpr double kMostListed = 12;
 /// Faces are taken to be larger by this share of the whole grid: points near their edges are asked about as well.
 constexpr double kSlack = 1e-6;
 
@@ -47,12 +49,24 @@ FaceColumns::FaceColumns(const PatchTree& tree, const Vec3& axis, const std::vec
     low_[i] -= slack;
     high_[i] += slack;
   }
-  const double side =
+  double side =
       std::sqrt(kFacesPerCell * (high_[0] - low_[0]) * (high_[1] - low_[1]) / static_cast<double>(faces.size()));
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double cells = std::clamp((high_[i] - low_[i]) / side, 1.0, kMostCells);
-    cells_[i] = static_cast<std::uint32_t>(cells);
-    size_[i] = (high_[i] - low_[i]) / cells_[i];
+  // Needles and large faces among small ones are in many cells: in fewer, where those are larger.
+  for (double listed = kMostListed + 1; listed > kMostListed; side *= 2) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double cells = std::clamp((high_[i] - low_[i]) / side, 1.0, kMostCells);
+      cells_[i] = static_cast<std::uint32_t>(cells);
+      size_[i] = (high_[i] - low_[i]) / cells_[i];
+    }
+    listed = 0;
+    for (const std::uint32_t face : faces) {
+      const Extent extent = extent_of(face);
+      const auto span = [&](std::size_t i) {
+        return 1.0 + cell_of(extent.high[i] + slack, i) - cell_of(extent.low[i] - slack, i);
+      };
+      listed += span(0) * span(1) / static_cast<double>(faces.size());
+    }
+    if (cells_[0] == 1 && cells_[1] == 1) break;
   }
   // How many each cell holds, then which.
   first_.assign(std::size_t{cells_[0]} * cells_[1] + 1, 0);
