@@ -9,7 +9,7 @@
 namespace tegotae {
 
 /// Faces of a surface by where they are seen along an axis, in a grid across it: which of them a line along the axis
-/// may pass is known without a search. About 45 bytes a face. Immutable.
+/// may pass is known without a search. About 45 bytes a face, up to 150. Immutable.
 class FaceColumns {
  public:
   FaceColumns() = default;

@@ -98,6 +98,30 @@ TEST_CASE("of curved sheets however they lie, what each face is drawn out to is 
   CHECK(outside > 5000);
 }
 
+TEST_CASE("of a fan of needles, the one that a line passes is listed") {
+  auto fan = std::make_shared<TriangleMesh>();
+  constexpr std::uint32_t kNeedles = 20000;
+  fan->vertices.push_back(Vec3::Zero());
+  for (std::uint32_t i = 0; i < kNeedles; ++i) {
+    const double angle = 2 * kPi * i / kNeedles;
+    fan->vertices.emplace_back(0.1 * std::cos(angle), 0.1 * std::sin(angle), 0);
+    fan->triangles.push_back({0, 1 + i, 1 + (i + 1) % kNeedles});
+  }
+  const auto tree = hierarchy_of(fan);
+  std::vector<std::uint32_t> faces(kNeedles);
+  for (std::uint32_t i = 0; i < kNeedles; ++i) faces[i] = i;
+  const FaceColumns columns(*tree, Vec3::UnitZ(), faces);
+  std::mt19937 rng(54);
+  for (int n = 0; n < 1000; ++n) {
+    const double angle = uniform(rng, 0, 2 * kPi), r = uniform(rng, 0.001, 0.0999);
+    const auto needle = static_cast<std::uint32_t>(angle / (2 * kPi) * kNeedles);
+    const auto listed = columns.beside(Vec3(r * std::cos(angle), r * std::sin(angle), 0.01) - tree->origin());
+    CHECK(std::count_if(listed.begin(), listed.end(), [&](const auto& f) { return f.face == needle; }) == 1);
+  }
+  const auto beside = columns.beside(Vec3(0.11, 0, 0) - tree->origin());
+  CHECK(beside.begin() == beside.end());
+}
+
 TEST_CASE("only what looks along one axis is drawn out, and no thick solid") {
   const auto backing_of = [](const MeshPtr& mesh) {
     const auto tree = hierarchy_of(mesh);
