@@ -7,8 +7,8 @@
 namespace tegotae {
 namespace {
 
-/// So many cells take longer to renew than a hand waits: 30 ms and more.
-constexpr std::uint32_t kManyCells = 8000;
+/// So many cells take longer to renew than a hand waits, or only to go through than they have beside other looks.
+constexpr std::uint32_t kManyCells = 1000;
 /// All begins anew when the part is so many times as far away as it was, and when pieces that are as thick as this part
 /// of the distance would be so many times fewer; not again within so many calls.
 constexpr double kFarther = 8, kThickness = 1.0 / 3;
