@@ -17,6 +17,9 @@ namespace {
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
 // Each step is the distance left, so a line that grazes a wall takes many.
 constexpr int kMaxSteps = 10000;
+// A line that comes askew to what it touches does so within some times the distance that is left; the rest is bisected
+// where that is no more than this share of the whole.
+constexpr double kAskew = 8, kBisected = 0.1;
 // FCL takes triangles for degenerate, and 0 for their distance, when the square of their normal is under 1e-15: of
 // 0.15 mm edges, in meters. So it is asked in this many units a meter.
 constexpr double kUnits = 1e5;
@@ -100,10 +103,14 @@ double TouchLine::distance(const Pose& X, double reach) const {
 }
 
 double TouchLine::travel(const Pose& from, const Vec3& direction, double most, double near) const {
+  const auto at = [&](double s) -> Pose { return {from.q, from.p + s * direction}; };
   double s = 0;
   for (int i = 0; i < kMaxSteps; ++i) {
-    const double left = distance({from.q, from.p + s * direction});
+    const double left = distance(at(s));
     if (left <= near) return s;
+    const double beyond = kAskew * left;
+    if (beyond <= kBisected * most && s + beyond < most && intersects(at(s + beyond)))
+      return s + travel_bisected(at(s), direction, beyond, near);
     s += left;
     if (s >= most) return most;
   }

@@ -18,7 +18,9 @@ class TouchLine {
   double distance(const Pose& X, double reach = std::numeric_limits<double>::infinity()) const;
 
   /// How far (m) the held part may go from `from` along the unit vector `direction` until it is within `near` (m) of a
-  /// fixed part, at most `most`: steps of the distance that is left can miss nothing, so open surfaces stop it too.
+  /// fixed part, at most `most`: steps of the distance that is left can miss nothing, so open surfaces stop it too. Its
+  /// end is bisected, since where large surfaces mate a distance takes a second and a step closes in by a share only;
+  /// what is thin enough to be missed there would let it go too far, never stop it.
   double travel(const Pose& from, const Vec3& direction, double most, double near) const;
 
   /// The same for solids that are guided closely: by bisection between `from`, which is free, and `most` (m) further
