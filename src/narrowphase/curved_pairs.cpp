@@ -166,6 +166,12 @@ std::size_t CurvedPairs::collect_failures(std::uint32_t* failed) noexcept {
   return n;
 }
 
+bool CurvedPairs::in_thread() const noexcept {
+  for (std::uint32_t i = 0; i < used_; ++i)
+    if (groups_[i].count > 0 && (*axes_)[i].b->frame().rise != 0) return true;
+  return false;
+}
+
 std::uint32_t CurvedPairs::owner(std::uint32_t i) const {
   for (const Group& g : groups_) {
     if (i < g.count) return g.owner[i];

@@ -55,6 +55,8 @@ class CurvedPairs {
   std::size_t collect_failures(std::uint32_t* failed) noexcept;
 
   std::uint32_t count() const { return count_; }
+  /// Whether pairs are kept apart about the axis of a thread.
+  bool in_thread() const noexcept;
   std::uint32_t owner(std::uint32_t i) const;  ///< of the i-th of count()
   template <typename F>
   void for_each(F f) const {

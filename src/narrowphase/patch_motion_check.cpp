@@ -483,6 +483,8 @@ bool PatchMotionCheck::many(int pairs) const noexcept {
 
 bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) const noexcept {
   if (choice_[part] == Certificate::front_for_good) return false;
+  // On one flank of its thread a nut is one-sided, and cells are slower there by far.
+  if (fronts_[front_of_[part]].in_thread()) return false;
   // What has had so many pairs for long does well with them: a peg that leans in its hole.
   if (ahead_[front_of_[part]].proved_with_many > kProvedWithMany) return false;
   if (!many(report.pairs * static_cast<int>(near_fronts_.size()))) return false;
