@@ -132,6 +132,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool stands_still() const { return still_for_ >= kTicksStill; }
   bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
+  bool all_on_axes() const noexcept;
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;
   /// What was looked at is a way from now on, after those that are known.

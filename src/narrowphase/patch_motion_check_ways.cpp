@@ -33,6 +33,8 @@ constexpr std::size_t kManyFaces = 1U << 12;
 constexpr double kKeptOfContact = 0.6;
 // What a few faces meet after a way of so many times the gap that explains a lag is told before the look is done.
 constexpr double kNearTold = 4;
+// Ticks after which fronts of threads and bores that were behind are asked again.
+constexpr std::uint64_t kTicksOffAxes = 16;
 // Turns of one kind after which the other is tried.
 constexpr int kTurnsInARow = 6;
 // Ticks in which a look may wait for its turn to begin.
@@ -114,9 +116,16 @@ bool PatchMotionCheck::may_sweep() const noexcept {
          (bundled_ || near_.size() <= kMostSwept);
 }
 
-/// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind.
+bool PatchMotionCheck::all_on_axes() const noexcept {
+  return std::all_of(near_fronts_.begin(), near_fronts_.end(),
+                     [this](std::uint32_t part) { return !axes_[part]->empty(); });
+}
+
+/// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind; those
+/// of threads and bores are so for a moment only, and who goes along a way does not ask them.
 bool PatchMotionCheck::may_go_along() const noexcept {
-  return may_sweep() && trusted_ && !heading_.touches && (!near_cells_.empty() || behind_);
+  const bool fronts_behind = behind_ && (!all_on_axes() || now_ <= behind_since_ + kTicksOffAxes);
+  return may_sweep() && trusted_ && !heading_.touches && (!near_cells_.empty() || fronts_behind);
 }
 
 bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
@@ -126,10 +135,8 @@ bool PatchMotionCheck::at_end_of_way(const Pose& X) const noexcept {
 /// Of large parts, fronts may be behind as soon as they touch, but for threads and bores: on those they keep up, or
 /// tell before, and a look at a way along them would take all the time that ticks leave over.
 bool PatchMotionCheck::may_look_ahead() const noexcept {
-  const auto on_axis = [this](std::uint32_t part) { return !axes_[part]->empty(); };
   const auto may_be_behind = [&] {
-    return held_->mesh().triangles.size() >= kManyFaces &&
-           (fronts_busy_ || !std::all_of(near_fronts_.begin(), near_fronts_.end(), on_axis));
+    return held_->mesh().triangles.size() >= kManyFaces && (fronts_busy_ || !all_on_axes());
   };
   return may_sweep() && trusted_ && !heading_.touches && (may_go_along() || may_be_behind());
 }
