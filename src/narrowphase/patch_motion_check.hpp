@@ -133,6 +133,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
   bool all_on_axes() const noexcept;
+  bool all_in_threads() const noexcept;
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;
   /// What was looked at is a way from now on, after those that are known.

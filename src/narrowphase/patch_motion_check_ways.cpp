@@ -111,9 +111,16 @@ bool PatchMotionCheck::rests(const Pose& X, const Displacement& d) const noexcep
   return now_ < swept_until_ + swept_for_ && same_way(d, swept_motion_);
 }
 
+/// Threads have bursts of pairs. Their fronts get over them, since they keep what they take apart, but not in what
+/// looks leave of ticks.
+bool PatchMotionCheck::all_in_threads() const noexcept {
+  const auto in_thread = [this](std::uint32_t part) { return fronts_[front_of_[part]].in_thread(); };
+  return near_cells_.empty() && std::all_of(near_fronts_.begin(), near_fronts_.end(), in_thread);
+}
+
 bool PatchMotionCheck::may_sweep() const noexcept {
   return sweep_ && limit_.deadline_ns != kNoDeadline && others_ == OtherParts::far &&
-         (bundled_ || near_.size() <= kMostSwept);
+         (bundled_ || near_.size() <= kMostSwept) && !all_in_threads();
 }
 
 bool PatchMotionCheck::all_on_axes() const noexcept {

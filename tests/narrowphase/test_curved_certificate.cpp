@@ -443,6 +443,23 @@ TEST_CASE("threads, pegs and bores are paired about their axes, what does not ma
   CHECK(pegs.with(tree(hole_of()))->size() == 1);
 }
 
+TEST_CASE("a front is in a thread where a nut is on its bolt, not beyond its end, nor in bores", "[curved]") {
+  for (const Fit& fit : fits()) {
+    if (!fit.mates) continue;
+    CAPTURE(fit.name);
+    PatchFront front(FrontCapacity{1u << 14, 32, 1u << 12});
+    front.attach(*fit.a, fit.a->origin(), *fit.b, &fit.axes);
+    CHECK_FALSE(front.in_thread());
+    REQUIRE(front.certify(fit.mated, {}, {1 << 20, 8}).status == CertifyStatus::certified);
+    CHECK(front.in_thread() == (fit.pitch != 0));
+    // All parts are shorter than this.
+    const Pose above = Pose{Quat::Identity(), Vec3(0, 0, 0.06)} * fit.mated;
+    front.attach(*fit.a, fit.a->origin(), *fit.b, &fit.axes);
+    REQUIRE(front.certify(above, {}, {1 << 20, 8}).status == CertifyStatus::certified);
+    CHECK_FALSE(front.in_thread());
+  }
+}
+
 TEST_CASE("a peg that is pressed against its hole costs no more with curves than by planes", "[curved]") {
   const auto tree = [](const TriangleMesh& m) { return std::make_shared<const PatchTree>(mesh_of(m)); };
   const auto peg = tree(peg_of(0.0198)), hole = tree(hole_of());
