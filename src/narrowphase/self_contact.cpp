@@ -17,6 +17,8 @@ using Triangle = std::array<Vec3, 3>;
 constexpr std::uint32_t kAtOnce = 2048;
 /// Normals around a corner that all have this much along their mean leave no doubt that none is turned away from it.
 constexpr double kUpright = 0.05;
+/// All pairs of the faces around a corner are looked at up to so many; more count as meeting.
+constexpr std::uint32_t kMostAround = 4096;
 /// Two faces of an edge that are folded onto each other to less than 0.8 degrees count as meeting.
 constexpr double kFolded = 0.9999;
 /// Corners are beside a plane from this share of the mesh's radius on.
@@ -27,7 +29,10 @@ constexpr double kBoxSlack = 1e-6;
 class SelfContact {
  public:
   SelfContact(const PatchTree& tree, const Topology& topology)
-      : tree_(tree), topology_(topology), still_(Pose{}, {}, Vec3::Zero(), tree, tree.radius(), 0) {}
+      : tree_(tree),
+        topology_(topology),
+        still_(Pose{}, {}, Vec3::Zero(), tree, tree.radius(), 0),
+        common_(common_corners()) {}
 
   bool any() {
     const auto faces = static_cast<std::uint32_t>(tree_.order().size());
@@ -48,6 +53,37 @@ class SelfContact {
                      if (ask(i)) found_ = true;
                  },
                  {});
+  }
+
+  using Corners = std::array<std::uint32_t, 3>;  ///< of the mesh, kNone after the last
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  static bool has(const Corners& corners, std::uint32_t v) {
+    return std::find(corners.begin(), corners.end(), v) != corners.end();
+  }
+
+  static Corners both(const Corners& a, const Corners& b) {
+    Corners out{kNone, kNone, kNone};
+    std::copy_if(a.begin(), a.end(), out.begin(), [&](std::uint32_t v) { return v != kNone && has(b, v); });
+    return out;
+  }
+
+  /// For each node the corners that all faces under it have: the middle of a fan.
+  std::vector<Corners> common_corners() const {
+    const auto& nodes = tree_.nodes();
+    std::vector<Corners> out(nodes.size());
+    const auto of_face = [&](std::uint32_t place) -> Corners {
+      const auto& t = tree_.mesh().triangles[tree_.order()[place]];
+      return {t[0], t[1], t[2]};
+    };
+    // Children come after their node.
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      const PatchNode& node = nodes[i];
+      out[i] = node.leaf() ? of_face(node.first) : both(out[node.first], out[node.first + 1]);
+      if (!node.leaf()) continue;
+      for (std::uint32_t k = node.first + 1; k < node.first + node.count; ++k) out[i] = both(out[i], of_face(k));
+    }
+    return out;
   }
 
   Triangle triangle(std::uint32_t face) const {
@@ -88,6 +124,7 @@ class SelfContact {
 
   bool star_meets(std::uint32_t v) const {
     const std::uint32_t begin = topology_.vertex_face_begin[v], end = topology_.vertex_face_begin[v + 1];
+    if (end - begin > kMostAround) return true;
     for (std::uint32_t i = begin; i < end; ++i)
       for (std::uint32_t k = i + 1; k < end; ++k)
         if (neighbors_meet(topology_.vertex_faces[i], topology_.vertex_faces[k])) return true;
@@ -139,7 +176,11 @@ class SelfContact {
     std::size_t count = 0;
     stack[count++] = 0;
     while (count > 0) {
-      const PatchNode& node = tree_.nodes()[stack[--count]];
+      const std::uint32_t id = stack[--count];
+      const PatchNode& node = tree_.nodes()[id];
+      // Each face of a fan would look at all the others.
+      const Corners& common = common_[id];
+      if (has(common, t[0]) || has(common, t[1]) || has(common, t[2])) continue;
       if (!may_reach(node, a, n)) continue;
       if (!node.leaf()) {
         if (count + 2 > stack.size()) return true;
@@ -179,6 +220,7 @@ class SelfContact {
   const PatchTree& tree_;
   const Topology& topology_;
   const Sweep still_;  ///< of the mesh in its own file frame: no motion
+  const std::vector<Corners> common_;
   std::atomic<bool> found_{false};
 };
 

@@ -34,7 +34,9 @@ struct FamilyCase {
   double sagitta = 0;   ///< m along `approach`: by how much facets may stand off their curved surfaces, both sides' sum
   double gain = 1;      ///< m along `approach` for a meter of gap, where that is most
   bool guided = false;  ///< closely, on the whole line, by solids
-  bool flat = false;    ///< the seat is a plane across `approach` (or along `slide`): it holds while the part slides
+  /// m beyond `seat` along `approach`: where it first touches, if that is exact and FCL would take too long to tell.
+  std::optional<double> touch;
+  bool flat = false;  ///< the seat is a plane across `approach` (or along `slide`): it holds while the part slides
   /// Closed form of where the part rests, m beyond `seat` along `approach`, for smooth surfaces without a gap.
   struct Range {
     double low, high;

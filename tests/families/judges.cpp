@@ -28,9 +28,12 @@ Truth find_truth(const FamilyCase& c, const TouchLine& line) {
   Truth t;
   const Pose from = {c.seat.q, c.seat.p - c.start * c.approach};
   const double most = c.start + c.press;
-  t.touch =
-      (c.guided ? line.travel_bisected(from, c.approach, most, kNear) : line.travel(from, c.approach, most, kNear)) -
-      c.start;
+  if (c.touch)
+    t.touch = *c.touch;
+  else if (c.guided)
+    t.touch = line.travel_bisected(from, c.approach, most, kNear) - c.start;
+  else
+    t.touch = line.travel(from, c.approach, most, kNear) - c.start;
   t.slack = c.gain * (2 * kMaxKept + kNear);
   t.margin = c.gain * (kMaxContactGap + kNear);
   t.follows = kRounding * std::max(1.0, c.parameters.size);

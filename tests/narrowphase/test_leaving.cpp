@@ -4,6 +4,7 @@
 
 #include "alloc_guard.hpp"
 #include "catch.hpp"
+#include "models/shapes.hpp"
 #include "narrowphase/facing.hpp"
 #include "narrowphase/leaving.hpp"
 #include "narrowphase/patch_motion_check.hpp"
@@ -308,6 +309,23 @@ TEST_CASE("a surface bounds a solid only where there is no doubt") {
   auto through = std::make_shared<TriangleMesh>(*star(4, 0.1, 8));
   through->vertices[50] *= -1.5;
   CHECK_FALSE(facing_of(through));
+}
+
+TEST_CASE("fans of needles bound solids where nothing comes through them") {
+  // Each needle looked at against all of its fan would take minutes.
+  CHECK(facing_of(std::make_shared<const TriangleMesh>(shapes::cylinder(0.02, 0.01, 60000))));
+  const auto drum = std::make_shared<const TriangleMesh>(shapes::cylinder(0.02, 0.01, 3000));
+  const MeshPtr small = box({0.001, 0.001, 0.001});
+  CHECK(facing_of(both(*drum, *small, {Quat::Identity(), {0.004, 0.003, 0.0062}})));
+  CHECK_FALSE(facing_of(both(*drum, *small, {Quat::Identity(), {0.004, 0.003, 0.005}})));  // through one fan
+  // A corner of a wall of the drum pulled through the other fan.
+  auto pulled = std::make_shared<TriangleMesh>(*drum);
+  const auto rim = std::max_element(pulled->vertices.begin(), pulled->vertices.end(), [](const Vec3& a, const Vec3& b) {
+    return a.z() + 0.1 * a.x() < b.z() + 0.1 * b.x();
+  });
+  rim->x() *= 0.5;
+  rim->z() = -0.006;
+  CHECK_FALSE(facing_of(pulled));
 }
 
 TEST_CASE("points are outside where nothing winds round them") {
