@@ -4,7 +4,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
+#include "core/numbers.hpp"
 #include "core/parallel_for.hpp"
 #include "narrowphase/patch_separate.hpp"
 
@@ -17,8 +19,11 @@ using Triangle = std::array<Vec3, 3>;
 constexpr std::uint32_t kAtOnce = 2048;
 /// Normals around a corner that all have this much along their mean leave no doubt that none is turned away from it.
 constexpr double kUpright = 0.05;
-/// All pairs of the faces around a corner are looked at up to so many; more count as meeting.
-constexpr std::uint32_t kMostAround = 4096;
+/// So many pairs of the faces around a corner are looked at (in a second); more count as meeting.
+constexpr std::size_t kMostAround = 1u << 20;
+/// Normals of faces around a corner that are in one run have this much along the first of them. A run goes round by
+/// less than this (rad).
+constexpr double kSameRun = 0.5, kNearlyRound = 6.2;
 /// Two faces of an edge that are folded onto each other to less than 0.8 degrees count as meeting.
 constexpr double kFolded = 0.9999;
 /// Corners are beside a plane from this share of the mesh's radius on.
@@ -122,12 +127,71 @@ class SelfContact {
     return around == 1;
   }
 
+  /// The faces around a corner in runs of neighbors that meet only in the edges that they share: seen along the normal
+  /// of the first they all face the viewer, and go round less than once. Such a run is a fan of any number of needles.
+  /// Each face's number in `faces` has the number of its run; faces whose neighbors are not known are alone.
+  std::vector<std::uint32_t> runs(std::uint32_t v, const std::vector<std::uint32_t>& faces) const {
+    struct Sector {
+      std::uint32_t first, last, face;  // corners of the mesh, number in `faces`
+    };
+    std::vector<Sector> by_first;
+    for (std::uint32_t i = 0; i < faces.size(); ++i) {
+      const auto& t = tree_.mesh().triangles[faces[i]];
+      const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+      by_first.push_back({t[(k + 1) % 3], t[(k + 2) % 3], i});
+    }
+    std::sort(by_first.begin(), by_first.end(), [](const Sector& a, const Sector& b) { return a.first < b.first; });
+    const auto next = [&](std::uint32_t corner) -> const Sector* {
+      const auto at = std::lower_bound(by_first.begin(), by_first.end(), corner,
+                                       [](const Sector& s, std::uint32_t c) { return s.first < c; });
+      const bool one =
+          at != by_first.end() && at->first == corner && (at + 1 == by_first.end() || (at + 1)->first != corner);
+      return one ? &*at : nullptr;
+    };
+    std::vector<std::uint32_t> run(faces.size(), kNone);
+    std::uint32_t count = 0;
+    for (const Sector& start : by_first) {
+      if (run[start.face] != kNone) continue;
+      Vec3 toward = Vec3::Zero();
+      double turned = 2 * kPi;
+      for (const Sector* s = &start; s != nullptr && run[s->face] == kNone; s = next(s->last)) {
+        const Vec3 n = normal(triangle(faces[s->face]));
+        double angle = sector_angle(v, s->first, s->last, toward);
+        if (!(n.dot(toward) > kSameRun && turned + angle < kNearlyRound)) {
+          toward = n;
+          turned = 0;
+          angle = sector_angle(v, s->first, s->last, toward);
+          ++count;
+        }
+        turned += angle;
+        run[s->face] = count - 1;
+      }
+    }
+    return run;
+  }
+
+  /// From one edge at the corner to the other, seen along `toward`.
+  double sector_angle(std::uint32_t v, std::uint32_t first, std::uint32_t last, const Vec3& toward) const {
+    const auto& points = tree_.mesh().vertices;
+    const auto flat = [&](const Vec3& edge) -> Vec3 { return edge - edge.dot(toward) * toward; };
+    const Vec3 a = flat(points[first] - points[v]), b = flat(points[last] - points[v]);
+    return std::atan2(toward.dot(a.cross(b)), a.dot(b));
+  }
+
   bool star_meets(std::uint32_t v) const {
     const std::uint32_t begin = topology_.vertex_face_begin[v], end = topology_.vertex_face_begin[v + 1];
-    if (end - begin > kMostAround) return true;
-    for (std::uint32_t i = begin; i < end; ++i)
-      for (std::uint32_t k = i + 1; k < end; ++k)
-        if (neighbors_meet(topology_.vertex_faces[i], topology_.vertex_faces[k])) return true;
+    const std::vector<std::uint32_t> faces(topology_.vertex_faces.begin() + begin,
+                                           topology_.vertex_faces.begin() + end);
+    const std::vector<std::uint32_t> run = runs(v, faces);
+    std::vector<std::uint32_t> by_run(faces.size());
+    std::iota(by_run.begin(), by_run.end(), 0U);
+    std::stable_sort(by_run.begin(), by_run.end(), [&](std::uint32_t i, std::uint32_t k) { return run[i] < run[k]; });
+    std::size_t asked = 0, others = 0;
+    for (std::size_t i = 0; i < by_run.size(); ++i) {
+      while (others < by_run.size() && run[by_run[others]] == run[by_run[i]]) ++others;
+      for (std::size_t k = others; k < by_run.size(); ++k)
+        if (++asked > kMostAround || neighbors_meet(faces[by_run[i]], faces[by_run[k]])) return true;
+    }
     return false;
   }
 

@@ -278,6 +278,23 @@ int judge_all(unsigned seed, int starts, int motions, int poses) {
   return accepted;
 }
 
+/// A drum whose ends are fans about a corner of their rim.
+MeshPtr rim_fans(std::uint32_t n) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const double z : {0.0, 0.01})
+    for (std::uint32_t i = 0; i < n; ++i)
+      mesh->vertices.push_back({0.02 * std::cos(2 * kPi * i / n), 0.02 * std::sin(2 * kPi * i / n), z});
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t k = (i + 1) % n;
+    mesh->triangles.push_back({i, k, n + k});
+    mesh->triangles.push_back({i, n + k, n + i});
+    if (i == 0 || i + 1 == n) continue;
+    mesh->triangles.push_back({0, k, i});
+    mesh->triangles.push_back({n, n + i, n + k});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("a surface bounds a solid only where there is no doubt") {
@@ -326,6 +343,11 @@ TEST_CASE("fans of needles bound solids where nothing comes through them") {
   rim->x() *= 0.5;
   rim->z() = -0.006;
   CHECK_FALSE(facing_of(pulled));
+  // Fans about a corner of the rim, where walls meet them; and one of their needles folded back over the others.
+  CHECK(facing_of(rim_fans(3000)));
+  auto folded = std::make_shared<TriangleMesh>(*rim_fans(3000));
+  std::swap(folded->vertices[1000], folded->vertices[1010]);
+  CHECK_FALSE(facing_of(folded));
 }
 
 TEST_CASE("points are outside where nothing winds round them") {
