@@ -1,4 +1,5 @@
 // Leaving motions: which surfaces bound a solid, and motions that are certified by normals against sampled poses.
+#include <algorithm>
 #include <functional>
 #include <map>
 
