@@ -63,6 +63,7 @@ class PatchFront {
   }
   /// Of them those that are kept apart about a common axis.
   int curved_pairs() const { return static_cast<int>(curved_.count()); }
+  /// Whether pairs are kept apart about the axis of a thread.
   bool in_thread() const noexcept { return curved_.in_thread(); }
 
   /// Calls f(a, a_is_face, b, b_is_face) for every pair of the front: nodes of the trees, or faces.

@@ -25,8 +25,6 @@ constexpr std::size_t kMaxPairs = 1u << 15;
 constexpr std::size_t kMaxSlidingPairs = 1u << 16;
 // Of a front's pairs those about each of its axes that may be curved (about 160 bytes each).
 constexpr double kCurvedShare = 0.125;
-// Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
-constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
 // Where no deadline bounds it, the same motion is asked about so often until all is known: in virtual time a part must
 // not lag for want of work, and what never ends is to end some time. A front that takes nothing apart has looked for
 // all its planes after these rounds; what it still lacks it would look for again.
@@ -47,8 +45,6 @@ constexpr std::uint64_t kTicksBetween = 12;
 // So many pairs, and one for so many faces of the held part, of surfaces that face each other from one side, are better
 // cells: they lie on each other over much of the part.
 constexpr int kSomePairs = 500, kFacesPerPair = 5;
-// What is asked ahead of a front stops at so many pairs.
-constexpr int kEnoughPairs = 4000;
 constexpr double kOneSided = 0.35;
 // What went over to cells lying on its seat, and is surrounded since (a peg that came over the rim of its hole), goes
 // back: asked this often (ticks), of as few cells as a front has room for.
@@ -57,8 +53,6 @@ constexpr int kCellsOfAFront = static_cast<int>(kMaxPairs) / 20;
 constexpr std::uint64_t kTicksBetweenSides = 64;
 // A front that has proved so many motions with that many pairs stays.
 constexpr int kProvedWithMany = 20;
-// What is proved ahead: this share of the gap, when less than so much of it is proved; no less than this (m).
-constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // A way is looked at ahead for so many times the mean edge of the held part: beyond, the pieces that are small enough
 // for contact have too many others in reach.
 constexpr double kHeadwayEdges = 1.0;
@@ -84,8 +78,6 @@ constexpr double kShareKept = 0.999;
 constexpr double kShareBehind = 0.3, kSharePays = 0.5;
 // Fronts are busy that take more than this share of the time that there is, and may be behind soon.
 constexpr double kBusy = 0.15;
-// The share of a tick's spare time that goes to the way ahead.
-constexpr double kWayShare = 0.9;
 
 /// Asks once or, where nothing is in the way but work and no deadline bounds it, until that is done or `idle_rounds` in
 /// a row have taken nothing apart.
@@ -492,92 +484,6 @@ bool PatchMotionCheck::lies_on(const CertifyReport& report, std::uint32_t part) 
   for (const std::uint32_t near : near_fronts_)
     if (front_of_[near] != kNobody) pairs += fronts_[front_of_[near]].pairs();
   return many(pairs) && fronts_[front_of_[part]].one_sidedness() > kOneSided;
-}
-
-double PatchMotionCheck::least_gap_at_most(const Pose& X, std::uint32_t part) const noexcept {
-  // Down both hierarchies to the child that is nearest: some two faces that are near.
-  const PatchTree &A = *held_, &B = *fixed_[part];
-  const Pose X_BA = poses_[part].inverse() * X;
-  std::uint32_t a = 0, b = 0;
-  const auto center_a = [&](std::uint32_t node) -> Vec3 { return X_BA * (A.origin() + A.nodes()[node].center_vec()); };
-  const auto center_b = [&](std::uint32_t node) -> Vec3 { return B.origin() + B.nodes()[node].center_vec(); };
-  while (!A.nodes()[a].leaf() || !B.nodes()[b].leaf()) {
-    const PatchNode &na = A.nodes()[a], &nb = B.nodes()[b];
-    if (nb.leaf() || (!na.leaf() && na.half[0] > nb.half[0])) {
-      const Vec3 other = center_b(b);
-      a = na.first +
-          ((center_a(na.first) - other).squaredNorm() <= (center_a(na.first + 1) - other).squaredNorm() ? 0 : 1);
-    } else {
-      const Vec3 other = center_a(a);
-      b = nb.first +
-          ((center_b(nb.first) - other).squaredNorm() <= (center_b(nb.first + 1) - other).squaredNorm() ? 0 : 1);
-    }
-  }
-  const std::uint32_t face_a = A.order()[A.nodes()[a].first], face_b = B.order()[B.nodes()[b].first];
-  double least2 = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k)
-      least2 = std::min(least2, (X_BA * A.corner(face_a, i) - B.corner(face_b, k)).squaredNorm());
-  return std::sqrt(least2);
-}
-
-template <typename Ask>
-void PatchMotionCheck::look_ahead(const Pose& X, Ahead& ahead, double at_most, Ask ask) noexcept {
-  const Displacement since = displacement(ahead.X, X, center_);
-  const double moved = since.dp.norm() + radius_ * since.dr.norm();
-  ahead.X = X;
-  ahead.proved = std::max(0.0, ahead.proved - moved);
-  ahead.ceiling = std::min(ahead.ceiling + moved, at_most);
-  while (!past(limit_.deadline_ns)) {
-    const double target = kAheadShare * ahead.ceiling;
-    if (target < kMinAhead || ahead.proved >= kAheadEnough * ahead.ceiling || ahead.proved >= longest_motion()) return;
-    const CertifyStatus status = ask(target);
-    if (status == CertifyStatus::out_of_budget) return;
-    if (status == CertifyStatus::certified) ahead.proved = target;
-    if (status == CertifyStatus::blocked) ahead.ceiling = target;
-  }
-}
-
-void PatchMotionCheck::prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept {
-  limit_.deadline_ns = deadline_ns;
-  limit_.blocking = 1;
-  // Ways first: where they are proved, fronts are not needed.
-  const std::int64_t now_ns = monotonic_ns();
-  limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kWayShare * static_cast<double>(deadline_ns - now_ns));
-  prepare_way(X);
-  limit_.deadline_ns = deadline_ns;
-  prepare_fronts(X);
-  prepare_cells(X, next);
-}
-
-void PatchMotionCheck::prepare_fronts(const Pose& X) noexcept {
-  limit_.searches = kFrontSearches;
-  for (std::size_t i = 0; i < near_fronts_.size() && !past(limit_.deadline_ns);) {
-    const std::uint32_t part = near_fronts_[i++];
-    bool to_cells = false;
-    look_ahead(X, ahead_[front_of_[part]], least_gap_at_most(X, part), [&](double clearance) {
-      const CertifyReport report = ask_front(part, X, {}, clearance, limit_);
-      to_cells = lies_on(report, part);
-      return to_cells || report.pairs > kEnoughPairs ? CertifyStatus::out_of_budget : report.status;
-    });
-    if (!to_cells) continue;
-    move_to_cells(part);
-    near_cells_.push_back(part);
-    near_fronts_.erase(near_fronts_.begin() + static_cast<std::ptrdiff_t>(--i));
-    cells_->set_near(near_cells_);
-    headway_.restart();
-  }
-}
-
-void PatchMotionCheck::prepare_cells(const Pose& X, const Displacement& next) noexcept {
-  if (near_cells_.empty() || !headway_.go(X, next)) return;
-  limit_.searches = kCellSearches;
-  while (!past(limit_.deadline_ns) && headway_.wants_more() && !cells_->crowded()) {
-    const Displacement d = headway_.motion();
-    const CertifyReport report = cells_->prove_ahead(X, d, limit_);
-    headway_.learn(report.share, cells_->met());
-    if (report.status == CertifyStatus::out_of_budget) return;
-  }
 }
 
 MotionAnswer PatchMotionCheck::stands(const Pose& X, std::uint32_t part, double clearance,

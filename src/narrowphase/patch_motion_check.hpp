@@ -60,6 +60,8 @@ class PatchMotionCheck final : public MotionCheck {
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
+  /// Searches for planes in one check of a front, and of the cells, which bound the work where no deadline does.
+  static constexpr int kFrontSearches = 1 << 13, kCellSearches = 1 << 17;
   /// Where cells or fronts were behind in so many ticks in a row, motions through the air are looked at as a whole.
   static constexpr int kTicksBehind = 2;
   /// What has not moved for so many ticks meanwhile has to be looked at as a whole.
