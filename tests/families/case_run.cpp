@@ -131,6 +131,8 @@ void run_loop(const FamilyCase& c, const CaseOptions& options, CaseResult& resul
   }
   const double way = judges.came_off() ? 0 : line.travel(loop.report().proxy.X, -c.approach, c.start, kApart);
   result.findings = judges.findings(way);
+  result.waited = judges.waited();
+  result.lifted = judges.lifted();
   sample.judge(result.findings);
 }
 

@@ -23,6 +23,8 @@ struct CaseResult {
   std::vector<Finding> findings;
   int triangles = 0;  ///< of all parts, instances counted
   int cut = 0;        ///< ticks
+  int waited = 0;     ///< ticks in a row, at most, in which the part was held back without a contact
+  int lifted = 0;     ///< ticks until the part followed the pen when it was lifted; below 0: it never did
   double seconds_loop = 0, seconds_judges = 0;
 };
 

@@ -17,7 +17,8 @@ void print(const SelectedCase& c, const CaseResult& r, bool quiet, const char* p
   std::printf("%s %s:", r.findings.empty() ? "ok  " : "FAIL", describe(r.parameters, c.options).c_str());
   for (const Finding& f : r.findings)
     std::printf(" %s %s, expected %s;", f.what.c_str(), f.seen.c_str(), f.expected.c_str());
-  std::printf(" %d ticks cut, loop %.1f s, judges %.1f s", r.cut, r.seconds_loop, r.seconds_judges);
+  std::printf(" waits %d ticks, off after %d, %d cut, loop %.1f s, judges %.1f s", r.waited, r.lifted, r.cut,
+              r.seconds_loop, r.seconds_judges);
   if (!r.findings.empty()) std::printf(" | %s %s", program, arguments(c.parameters, c.options).c_str());
   std::printf("\n");
 }

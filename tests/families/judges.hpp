@@ -40,6 +40,8 @@ class Judges {
   void look(const CaseTick& tick);
   /// Whether the part follows the pen again, after the last tick.
   bool came_off() const { return came_off_ >= 0 && follows_; }
+  int waited() const { return most_unexplained_; }  ///< see CaseResult
+  int lifted() const { return came_off_; }
   /// What was wrong, after the last tick. `way`: how far (m) a part that does not follow could go back along its line.
   std::vector<Finding> findings(double way) const;
 
