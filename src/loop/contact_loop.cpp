@@ -76,11 +76,6 @@ constexpr double kFeltLag = 0.05;
 constexpr double kTakenBack = 0.5;
 // Until so much of the tick's budget is over, what is left of a tick prepares for the next ones.
 constexpr double kPrepareShare = 0.9;
-// A part whose way is not proved in time goes back along where it came from to where it touched something, if that is
-// no farther from the pen, or if it leaves less than this share of the squared distance to it.
-constexpr double kNearerOnTrail = 0.8;
-// What it touched there is looked for in this share of a tick more.
-constexpr double kLateShare = 0.2;
 // A motion of less than this share of the margin is nearly none: where it was out of time in so many ticks in a row, it
 // is not asked about again until the pen has moved by a margin.
 constexpr double kHair = 0.05;
@@ -138,6 +133,7 @@ bool ContactLoop::take_over(const TickReport& last, const Pose& Y, const std::ve
   last_Y_ = Y;
   tracked_ = touched_ = false;
   owed_.reset();
+  shortcut_.reset();
   late_hairs_ = 0;
   swings_.forget();
   margin_ = std::clamp(kMarginShare * last.contact_gap, min_margin_, max_margin_);
@@ -154,6 +150,7 @@ void ContactLoop::stand_at(const Pose& X) {
   at_.check->begin(near_, kNoDeadline, OtherParts::far);
   tracked_ = timed_out_ = comes_ = touched_ = queried_ = false;
   owed_.reset();
+  shortcut_.reset();
   late_hairs_ = 0;
   margin_ = max_margin_;
   trust_ = substep_cap_;
@@ -175,6 +172,7 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   if (at_.poll_initial_contacts(X_)) {
     tracked_ = false;
     trail_.forget();
+    shortcut_.reset();
   }
   at_.query(X_, center_, std::min(wanted, travel) + at_.reach, near_);
   report.candidate_parts = static_cast<int>(near_.size());
@@ -196,8 +194,13 @@ void ContactLoop::step(const Pose& Y, double dt, std::int64_t deadline_ns, TickR
   const double left = size(displacement(X_, Y, center_));
   // Out of time a little above what it comes to, the part is where it should be, but for less than needs to be
   // explained.
-  if (report.contacts == 0 && left > lag_bound(at_.radius) && moved_ <= lag_bound(at_.radius))
+  const double bound = lag_bound(at_.radius);
+  if (report.contacts == 0 && left > std::min(bound, near_gap_) && moved_ <= bound)
     if (const double gap = gap_in_the_way(Y); gap <= near_gap_) at_.fill_report(gap, report);
+  if (report.contacts > 0 && tracked_ && trail_.is_at(X_)) {
+    at_.contacts->faces_within(report.contact_gap, Trail::kFaces, touched_faces_);
+    trail_.touches(touched_faces_);
+  }
   report.lag_reason = reason_for(left, report);
   // The hand feels whatever holds the part back. Nothing does where the part moves as fast as it may: after a change
   // that removed what it touched, it comes back to the pen through the air.
@@ -233,18 +236,23 @@ void ContactLoop::move_in_air(const Pose& Y, double wanted, double travel, TickR
   at_.contacts->clear();
   tracked_ = false;
   owed_.reset();
+  shortcut_.reset();
 }
 
 void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report) {
   at_.check->begin(near_, deadline_ns_, OtherParts::far);
   at_.check->trust_start();
   if (track()) adapt_margin(Y);
-  at_.check->heads({pen, touches() && !leaves(Y), margin_ / kMarginShare, near_gap_});
+  Heading heading{pen, touches() && !leaves(Y), margin_ / kMarginShare, near_gap_, shortcut_.has_value()};
+  at_.check->heads(heading);
+  const bool waits = shortcut_ && waits_for_shortcut(Y, report);
+  heading.whole = waits;
+  at_.check->heads(heading);
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
   if (at_.check->prefers_long()) trust_ = substep_cap_;
   int shorter = 0;
-  for (int i = 0; i < kMaxMotions && made_ < travel && !late(); ++i) {
+  for (int i = 0; i < kMaxMotions && made_ < travel && !late() && !waits; ++i) {
     const double cap = std::min({trust_, substep_cap_, travel - made_});
     const double length = move_substep(Y, cap, report);
     if (length > 0) report.substeps.push_back(X_);
@@ -253,60 +261,10 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
     if (length < kFullShare * cap && !(held_by_planes_ && ++shorter <= kMaxShorter)) break;
     made_ += length;
   }
-  if (made_ == 0 && late() && !touches()) go_back(Y, travel, report);
+  stuck_ = late() ? stuck_ + 1 : 0;
+  if (made_ == 0 && late() && !touches() && !waits) follow_trail(Y, pen, travel, report);
   if (report.substeps.empty()) report.substeps.push_back(X_);
   if (!late()) track();
-  if (tracked_ && trail_.is_at(X_) && touches()) {
-    at_.contacts->faces_within(margin_ / kMarginShare, Trail::kFaces, touched_faces_);
-    trail_.touches(touched_faces_);
-  }
-}
-
-ContactLoop::OnTrail ContactLoop::nearest_on_trail(const Pose& Y) const {
-  const Vec6 error = metric_.whiten(displacement(X_, Y, center_));
-  const double now = error.squaredNorm();
-  OnTrail nearest;
-  double least = now;
-  for (std::size_t i = 1; i < trail_.count(); ++i) {
-    // On the straight way to the pose.
-    const Pose& from = trail_.pose(i - 1);
-    const Vec6 off = metric_.whiten(displacement(from, Y, center_)),
-               way = metric_.whiten(displacement(from, trail_.pose(i), center_));
-    const double share = std::clamp(way.dot(off) / std::max(way.squaredNorm(), kRest * kRest), 0.0, 1.0);
-    const double at = (off - share * way).squaredNorm(), at_pose = (off - way).squaredNorm();
-    if (at < least && at < kNearerOnTrail * now) {
-      least = at;
-      nearest = {i, share};
-    }
-    if (at_pose > now) break;
-    if (trail_.touched_at(i)) return {i, 1};
-  }
-  return nearest;
-}
-
-void ContactLoop::go_back(const Pose& Y, double travel, TickReport& report) {
-  if (!trail_.is_at(X_)) return;
-  metric_.set_orientation(X_.q);
-  const OnTrail to = nearest_on_trail(Y);
-  for (std::size_t i = 1; i <= to.pose && made_ < travel; ++i) {
-    const Displacement whole = displacement(X_, trail_.pose(1), center_);
-    const double share = std::min(i == to.pose ? to.share : 1.0, (travel - made_) / std::max(size(whole), kRest));
-    const Pose from = X_;
-    X_ = share < 1 ? displaced(X_, center_, share * whole) : trail_.pose(1);
-    trail_.went(from, X_);
-    report.substeps.push_back(X_);
-    made_ += share * size(whole);
-  }
-  if (made_ == 0) return;
-  tracked_ = false;
-  owed_.reset();
-  // A few contacts are known at once, although the tick's time is over: they hold the part where it was held.
-  const auto deadline_ns = deadline_ns_ + static_cast<std::int64_t>(1e9 * kLateShare * settings_.tick_budget);
-  trail_.touched(touched_faces_);
-  if (!touched_faces_.empty() && at_.contacts->track(X_, at_.reach, deadline_ns)) {
-    at_.contacts->seed(touched_faces_, X_, deadline_ns);
-    tracked_ = true;
-  }
 }
 
 void ContactLoop::report_forces(const Pose& Y, TickReport& report) {

@@ -92,16 +92,28 @@ class ContactLoop final : public ProxyLoop {
   void move_in_air(const Pose& Y, double wanted, double travel, TickReport& report);
   /// The sub-steps of a tick among near parts, at most `travel` (m), under a pen that moved by `pen` (m).
   void move_near_parts(const Pose& Y, double travel, const Displacement& pen, TickReport& report);
-  /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) of it, if that leads much
-  /// nearer.
-  void go_back(const Pose& Y, double travel, TickReport& report);
+  /// Where no way to the pen was proved in time: along the trail, at most `travel` (m) from where the part is, if that
+  /// leads much nearer.
+  void follow_trail(const Pose& Y, const Displacement& pen, double travel, TickReport& report);
+  /// Whether the pen moves to where the part touched something.
+  bool comes_back_by(const Displacement& pen) const;
   /// A place between two poses of the trail: a share of the way to that number.
   struct OnTrail {
+    Trail::Side side = Trail::Side::back;
     std::size_t pose = 0;
     double share = 0;
+    bool across = false;  ///< the trail leads there by too long a way
+    double left = 0;      ///< squared, from there to the pen; 0 where it touched something and nothing leads away first
   };
-  /// Where it comes nearest to the pen, before it leads farther away than the part is.
-  OnTrail nearest_on_trail(const Pose& Y) const;
+  Pose pose_of(const OnTrail& place) const;
+  /// How near (m) the nearest feature is that is known.
+  double least_gap() const;
+  /// Goes to the place that is short across the trail, if that way is proved. Whether a look at it goes on.
+  bool waits_for_shortcut(const Pose& Y, TickReport& report);
+  /// Where a side of it comes nearer to the pen than `nearest`, and where it touched something than `touched`; if it
+  /// leads away from the pen first, no farther than `travel` (m) from where the part is.
+  void find_on_trail(Trail::Side side, const Pose& Y, double travel, bool comes_back, OnTrail& nearest,
+                     OnTrail& touched) const;
   /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);
   /// Adapts the margin of contacts to the clearance of the fit.
@@ -152,6 +164,14 @@ class ContactLoop final : public ProxyLoop {
   std::vector<std::uint32_t> near_;
   std::vector<FacePair> blocking_;
   Trail trail_;
+  /// To a place on the trail that is near, and only far along it.
+  struct Shortcut {
+    OnTrail to;
+    int ticks = 0;  ///< in which it was asked about
+  };
+  std::optional<Shortcut> shortcut_;
+  Pose in_vain_;                         ///< where the last one was not proved
+  int stuck_ = 0;                        ///< ticks in a row that were out of time
   std::vector<FacePair> touched_faces_;  ///< of the trail; blocking_ is of the motion that is owed
   Pose X_;
   Pose last_Y_;

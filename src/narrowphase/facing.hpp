@@ -14,7 +14,7 @@ namespace tegotae {
 /// inside, none within the box of another. For surfaces of up to kMostFaces triangles and kMostShells shells.
 class Facing {
  public:
-  static constexpr std::size_t kMostFaces = 1u << 19, kMostShells = 64;
+  static constexpr std::size_t kMostFaces = 1u << 21, kMostShells = 64;
 
   /// Null where the surface may not bound a solid.
   static std::shared_ptr<const Facing> of(const std::shared_ptr<const TriangleMesh>& mesh,

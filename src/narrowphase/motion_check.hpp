@@ -29,6 +29,8 @@ struct Heading {
   double contact_gap = 20e-6;  ///< m
   /// What is in A's way and no farther explains that it does not follow the pen, m.
   double near_gap = 20e-6;
+  /// What is asked about is to be made whole or not at all. What was begun of other motions goes.
+  bool whole = false;
 };
 
 /// Narrow phase of the contact loop: whether a motion of A keeps clear of the fixed parts. A motion runs from `X` (A's
@@ -60,6 +62,8 @@ class MotionCheck {
   virtual std::optional<Displacement> instead() const { return std::nullopt; }
   /// The next check() takes as long however far the motion goes.
   virtual bool prefers_long() const { return false; }
+  /// The last check() begins to answer, and one of the next, from the same pose, has the answer.
+  virtual bool goes_on() const { return false; }
   /// Part of the motion that the last check() answered for, from its start, that may be made whatever the answer; in
   /// [0, 1].
   virtual double free_share() const = 0;

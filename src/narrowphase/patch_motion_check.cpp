@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxFronts = 32;
 // Where more parts than these, of as many triangles at most, are near, they are one for the cells: 2 µs for each
 // triangle at the start. Until fewer than half of them are.
-constexpr std::size_t kMostApart = 16, kMaxBundleFaces = 1u << 20;
+constexpr std::size_t kMostApart = 16, kMaxBundleFaces = 1u << 21;
 // Pairs of all fronts together (about 400 bytes each, 550 where parts have a common axis), and the least and the most
 // of one.
 constexpr std::size_t kAllPairs = 1u << 18;
@@ -312,13 +312,14 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   take_turns(X);
   if (sweeping_ && sweeps(X, wanted)) return ask_sweep(X, wanted, blocking);
   sweeping_ = false;
-  if (!offered_.declined(X, now_)) {
+  if (!heading_.whole && !offered_.declined(X, now_)) {
     if (goes_along(X, wanted, blocking)) return answer(blocking);
     instead_ = onto_way(X, wanted);
   }
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
-  const bool sweeps_now = may_sweep() && behind_for_ >= kTicksBehind && !rests(X, d) && !cells_turn();
+  const bool sweeps_now =
+      may_sweep() && behind_for_ >= (heading_.whole ? 1 : kTicksBehind) && !rests(X, d) && !cells_turn();
   if (sweeps_now) {
     const std::int64_t now_ns = monotonic_ns();
     limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));
@@ -340,7 +341,8 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   count_behind();
   // What was begun ahead of it may have come to here.
   const bool begun = behind_ && looks_ahead_ && sweeps(X, wanted) && (sweeps_now || at_end_of_way(X));
-  if (begun || (behind_ && sweeps_now && (stands_still() || (share_ < kSharePays && blocking.empty())))) {
+  const bool pays = stands_still() || (share_ < (heading_.whole ? 1 : kSharePays) && blocking.empty());
+  if (begun || (behind_ && sweeps_now && pays)) {
     sweeping_ = begun || begin_sweep(X, wanted, clearance);
     swept_since_ = now_;
     looks_ahead_ = false;

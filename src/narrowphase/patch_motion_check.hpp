@@ -46,12 +46,13 @@ class PatchMotionCheck final : public MotionCheck {
   void begin(const std::vector<std::uint32_t>& near, std::int64_t deadline_ns, OtherParts others) noexcept override;
   void trust_start() noexcept override { trusted_ = true; }
   void jumped() noexcept override;
-  void heads(const Heading& heading) noexcept override { heading_ = heading; }
+  void heads(const Heading& heading) noexcept override;
   MotionAnswer check(const Pose& X, const Displacement& d, double clearance,
                      std::vector<FacePair>& blocking) noexcept override;
   void prepare(const Pose& X, const Displacement& next, std::int64_t deadline_ns) noexcept override;
   std::optional<Displacement> instead() const override { return instead_; }
   bool prefers_long() const override { return behind_for_ >= kTicksBehind && (!heading_.touches || stands_still()); }
+  bool goes_on() const override { return sweeping_; }
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -159,6 +160,13 @@ class PatchMotionCheck final : public MotionCheck {
   std::optional<Backing::Side> drawn_for(const Pose& from, const Displacement& d) const noexcept;
   /// Whether those that a way or a sweep is about are all that are near.
   bool covers_near(const std::vector<std::uint32_t>& parts) const noexcept;
+  double product(const Displacement& a, const Displacement& b) const {
+    return a.dp.dot(b.dp) + radius_ * radius_ * a.dr.dot(b.dr);
+  }
+  /// How many ticks a look at all faces takes, about.
+  double look_ticks() const;
+  /// How far `d` leads beside the pen's way, m.
+  double beside_pen(const Displacement& d) const noexcept;
   double size(const Displacement& d) const { return d.dp.norm() + radius_ * d.dr.norm(); }
   MotionAnswer blocked_at_once(const Pose& X, std::vector<FacePair>& blocking) noexcept;
   MotionAnswer ask_sweep(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
@@ -218,6 +226,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<Body> bodies_;                     ///< of each part; nothing of those that may be left out
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part
+  bool waited_for_sides_ = false;                ///< since A jumped, a look has once not begun because time was over
   LeavingCheck leaving_;
   bool behind_ = false;                  ///< the cells ran out of time when they were asked last
   std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then

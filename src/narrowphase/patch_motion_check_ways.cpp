@@ -48,12 +48,17 @@ constexpr double kStill = 1e-6;
 
 }  // namespace
 
+void PatchMotionCheck::heads(const Heading& heading) noexcept {
+  if (heading.whole != heading_.whole) sweeping_ = looks_ahead_ = false;
+  heading_ = heading;
+}
+
 bool PatchMotionCheck::sweeps(const Pose& X, const Displacement& d) const noexcept {
   if (!may_sweep() || !line_.is_on(X) || !covers_near(line_.parts())) return false;
   // Away from what it touches, the way is another one, and looked at in no time.
   if (line_touches_ && !heading_.touches) return false;
   const Displacement& other = line_.motion();
-  return d.dp.dot(other.dp) + radius_ * radius_ * d.dr.dot(other.dr) > 0;
+  return product(d, other) > 0;
 }
 
 void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clearance, double worth) noexcept {
@@ -64,6 +69,7 @@ void PatchMotionCheck::look_at(const Pose& X, const Displacement& d, double clea
     aim.near_within = kNearTold * heading_.near_gap;
   }
   if (heading_.touches && blocked_.count < kMostBlocked) aim.blocked_within = heading_.contact_gap;
+  if (heading_.whole) aim.blocked_within = size(d);
   aim.drawn = drawn_for(X, d);
   sweep_->begin(X, d, swept_, outside_, aim);
   line_.set(X, d, swept_);
@@ -190,8 +196,12 @@ bool PatchMotionCheck::covers_near(const std::vector<std::uint32_t>& parts) cons
 }
 
 bool PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displacement& d) noexcept {
+  bool all_known = true;
   const auto nothing_inside = [&](std::uint32_t part) {
-    return trusted_ && (sides_[part].known || !past(limit_.deadline_ns)) && sides_of(part, X).b_outside;
+    if (!trusted_) return false;
+    const bool known = sides_[part].known || !past(limit_.deadline_ns);
+    all_known = all_known && known;
+    return known && sides_of(part, X).b_outside;
   };
   swept_.clear();
   outside_.clear();
@@ -211,6 +221,8 @@ bool PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displac
     swept_.push_back(part);
     outside_.push_back(nothing_inside(part));
   }
+  // What is not known to recede takes more time than the wait for a tick that has some. Not again: it may never have.
+  if (!all_known && !std::exchange(waited_for_sides_, true)) return false;
   return std::all_of(swept_.begin(), swept_.end(), [this](std::uint32_t part) { return sweep_->knows(part); });
 }
 
@@ -235,18 +247,28 @@ std::optional<Backing::Side> PatchMotionCheck::drawn_for(const Pose& from, const
 }
 
 bool PatchMotionCheck::same_way(const Displacement& a, const Displacement& b) const noexcept {
-  const auto product = [this](const Displacement& x, const Displacement& y) {
-    return x.dp.dot(y.dp) + radius_ * radius_ * x.dr.dot(y.dr);
-  };
   return product(a, b) > kSameWay * std::sqrt(product(a, a) * product(b, b));
+}
+
+double PatchMotionCheck::look_ticks() const {
+  return kWorthTicks + kWorthTicksPerFace * static_cast<double>(held_->mesh().triangles.size()) / (1 + helpers_);
+}
+
+double PatchMotionCheck::beside_pen(const Displacement& d) const noexcept {
+  const Displacement& pen = heading_.pen;
+  const double along = product(d, pen) / std::max(product(pen, pen), kStands * kStands);
+  return size({d.dp - along * pen.dp, d.dr - along * pen.dr});
 }
 
 bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double clearance) noexcept {
   // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that, and
   // where something touches, they let A go where `d` leads.
-  const double ticks = same_way(d, heading_.pen)
-                           ? std::min(kSweptTicks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands))
-                           : 0;
+  double ticks = 0;
+  if (!heading_.whole && same_way(d, heading_.pen)) {
+    // From beside the pen's way, soon onto it.
+    ticks = beside_pen(d) > heading_.near_gap ? std::min(look_ticks(), kSweptTicks) : kSweptTicks;
+    ticks = std::min(ticks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands));
+  }
   const Displacement all = heading_.touches
                                ? (1 + ticks * size(heading_.pen) / std::max(size(d), kStands)) * d
                                : Displacement{d.dp + ticks * heading_.pen.dp, d.dr + ticks * heading_.pen.dr};
@@ -257,9 +279,9 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
 
 double PatchMotionCheck::worth(const Displacement& wanted, const Displacement& all) const noexcept {
   const std::size_t faces = held_->mesh().triangles.size();
+  if (heading_.whole) return 2 * size(all);
   if (heading_.touches || faces < kManyFaces) return std::numeric_limits<double>::infinity();
-  const double ticks = kWorthTicks + kWorthTicksPerFace * static_cast<double>(faces) / (1 + helpers_);
-  return std::min(std::max(ticks * size(heading_.pen), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
+  return std::min(std::max(look_ticks() * size(heading_.pen), kWorthOfWanted * size(wanted)), kWorthOfAll * size(all));
 }
 
 void PatchMotionCheck::add_way() noexcept {
@@ -274,7 +296,7 @@ void PatchMotionCheck::finish_way() noexcept {
 /// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
 /// come to by then.
 void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
-  if (!may_look_ahead() || sweeping_ || !(size(heading_.pen) > kStands)) return;
+  if (!may_look_ahead() || sweeping_ || heading_.whole || !(size(heading_.pen) > kStands)) return;
   ways_.come_to(X);
   looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), heading_.pen) && covers_near(sweep_->near());
   if (!looks_ahead_ && !begin_ahead(X)) return;

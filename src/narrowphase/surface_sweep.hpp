@@ -19,7 +19,7 @@ namespace tegotae {
 struct SweepAim {
   double clearance;  ///< separations below do not count, m
   /// Whole blocks of faces, a tenth of the work, may end the motion a seventh before faces would, and where they tell
-  /// little more, wherever so much of it (m) or more is free.
+  /// little more, wherever so much of it (m) or more is free. Not where so much is more than the whole.
   double worth = std::numeric_limits<double>::infinity();
   /// What a few faces tell to be in the way ends the motion so far (m) before it is touched: nearer, the planes of
   /// faces that lie on each other keep few of their neighbors apart.

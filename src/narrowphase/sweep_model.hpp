@@ -20,7 +20,7 @@ namespace tegotae {
 /// of threads may read it.
 struct SweepModel {
   /// Larger surfaces are not looked at as a whole: blocks take about 1 µs a triangle at every start.
-  static constexpr std::size_t kMostFaces = 1U << 20;
+  static constexpr std::size_t kMostFaces = 1U << 21;
 
   /// The faces of a tree.
   struct Surface {

@@ -223,10 +223,10 @@ void SweepWorker::next_node() {
 /// Whether the motion may end so early as whole blocks tell.
 bool SweepWorker::is_enough(double apart) const {
   const double kept = kShareKept * apart * share_;
-  if (question().look != Look::blocks || question().layer != Layer::faces) return false;
+  if (question().look != Look::blocks || question().layer != Layer::faces || question().worth > 1) return false;
   const double searched = task_->searched.load() / few_blocks();
   const double enough = kEnough + (kEnoughAtFirst - kEnough) * std::max(0.0, 1 - searched);
-  return kept >= enough * task_->faces_end.value().share || (!may_search() && kept >= question().worth);
+  return kept >= enough * task_->faces_end.value().share || kept >= question().worth;
 }
 
 double SweepWorker::few_blocks() const {
