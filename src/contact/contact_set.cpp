@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/same_pose.hpp"
 #include "narrowphase/patch_cache.hpp"
 #include "tegotae/core/clock.hpp"
 
@@ -139,7 +140,7 @@ FeaturePair ContactSet::follow(const Pair& pair) const {
 }
 
 bool ContactSet::track(const Pose& X, double reach, std::int64_t deadline_ns) {
-  const bool goes_on = followed_ > 0 && X.p == X_.p && X.q.coeffs() == X_.q.coeffs() && reach == reach_;
+  const bool goes_on = followed_ > 0 && same_pose(X, X_) && reach == reach_;
   if (!goes_on) begin_track(X, reach);
   // Pairs in support come last: the others that may speak for them are known by then.
   for (; followed_ < 2 * pairs_.size(); ++followed_) {

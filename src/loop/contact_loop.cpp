@@ -245,9 +245,11 @@ void ContactLoop::move_near_parts(const Pose& Y, double travel, const Displaceme
   if (track()) adapt_margin(Y);
   Heading heading{pen, touches() && !leaves(Y), margin_ / kMarginShare, near_gap_, shortcut_.has_value()};
   at_.check->heads(heading);
-  const bool waits = shortcut_ && waits_for_shortcut(Y, report);
-  heading.whole = waits;
-  at_.check->heads(heading);
+  if (heading.whole && !waits_for_shortcut(Y, report)) {
+    heading.whole = false;
+    at_.check->heads(heading);
+  }
+  const bool waits = heading.whole;
   trust_ = std::max(trust_, kMinTrust);
   if (!timed_out_) trust_ = std::max(trust_, std::min(substep_cap_, kPenShare * size(pen)));
   if (at_.check->prefers_long()) trust_ = substep_cap_;

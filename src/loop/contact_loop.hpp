@@ -111,8 +111,8 @@ class ContactLoop final : public ProxyLoop {
   /// Goes to the place that is short across the trail, if that way is proved. Whether a look at it goes on.
   bool waits_for_shortcut(const Pose& Y, TickReport& report);
   /// Where a side of it comes nearer to the pen than `nearest`, and where it touched something than `touched`; if it
-  /// leads away from the pen first, no farther than `travel` (m) from where the part is.
-  void find_on_trail(Trail::Side side, const Pose& Y, double travel, bool comes_back, OnTrail& nearest,
+  /// leads away from the pen first, by no more than `travel` (m) of it, or no farther `across` (m).
+  void find_on_trail(Trail::Side side, const Pose& Y, double travel, double across, OnTrail& nearest,
                      OnTrail& touched) const;
   /// Fills in the contact planes and forces of the report.
   void report_forces(const Pose& Y, TickReport& report);

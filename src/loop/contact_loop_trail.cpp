@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/same_pose.hpp"
 #include "loop/contact_loop.hpp"
 
 namespace tegotae {
@@ -25,21 +26,15 @@ constexpr int kShortcutTicks = 6;
 // What it touched there is looked for in this share of a tick more.
 constexpr double kLateShare = 0.2;
 
-bool is_same(const Pose& a, const Pose& b) {
-  return a.p == b.p && a.q.coeffs() == b.q.coeffs();
-}
-
 }  // namespace
 
-void ContactLoop::find_on_trail(Trail::Side side, const Pose& Y, double travel, bool comes_back, OnTrail& nearest,
+void ContactLoop::find_on_trail(Trail::Side side, const Pose& Y, double travel, double across, OnTrail& nearest,
                                 OnTrail& touched) const {
   const double now = metric_.whiten(displacement(X_, Y, center_)).squaredNorm();
-  // Past what is near, it takes longer to prove than the way to the pen; and so where the pen leaves what is touched.
-  const double across = is_same(in_vain_, X_) || !comes_back ? 0 : std::min(travel, kClear * least_gap());
   bool away = false;
-  const auto offer = [&](const Pose& X, double length, OnTrail found, OnTrail& best) {
+  const auto offer = [&](double length, OnTrail found, OnTrail& best) {
     if (found.left >= best.left) return;
-    const double straight = away ? size(displacement(X_, X, center_)) : 0;
+    const double straight = away ? size(displacement(X_, pose_of(found), center_)) : 0;
     found.across = away && length > std::min(travel, kDetour * straight);
     if (found.across) found.left /= kNearerOnTrail;
     if (found.left < best.left && (!found.across || straight <= across)) best = found;
@@ -51,13 +46,12 @@ void ContactLoop::find_on_trail(Trail::Side side, const Pose& Y, double travel, 
     const Displacement straight = displacement(from, to, center_);
     const Vec6 off = metric_.whiten(displacement(from, Y, center_)), way = metric_.whiten(straight);
     const double share = std::clamp(way.dot(off) / std::max(way.squaredNorm(), kRest * kRest), 0.0, 1.0);
-    offer(displaced(from, center_, share * straight), length + share * size(straight),
-          {side, i, share, false, (off - share * way).squaredNorm()}, nearest);
+    offer(length + share * size(straight), {side, i, share, false, (off - share * way).squaredNorm()}, nearest);
     length += size(straight);
     const double left = (off - way).squaredNorm();
     away = away || left > now;
     if (!trail_.touched_at(side, i)) continue;
-    offer(to, length, {side, i, 1, false, away ? left : 0}, touched);
+    offer(length, {side, i, 1, false, away ? left : 0}, touched);
     if (!away) return;
   }
 }
@@ -116,8 +110,10 @@ void ContactLoop::follow_trail(const Pose& Y, const Displacement& pen, double tr
   OnTrail to, touched;
   to.left = touched.left = kNearerOnTrail * metric_.whiten(displacement(X_, Y, center_)).squaredNorm();
   const bool comes_back = comes_back_by(pen);
+  // Past what is near, a way across takes longer to prove than that to the pen; and so where the pen leaves.
+  const double across = comes_back && !same_pose(in_vain_, X_) ? std::min(travel, kClear * least_gap()) : 0;
   for (const Trail::Side side : {Trail::Side::back, Trail::Side::ahead})
-    find_on_trail(side, Y, travel, comes_back, to, touched);
+    find_on_trail(side, Y, travel, across, to, touched);
   if (touched.pose > 0 && kNearerOnTrail * touched.left <= to.left) to = touched;
   if (to.pose == 0) return;
   const bool waits = at_.check->goes_on() && stuck_ % kTicksOfLooks < kPatience;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/same_pose.hpp"
+
 namespace tegotae {
 namespace {
 
@@ -10,27 +12,23 @@ namespace {
 /// that certificates leave room for.
 constexpr double kOnWay = 1e-13;
 
-bool same(const Pose& a, const Pose& b) {
-  return a.p == b.p && a.q.coeffs() == b.q.coeffs();
-}
-
 }  // namespace
 
 Trail::Trail(const Vec3& center, double radius) : center_(center), radius_(radius), places_(kPoses) {}
 
 bool Trail::is_at(const Pose& X) const noexcept {
-  return count_ > 0 && same(place(here_).X, X);
+  return count_ > 0 && same_pose(place(here_).X, X);
 }
 
 void Trail::went(const Pose& from, const Pose& to) noexcept {
-  if (same(from, to)) return;
+  if (same_pose(from, to)) return;
   if (!is_at(from)) {
     forget();
     add(from);
   }
   for (const Side side : {Side::back, Side::ahead})
     while (count(side) > 0 && passes(place(here_).X, to, pose(side, 1))) here_ = number(side, 1);
-  if (same(place(here_).X, to)) return;
+  if (same_pose(place(here_).X, to)) return;
   for (const Side side : {Side::back, Side::ahead})
     if (count(side) > 0 && passes(place(here_).X, pose(side, 1), to)) return split(side, to);
   turn_off();
@@ -68,7 +66,7 @@ void Trail::turn_off() noexcept {
 
 void Trail::crossed_to(Side side, std::size_t i, const Pose& X) noexcept {
   const std::size_t at = number(side, i);
-  if (same(place(at).X, X))
+  if (same_pose(place(at).X, X))
     here_ = at;
   else
     insert(side == Side::back ? at + 1 : at, X);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel_for.hpp"
+#include "core/same_pose.hpp"
 #include "loop/scene_parts.hpp"
 #include "narrowphase/patch_cache.hpp"
 
@@ -40,7 +41,7 @@ bool PoseJudge::intersects(const Pose& X, std::uint32_t freed, const std::atomic
 }
 
 void PoseCheck::add(const Pose& X, std::uint32_t freed) noexcept {
-  if (seen_ > 0 && X.p == last_.p && X.q.coeffs() == last_.q.coeffs()) return;
+  if (seen_ > 0 && same_pose(X, last_)) return;
   last_ = X;
   if (seen_++ % stride_ != 0) return;
   if (poses_.size() == kMax) {

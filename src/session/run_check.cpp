@@ -10,6 +10,7 @@
 
 #include "core/deadline.hpp"
 #include "core/parallel_for.hpp"
+#include "core/same_pose.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -33,7 +34,7 @@ CheckedSegment::CheckedSegment(const Scene& scene, const InitialContactReport& s
 
 void CheckedSegment::add(const Pose& X, std::uint32_t freed) noexcept {
   const bool first = poses_.load(std::memory_order_relaxed) == 0;
-  if (!first && X.p == last_.p && X.q.coeffs() == last_.q.coeffs()) return;
+  if (!first && same_pose(X, last_)) return;
   last_ = X;
   poses_.fetch_add(1, std::memory_order_relaxed);
   while (!ring_.push({X, freed}) && waits_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
