@@ -17,7 +17,7 @@ constexpr double kDetour = 1.5;
 // The pen comes back to a place where the cosine between its motion and the way there is larger.
 constexpr double kComesBack = 0.5;
 // Where the pen does not come back to what was touched, ways to it are looked at in a few ticks. A look begins anew
-// wherever the part goes, and has the first of so many ticks.
+// wherever the part goes, and has the first of so many ticks: more of them each time, or it would never come to an end.
 constexpr int kPatience = 4, kTicksOfLooks = 16;
 // A way across to a place on it, beside all that lies between, is no longer than so much of the gap to what is known to
 // be near, and has so many ticks to be proved.
@@ -116,8 +116,9 @@ void ContactLoop::follow_trail(const Pose& Y, const Displacement& pen, double tr
     find_on_trail(side, Y, travel, across, to, touched);
   if (touched.pose > 0 && kNearerOnTrail * touched.left <= to.left) to = touched;
   if (to.pose == 0) return;
-  const bool waits = at_.check->goes_on() && stuck_ % kTicksOfLooks < kPatience;
-  if (waits && !comes_back && std::sqrt(to.left) > lag_bound(at_.radius)) return;
+  const int patience = kPatience * (stuck_ / kTicksOfLooks + (comes_back ? 0 : 1));
+  const bool waits = at_.check->goes_on() && stuck_ % kTicksOfLooks < patience;
+  if (waits && std::sqrt(to.left) > lag_bound(at_.radius)) return;
   // Along the trail it would come there too, but maybe to the other side of what it has been around.
   if (to.across) {
     shortcut_ = Shortcut{to};

@@ -22,7 +22,7 @@ void PatchMotionCheck::jumped() noexcept {
   ways_.drop();
   sweeping_ = looks_ahead_ = false;
   sides_.assign(sides_.size(), Sides{});
-  waited_for_sides_ = false;
+  waits_for_sides_ = 0;
 }
 
 const PatchMotionCheck::Sides& PatchMotionCheck::sides_of(std::uint32_t part, const Pose& X) noexcept {
