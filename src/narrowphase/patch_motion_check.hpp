@@ -226,7 +226,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<Body> bodies_;                     ///< of each part; nothing of those that may be left out
   std::shared_ptr<const Facing> bundle_facing_;  ///< where all in the bundle bound solids
   std::vector<Sides> sides_;                     ///< of each part
-  int waits_for_sides_ = 0;                      ///< ticks, since A jumped, in which no look began until they are known
+  int waits_for_sides_ = 0;                      ///< how often, since A jumped, no look began until they are known
   LeavingCheck leaving_;
   bool behind_ = false;                  ///< the cells ran out of time when they were asked last
   std::unique_ptr<SurfaceSweep> sweep_;  ///< what takes their place then

@@ -39,7 +39,7 @@ constexpr std::uint64_t kTicksOffAxes = 16;
 constexpr int kTurnsInARow = 6;
 // Ticks in which a look may wait for its turn to begin.
 constexpr int kTurnWaits = 8;
-// Ticks in which a look may wait until it is known what is outside what.
+// How often a look may wait until it is known what is outside what.
 constexpr int kWaitsForSides = 4;
 // How often as long as a look cells have the time where the pen stands.
 constexpr std::uint64_t kPatience = 4;
@@ -224,7 +224,10 @@ bool PatchMotionCheck::find_swept(const Pose& X, const Pose& from, const Displac
     outside_.push_back(nothing_inside(part));
   }
   // What is not known to recede takes more time than the wait for some ticks that tell. Not again: they may have none.
-  if (!all_known && waits_for_sides_++ < kWaitsForSides) return false;
+  if (!all_known && waits_for_sides_ < kWaitsForSides) {
+    ++waits_for_sides_;
+    return false;
+  }
   return std::all_of(swept_.begin(), swept_.end(), [this](std::uint32_t part) { return sweep_->knows(part); });
 }
 
