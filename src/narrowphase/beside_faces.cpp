@@ -1,5 +1,6 @@
 #include "narrowphase/beside_faces.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "narrowphase/face_gaps.hpp"
@@ -9,6 +10,8 @@ namespace {
 
 /// Boxes are grown by this share of the coordinates that they come from, in single precision.
 constexpr float kBoxError = 1e-6F;
+/// Blocks that are called for before they are read.
+constexpr std::uint32_t kAhead = 3;
 
 /// Those of eight faces of `a` that the mean normal of `b` keeps less than `floor` apart from all of it.
 TEGOTAE_INLINE LaneBits near_all(const MovedLanes& a, std::uint32_t first, const FaceLanes& b, float up, float floor) {
@@ -66,7 +69,9 @@ void BesideFaces::set(const FaceBlocks& blocks, const std::vector<FaceLanes>& la
   open_.fill(0);
   const Float3 at = in_single(origin);
   std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < std::min(count, kAhead); ++i) lanes[found[i]].call_for();
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (i + kAhead < count) lanes[found[i + kAhead]].call_for();
     const FaceLanes& faces = lanes[found[i]];
     const Vec3 shift = origin - faces.origin;
     const Block block = {&faces, in_single(shift), floor_in_single(a.size, faces, shift, floor), found[i]};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -26,8 +27,21 @@ struct MovedSlab {
   MovedBox corners(const Vec3& origin) const;
 };
 
+/// Eight slabs that go together, field after field, from a point near them. Places without a slab repeat the last one.
+struct alignas(64) SlabLanes {
+  typedef std::array<float, FaceBlocks::kFan> Field;
+  Vec3 origin;                                ///< from that of the tree, m
+  float size = 0;                             ///< largest sum of coordinates and halves, m
+  alignas(32) std::array<Field, 3> center;    ///< m
+  std::array<Field, 3> normal;                ///< the last axis
+  Field thickness;                            ///< the half along it, m
+  std::array<std::array<Field, 3>, 3> sides;  ///< the axes, as long as the halves, m
+
+  SlabLanes(const Slab* slabs, std::size_t count);
+};
+
 /// The slabs of the lowest levels of FaceBlocks: they tell whole blocks of surfaces that face each other apart, up to
-/// the depth of what curves within a block. Immutable; 9 bytes a triangle.
+/// the depth of what curves within a block. Immutable; 15 bytes a triangle.
 class BlockSlabs {
  public:
   /// Levels at most: beyond, they are hardly flatter than boxes.
@@ -38,13 +52,34 @@ class BlockSlabs {
   std::uint32_t levels() const { return static_cast<std::uint32_t>(slabs_.size()); }
   /// Centers are from the tree's origin.
   const Slab& slab(std::uint32_t level, std::uint32_t node) const { return slabs_[level][node]; }
+  /// The one of node FaceBlocks::kFan · i and those after it.
+  const SlabLanes& lanes(std::uint32_t level, std::uint32_t i) const { return lanes_[level][i]; }
+  /// Calls for those slabs.
+  void call_for(std::uint32_t level, std::uint32_t i) const noexcept {
+    const std::size_t first = std::size_t{FaceBlocks::kFan} * i, count = slabs_[level].size() - first;
+    prefetch(&slabs_[level][first], std::min<std::size_t>(count, FaceBlocks::kFan) * sizeof(Slab));
+  }
 
  private:
-  std::vector<std::vector<Slab>> slabs_;  ///< of each level
+  std::vector<std::vector<Slab>> slabs_;       ///< of each level
+  std::vector<std::vector<SlabLanes>> lanes_;  ///< likewise
 };
 
 /// The share of a straight motion, from its start, in which a fixed plane along a side of a slab keeps `a` at
 /// least `floor` (m) apart from `b`; 0 where none does at the start.
 double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept;
+
+/// The axes of a MovedSlab in single precision.
+struct SlabSides {
+  std::array<std::array<std::array<float, 3>, 3>, 2> sides;  ///< at both ends, as long as its halves, m
+  std::array<float, 3> normal;                               ///< the last one at the start
+  float size;                                                ///< largest sum of the sides' coordinates, m
+
+  explicit SlabSides(const MovedSlab& a);
+};
+
+/// Of eight slabs, those that planes across A's faces or across theirs keep at least `floor` apart from `a` all along
+/// the motion: a bit each. The rounding in single precision is taken off.
+std::uint32_t kept_apart(const MovedSlab& a, const SlabSides& sides, const SlabLanes& b, double floor) noexcept;
 
 }  // namespace tegotae

@@ -20,7 +20,8 @@ TEGOTAE_INLINE std::uint32_t together(const EightBits& bits) {
   return static_cast<std::uint32_t>(pair | pair >> 32);
 }
 
-/// BoxLanes::overlapping(), to be compiled into what is compiled for several widths of registers itself.
+/// Those of the boxes that overlap `box`, a bit each: to be compiled into what is compiled for several widths of
+/// registers itself.
 TEGOTAE_INLINE std::uint32_t overlap(const BoxLanes& boxes, const AxisBox& box) {
   typedef float Lane __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
   static_assert(sizeof(Lane) == sizeof(EightBits));

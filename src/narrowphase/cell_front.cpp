@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/numbers.hpp"
+#include "core/prefetch.hpp"
 #include "narrowphase/cell_slack.hpp"
 
 namespace tegotae {
@@ -40,9 +41,8 @@ constexpr std::size_t kMostTold = 8;
 /// A motion leads away from a plane when it makes more than this cosine with its normal, and from all when it does so
 /// from this share of the planes.
 constexpr double kLeadsAway = 0.2, kMostAway = 0.75;
-/// The memory of a cell is asked for so many cells before it is needed; bytes of memory that come together.
+/// The memory of a cell is asked for so many cells before it is needed.
 constexpr std::uint32_t kCellsAhead = 4;
-constexpr std::size_t kLineBytes = 64;
 
 /// The face of B nearest to a piece of A at the search.
 std::optional<std::uint32_t> nearest_face(const CellItems& items) {
@@ -54,11 +54,6 @@ std::optional<std::uint32_t> nearest_face(const CellItems& items) {
     least = items.distance[i];
   }
   return best;
-}
-
-template <typename T>
-void prefetch(const T& what) {
-  for (std::size_t k = 0; k < sizeof(T); k += kLineBytes) __builtin_prefetch(reinterpret_cast<const char*>(&what) + k);
 }
 
 }  // namespace

@@ -261,8 +261,29 @@ std::vector<std::uint32_t> in_order(const std::vector<Placed>& placed, std::vect
   return faces;
 }
 
-TEGOTAE_WIDE std::uint32_t overlapping_boxes(const BoxLanes& boxes, const AxisBox& box) {
-  return overlap(boxes, box);
+/// BlockWalk::next().
+TEGOTAE_WIDE std::uint32_t next_of(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level,
+                                   BlockWalk::Node* stack, std::uint32_t& stacked, std::uint32_t* out,
+                                   std::uint32_t most) {
+  std::uint32_t found = 0;
+  while (stacked > 0 && found < most) {
+    const BlockWalk::Node node = stack[--stacked];
+    if (node.level == level) {
+      out[found++] = node.index;
+      continue;
+    }
+    std::uint32_t bits = overlap(blocks.boxes_below(node.level - 1, node.index), box);
+    const bool told = node.level - 1 == level && found + FaceBlocks::kFan <= most;
+    for (; bits != 0; bits &= bits - 1) {
+      const std::uint32_t i = FaceBlocks::kFan * node.index + static_cast<std::uint32_t>(__builtin_ctz(bits));
+      if (told) {
+        out[found++] = i;
+      } else {
+        stack[stacked++] = {node.level - 1, i};
+      }
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -337,10 +358,6 @@ AxisBox FaceBlocks::box(std::uint32_t level, std::uint32_t node) const {
   return out;
 }
 
-std::uint32_t BoxLanes::overlapping(const AxisBox& box) const noexcept {
-  return overlapping_boxes(*this, box);
-}
-
 void BlockWalk::start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level) {
   const std::uint32_t root = 0;
   start_under(&root, 1, blocks.levels() - 1, blocks, box, level);
@@ -352,30 +369,11 @@ void BlockWalk::start_under(const std::uint32_t* nodes, std::uint32_t count, std
   level_ = level;
   box_ = box;
   stacked_ = 0;
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (blocks.box(level_of_nodes, nodes[i]).overlaps(box)) stack_[stacked_++] = {level_of_nodes, nodes[i]};
+  for (std::uint32_t i = 0; i < count; ++i) stack_[stacked_++] = {level_of_nodes, nodes[i]};
 }
 
 std::uint32_t BlockWalk::next(std::uint32_t* out, std::uint32_t most) {
-  std::uint32_t found = 0;
-  while (stacked_ > 0 && found < most) {
-    const Node node = stack_[--stacked_];
-    if (node.level == level_) {
-      out[found++] = node.index;
-      continue;
-    }
-    std::uint32_t bits = blocks_->boxes_below(node.level - 1, node.index).overlapping(box_);
-    const bool told = node.level - 1 == level_ && found + FaceBlocks::kFan <= most;
-    for (; bits != 0; bits &= bits - 1) {
-      const std::uint32_t i = FaceBlocks::kFan * node.index + static_cast<std::uint32_t>(__builtin_ctz(bits));
-      if (told) {
-        out[found++] = i;
-      } else {
-        stack_[stacked_++] = {node.level - 1, i};
-      }
-    }
-  }
-  return found;
+  return next_of(*blocks_, box_, level_, stack_.data(), stacked_, out, most);
 }
 
 }  // namespace tegotae

@@ -30,9 +30,6 @@ struct AxisBox {
 struct alignas(32) BoxLanes {
   static constexpr std::uint32_t kBoxes = 8;
   std::array<std::array<float, kBoxes>, 3> low, high;
-
-  /// Those that overlap `box`: a bit each.
-  std::uint32_t overlapping(const AxisBox& box) const noexcept;
 };
 
 /// The faces of a surface in blocks of up to sixteen that lie beside each other and face about the same way, and a
@@ -72,18 +69,19 @@ class FaceBlocks {
 class BlockWalk {
  public:
   static constexpr std::uint32_t kMostTops = 32;
+  struct Node {
+    std::uint32_t level, index;
+  };
 
   void start(const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level = 0);
-  /// Those of them that are under some nodes of a level, up to kMostTops.
+  /// Those of them that are under some nodes of a higher level, up to kMostTops. All nodes are told that are of the
+  /// same.
   void start_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,
                    const FaceBlocks& blocks, const AxisBox& box, std::uint32_t level = 0);
   /// Up to `most` more of them to `out`; returns how many. Fewer than asked are the last.
   std::uint32_t next(std::uint32_t* out, std::uint32_t most);
 
  private:
-  struct Node {
-    std::uint32_t level, index;
-  };
   const FaceBlocks* blocks_ = nullptr;
   AxisBox box_{};
   std::uint32_t level_ = 0;

@@ -89,10 +89,12 @@ struct OneBox {
 /// The greatest of the gaps along the axes between `a` and eight faces of `b`.
 template <typename One>
 TEGOTAE_INLINE Lane axis_gaps(const One& a, const FaceLanes& b, std::uint32_t first, const Float3& shift) {
-  Lane gap = greater(load(b.low[0], first) - (a.high(0) + shift[0]), (a.low(0) + shift[0]) - load(b.high[0], first));
-  for (std::size_t i = 1; i < 3; ++i) {
-    gap = greater(gap, load(b.low[i], first) - (a.high(i) + shift[i]));
-    gap = greater(gap, (a.low(i) + shift[i]) - load(b.high[i], first));
+  Lane gap{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Lane p = load(b.corner[0][i], first), q = load(b.corner[1][i], first), r = load(b.corner[2][i], first);
+    const Lane low = lesser(lesser(p, q), r), high = greater(greater(p, q), r);
+    const Lane along = greater(low - (a.high(i) + shift[i]), (a.low(i) + shift[i]) - high);
+    gap = i == 0 ? along : greater(gap, along);
   }
   return gap;
 }

@@ -86,6 +86,23 @@ TEGOTAE_WIDE void move_lanes(const FaceLanes& faces, const Moved& start, const M
   out.size = std::max(-least(-size), faces.size);
 }
 
+TEGOTAE_WIDE AxisBox box_of(const MovedLanes& faces, std::uint32_t skipped) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const LaneBits bit = {1, 2, 4, 8, 16, 32, 64, 128};
+  AxisBox box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Lane low = Lane{} + kFar, high = Lane{} - kFar;
+    for (std::uint32_t first = 0; first < kBlockFaces; first += kLane) {
+      const LaneBits without = (static_cast<std::int32_t>(skipped >> first) & bit) != 0;
+      low = without ? low : lesser(low, load(faces.low[i], first));
+      high = without ? high : greater(high, load(faces.high[i], first));
+    }
+    box.low[i] = least(low);
+    box.high[i] = -least(-high);
+  }
+  return box;
+}
+
 /// Directions across edges: of each with each, and across those of both faces in their planes; one is there twice.
 constexpr std::uint32_t kAcross = 16;
 typedef std::array<FaceLanes::Field, 3> Across;
@@ -158,9 +175,7 @@ FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint3
         corner[c][i][k] = p[c][i];
         along[c] += n[i] * p[c][i];
       }
-      low[i][k] = std::min({p[0][i], p[1][i], p[2][i]});
-      high[i][k] = std::max({p[0][i], p[1][i], p[2][i]});
-      size = std::max({size, -low[i][k], high[i][k]});
+      size = std::max({size, std::abs(p[0][i]), std::abs(p[1][i]), std::abs(p[2][i])});
     }
     normal_low[k] = std::min({along[0], along[1], along[2]});
     normal_high[k] = std::max({along[0], along[1], along[2]});
@@ -176,6 +191,10 @@ FaceLanes::FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint3
 
 void MovedLanes::set(const FaceLanes& faces, const Placement& start, const Placement& end) noexcept {
   move_lanes(faces, in_single(start), in_single(end), *this);
+}
+
+AxisBox MovedLanes::box_without(std::uint32_t skipped) const noexcept {
+  return box_of(*this, skipped);
 }
 
 MovedBox::MovedBox(const std::array<Vec3, 8>& start, const std::array<Vec3, 8>& end) {

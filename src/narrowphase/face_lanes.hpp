@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/prefetch.hpp"
 #include "narrowphase/face_blocks.hpp"
 #include "narrowphase/patch_separate.hpp"
 
@@ -13,17 +15,19 @@ namespace tegotae {
 /// the last one.
 struct alignas(64) FaceLanes {
   typedef std::array<float, kBlockFaces> Field;
-  std::array<std::array<Field, 3>, 3> corner;
-  std::array<Field, 3> normal;     ///< of unit length up to single precision, zero where there is none
-  Field normal_low, normal_high;   ///< of the face's own corners along it
-  std::array<Field, 3> low, high;  ///< of the corners along the axes
-  Vec3 origin;                     ///< from that of B's tree, m
-  float size = 0;                  ///< largest coordinate, m
-  std::array<float, 3> mean;       ///< of the normals, likewise
-  float mean_low, mean_high;       ///< of all corners along it
+  Vec3 origin;                ///< from that of B's tree, m
+  float size = 0;             ///< largest coordinate, m
+  std::array<float, 3> mean;  ///< of the normals, likewise
+  float mean_low, mean_high;  ///< of all corners along it
+  alignas(64) std::array<std::array<Field, 3>, 3> corner;
+  std::array<Field, 3> normal;    ///< of unit length up to single precision, zero where there is none
+  Field normal_low, normal_high;  ///< of the face's own corners along it
 
   FaceLanes() = default;
   FaceLanes(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t block);
+
+  /// Calls for what MovedLanes::set() and BesideFaces::set() read.
+  void call_for() const noexcept { prefetch(this, offsetof(FaceLanes, normal_low)); }
 };
 
 /// A block of A's faces at the two ends of a motion, field after field, from a point near it (m, axes of B's tree).
@@ -39,6 +43,8 @@ struct alignas(64) MovedLanes {
 
   /// `start` and `end` bring the faces, from their own origin, to where they are from the common one.
   void set(const FaceLanes& faces, const Placement& start, const Placement& end) noexcept;
+  /// About all faces but those in `skipped`, a bit each.
+  AxisBox box_without(std::uint32_t skipped) const noexcept;
 };
 
 /// A box at the two ends of a motion, from a point near it (m, axes of B's tree).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/numbers.hpp"
 #include "narrowphase/cell_slack.hpp"
@@ -11,8 +12,6 @@
 namespace tegotae {
 namespace {
 
-/// Nodes of this level know what of B is beside them.
-constexpr std::uint32_t kTopLevel = 2;
 /// Fewer pieces are few.
 constexpr std::uint32_t kFewPieces = 16;
 /// Blocks of A that are looked at first: so many, and one of so many.
@@ -37,13 +36,20 @@ constexpr double kPassedWay = 4, kAskedWay = 1;
 constexpr double kEnoughAtFirst = 0.98, kEnough = 0.85;
 /// Few blocks of A: so many, and one of so many.
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+/// Asking a block as a whole takes half of the time that its faces take, about.
+constexpr std::uint32_t kSomeBlocks = 16;
+constexpr double kToldShare = 0.5;
 /// Where more than few were looked at face by face, and more than this share of those that the look has come past, all
 /// are.
 constexpr double kMost = 0.125;
 
-/// Pieces are nodes of this level, or of the one below where there would be few.
+/// Of pieces at most.
+constexpr std::uint32_t kPieceLevel = 2;
+
+/// One less where there would be few.
 std::uint32_t piece_level(const FaceBlocks& blocks) {
-  const std::uint32_t level = std::min(kTopLevel, blocks.levels() - 1);
+  const std::uint32_t level = std::min(kPieceLevel, blocks.levels() - 1);
   return level > 0 && blocks.nodes(level) < kFewPieces ? level - 1 : level;
 }
 
@@ -77,7 +83,9 @@ bool SweepWorker::begin(SweepTask& task) {
   task_ = &task;
   id_ = task.id();
   piece_.reset();
-  stacked_ = tops_count_ = 0;
+  stacked_ = 0;
+  for (Tops& tops : tops_) tops.count = 0;
+  blocks_asked_ = blocks_told_ = 0;
   face_ = faces_ = 0;
   last_plane_ = {Vec3::Zero(), Vec3::Zero()};
   const bool walls = question().layer == Layer::walls;
@@ -110,7 +118,9 @@ bool SweepWorker::work(SweepTask& task, std::int64_t deadline_ns) {
 }
 
 void SweepWorker::start_piece() {
-  tops_count_ = 0;
+  for (Tops& tops : tops_) tops.count = 0;
+  blocks_asked_ /= 2;
+  blocks_told_ /= 2;
   if (question().look != Look::sample) {
     stack_[0] = {piece_level(surface_a_->blocks), *piece_};
     stacked_ = 1;
@@ -152,6 +162,7 @@ Sweep SweepWorker::sweep_by(double share, double clearance) const {
 void SweepWorker::set_share(double share) {
   share_ = share;
   sweep_ = sweep_by(share, question().clearance);
+  turned_sizes_ = {sweep_.start.R.cwiseAbs(), sweep_.end.R.cwiseAbs()};
   // Of both readings of the path; see Bulge. What is kept from a longer motion is kept from the first part of it: its
   // readings are nearer to each other.
   passing_ = PassingPoints::seen_from_a(sweep_);
@@ -161,6 +172,7 @@ void SweepWorker::set_share(double share) {
 /// Goes down A's hierarchy to a block beside which there may be something of B.
 void SweepWorker::next_block() {
   const Node node = stack_[--stacked_];
+  if (stacked_ > 0 && stack_[stacked_ - 1].level == 0) surface_a_->lanes[stack_[stacked_ - 1].index].call_for();
   if (recedes(node)) return;
   walk_beside(node, 0);
   if (walk_.next(found_.data(), 1) == 0) return;
@@ -174,25 +186,38 @@ void SweepWorker::next_block() {
 /// Walks over what of B is beside A's node. What is under one goes on from what was found for it.
 void SweepWorker::walk_beside(const Node& node, std::uint32_t level) {
   const AxisBox box = swept(surface_a_->blocks.box(node.level, node.index));
-  if (node.level >= kTopLevel) tops_count_ = 0;
-  if (node.level == kTopLevel && surface_b().blocks.levels() > kTopLevel) {
-    walk_.start(surface_b().blocks, box, kTopLevel);
-    tops_count_ = walk_.next(tops_.data(), BlockWalk::kMostTops);
-    if (tops_count_ == BlockWalk::kMostTops) tops_count_ = 0;
-  }
+  find_tops(node, box);
   walk(box, level);
 }
 
+/// Those of A's node, if it may have nodes under it, in place of those of its level and below.
+void SweepWorker::find_tops(const Node& node, const AxisBox& box) {
+  for (std::uint32_t level = 1; level <= std::min(node.level, kTopLevels); ++level) tops_[level - 1].count = 0;
+  if (node.level == 0 || node.level > kTopLevels || node.level >= surface_b().blocks.levels()) return;
+  walk(box, node.level);
+  Tops& tops = tops_[node.level - 1];
+  tops.count = walk_.next(tops.nodes.data(), BlockWalk::kMostTops);
+  if (tops.count == BlockWalk::kMostTops) tops.count = 0;
+}
+
+/// From the lowest nodes on that are known to be beside what the box is about.
 void SweepWorker::walk(const AxisBox& box, std::uint32_t level) {
-  if (tops_count_ > 0) {
-    walk_.start_under(tops_.data(), tops_count_, kTopLevel, surface_b().blocks, box, level);
-  } else {
-    walk_.start(surface_b().blocks, box, level);
+  for (std::uint32_t top = std::max(level, 1U); top <= kTopLevels; ++top) {
+    const Tops& tops = tops_[top - 1];
+    if (tops.count == 0) continue;
+    walk_.start_under(tops.nodes.data(), tops.count, top, surface_b().blocks, box, level);
+    return;
   }
+  walk_.start(surface_b().blocks, box, level);
 }
 
 void SweepWorker::push_below(const Node& node) {
   const std::uint32_t below = surface_a_->blocks.nodes(node.level - 1), first = node.index * FaceBlocks::kFan;
+  prefetch(surface_a_->blocks.boxes_below(node.level - 1, node.index));
+  if (node.level <= surface_a_->slabs.levels()) surface_a_->slabs.call_for(node.level - 1, node.index);
+  if (by_nodes() && node.level <= kTopLevels)
+    for (std::uint32_t i = 0; i < tops_[node.level - 1].count; ++i)
+      prefetch(surface_b().slabs.lanes(node.level - 1, tops_[node.level - 1].nodes[i]));
   for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
     stack_[stacked_++] = {node.level - 1, i};
 }
@@ -202,6 +227,10 @@ void SweepWorker::next_node() {
   const Node node = stack_[--stacked_];
   if (recedes(node)) return;
   const double apart = node_apart_for(node);
+  if (node.level == 0) {
+    ++blocks_asked_;
+    if (apart == 1) ++blocks_told_;
+  }
   if (apart == 1 || (node.level == 0 && all_recede(node.index))) return;
   if (is_enough(apart)) {
     // Over a shorter way from here on; this one once more.
@@ -218,6 +247,11 @@ void SweepWorker::next_node() {
     // Most would be looked at, and so may all be, for all of the way.
     task_->end_with(SweepTask::Ending::many_faces);
   }
+}
+
+/// Whether it pays to ask blocks as a whole before their faces. Some are, all the same.
+bool SweepWorker::nodes_tell() const {
+  return blocks_asked_ < kSomeBlocks || blocks_told_ > kToldShare * blocks_asked_;
 }
 
 /// Whether the motion may end so early as whole blocks tell.
@@ -244,38 +278,44 @@ double SweepWorker::node_apart_for(const Node& node) {
   const std::uint32_t level = std::min(node.level, surface_b().blocks.levels() - 1);
   walk_beside(node, level);
   const bool flat = node.level < surface_a_->slabs.levels() && level < surface_b().slabs.levels();
-  MovedSlab slab;
-  if (flat) slab = moved(surface_a_->slabs.slab(node.level, node.index));
+  if (!flat) return walk_.next(found_.data(), 1) == 0 ? 1 : 0;
+  const MovedSlab slab = moved(surface_a_->slabs.slab(node.level, node.index));
+  const SlabSides sides(slab);
+  const Vec3 middle = 0.5 * (slab.from + slab.to);
+  std::optional<MovedBox> corners;
   double apart = 1;
+  std::uint32_t eight = kNone, kept = 0;
   for (std::uint32_t count = kBeside; count == kBeside;) {
     count = walk_.next(found_.data(), kBeside);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (!flat) return 0;
-      const double share = apart_for(slab, surface_b().slabs.slab(level, found_[i]), floor_);
+      const std::uint32_t other = found_[i];
+      if (std::exchange(eight, other / FaceBlocks::kFan) != other / FaceBlocks::kFan)
+        kept = kept_apart(slab, sides, surface_b().slabs.lanes(level, eight), floor_);
+      if ((kept >> (other % FaceBlocks::kFan) & 1) != 0) continue;
+      if (node.level == 0) {
+        // Maybe each of its faces is apart from what A's block is in.
+        if (!corners) corners = slab.corners(middle);
+        const FaceLanes& b = surface_b().lanes[other];
+        if (not_kept_apart(*corners, b, middle - b.origin, floor_) == 0) continue;
+      }
+      if (question().look == Look::faces) return 0;
+      const double share = apart_for(slab, surface_b().slabs.slab(level, other), floor_);
       if (share == 1) continue;
-      if (node.level > 0 || !apart_from_faces(slab, found_[i])) apart = std::min(apart, share);
+      apart = std::min(apart, share);
       if (!is_enough(apart)) return 0;
     }
   }
   return apart;
 }
 
-/// Whether the faces of a block of B are each apart from what A's block is in.
-bool SweepWorker::apart_from_faces(const MovedSlab& slab, std::uint32_t block) {
-  const FaceLanes& b = surface_b().lanes[block];
-  const Vec3 middle = 0.5 * (slab.from + slab.to);
-  return not_kept_apart(slab.corners(middle), b, middle - b.origin, floor_) == 0;
-}
-
 MovedSlab SweepWorker::moved(const Slab& slab) const {
   MovedSlab out;
   const Vec3 center = slab.center + offset_a_;
-  const Mat3 axes = slab.axes * slab.half.asDiagonal();
   out.from = sweep_.start.R * center + sweep_.start.t;
   out.to = sweep_.end.R * center + sweep_.end.t;
-  out.from_axes = sweep_.start.R * axes;
-  out.to_axes = sweep_.end.R * axes;
   out.axes = sweep_.start.R * slab.axes;
+  out.from_axes = out.axes * slab.half.asDiagonal();
+  out.to_axes = (sweep_.end.R * slab.axes) * slab.half.asDiagonal();
   return out;
 }
 
@@ -287,11 +327,20 @@ AxisBox SweepWorker::swept(const AxisBox& box) const {
     middle[axis] = 0.5 * (double{box.low[i]} + double{box.high[i]});
     half[axis] = 0.5 * (double{box.high[i]} - double{box.low[i]});
   }
-  AxisBox out = AxisBox::empty();
-  for (const Placement* at : {&sweep_.start, &sweep_.end}) {
-    const Vec3 to = at->R * (middle + offset_a_) + at->t;
-    const Vec3 reach = at->R.cwiseAbs() * half + Vec3::Constant(floor_ + kBoxError * (to.norm() + half.norm()));
-    out.add(to - reach, to + reach);
+  Vec3 low = Vec3::Constant(kInfinity), high = -low;
+  const double size = half.sum();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Placement& at = k == 0 ? sweep_.start : sweep_.end;
+    const Vec3 to = at.R * (middle + offset_a_) + at.t;
+    const Vec3 reach = turned_sizes_[k] * half + Vec3::Constant(floor_ + kBoxError * (to.lpNorm<1>() + size));
+    low = low.cwiseMin(to - reach);
+    high = high.cwiseMax(to + reach);
+  }
+  // What single precision leaves of them is far below the error that they are grown by.
+  AxisBox out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.low[i] = static_cast<float>(low[static_cast<Eigen::Index>(i)]);
+    out.high[i] = static_cast<float>(high[static_cast<Eigen::Index>(i)]);
   }
   return out;
 }
@@ -341,9 +390,7 @@ void SweepWorker::place(std::uint32_t block) {
   start.t -= middle_;
   end.t -= middle_;
   moved_.set(faces, start, end);
-  AxisBox box = AxisBox::empty();
-  for (std::uint32_t k = 0; k < faces_; ++k)
-    if ((skipped_ >> k & 1) == 0) box.add(face_box(k));
+  AxisBox box = moved_.box_without(skipped_);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto at = static_cast<float>(middle_[static_cast<Eigen::Index>(i)]);
     const float slack = static_cast<float>(floor_) + kBoxError * (std::abs(at) + 4 * moved_.size);
@@ -354,11 +401,6 @@ void SweepWorker::place(std::uint32_t block) {
   face_ = faces_;
   passed_ = asked_ = 0;
   sizes_passed_ = way / faces.size;
-}
-
-AxisBox SweepWorker::face_box(std::uint32_t k) const {
-  return {{moved_.low[0][k], moved_.low[1][k], moved_.low[2][k]},
-          {moved_.high[0][k], moved_.high[1][k], moved_.high[2][k]}};
 }
 
 /// The next blocks of B beside that of A, for all faces of it.

@@ -36,6 +36,12 @@ class SweepWorker {
   struct Node {
     std::uint32_t level, index;
   };
+  /// Nodes of B beside one of A on the same level: what is under that is beside what is under these.
+  struct Tops {
+    std::array<std::uint32_t, BlockWalk::kMostTops> nodes;
+    std::uint32_t count = 0;  ///< none: too many, or not looked for
+  };
+  static constexpr std::uint32_t kTopLevels = 2;
   /// A face of A, from its center of mass, and one of B, from its origin.
   struct Faces {
     std::array<Vec3, 3> a, b;
@@ -55,16 +61,15 @@ class SweepWorker {
   bool is_enough(double apart) const;
   double few_blocks() const;
   bool may_search() const;
-  bool apart_from_faces(const MovedSlab& slab, std::uint32_t block);
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
   void walk_beside(const Node& node, std::uint32_t level);
+  void find_tops(const Node& node, const AxisBox& box);
   void walk(const AxisBox& box, std::uint32_t level);
   bool recedes(const Node& node) const;
   bool none_recedes(std::uint32_t block) const;
   bool all_recede(std::uint32_t block);
   void place(std::uint32_t block);
-  AxisBox face_box(std::uint32_t k) const;
   bool next_beside();
   AxisBox swept(const AxisBox& box) const;
   void look_less_far();
@@ -84,8 +89,10 @@ class SweepWorker {
   }
   /// Nodes are asked as a whole, and faces where those are not kept apart.
   bool by_nodes() const {
-    return question().look == Look::blocks || (question().look == Look::faces && question().layer != Layer::faces);
+    return question().look == Look::blocks ||
+           (question().look == Look::faces && (question().layer != Layer::faces || nodes_tell()));
   }
+  bool nodes_tell() const;
   bool may_recede() const {
     return question().layer == Layer::faces && (question().drawn || (model_->facing && question().outside));
   }
@@ -101,7 +108,8 @@ class SweepWorker {
   Vec3 offset_a_ = Vec3::Zero();  ///< of the tree's origin, moved, from the center of mass
   std::array<Node, FaceBlocks::kMostLevels * FaceBlocks::kFan> stack_;  ///< of A's hierarchy
   std::uint32_t stacked_ = 0;
-  Sweep sweep_;  ///< of the share of the motion, past the part
+  Sweep sweep_;                       ///< of the share of the motion, past the part
+  std::array<Mat3, 2> turned_sizes_;  ///< of boxes, at its ends: the absolute values of the rotations
   PassingPoints passing_;
   double floor_ = 0;  ///< of straight ways: the clearance and what arcs may leave of them, m
 
@@ -112,9 +120,8 @@ class SweepWorker {
   MovedLanes moved_;
   Vec3 middle_ = Vec3::Zero();
   BlockWalk walk_;
-  std::array<std::uint32_t, BlockWalk::kMostTops>
-      tops_;                      ///< nodes of B beside that one of A whose blocks are looked at
-  std::uint32_t tops_count_ = 0;  ///< none: from the root
+  std::uint32_t blocks_asked_ = 0, blocks_told_ = 0;  ///< as a whole, lately, and what was enough
+  std::array<Tops, kTopLevels> tops_;  ///< of the levels from the first on, of the nodes that were looked at last
   std::array<std::uint32_t, kBeside> found_;
   BesideFaces beside_;                                  ///< of found_, beside A's block
   std::array<float, 3> across_{};                       ///< a direction that kept two faces apart, in B's axes
