@@ -13,6 +13,8 @@ namespace {
 constexpr double kSlabError = 1e-12;
 /// Faces of which edges are tried as the direction of a slab.
 constexpr std::size_t kEdgesTried = 8;
+/// Boxes are grown by this share of the coordinates that they come from, in single precision.
+constexpr float kBoxError = 1e-6F;
 
 /// The corners of faces in a row.
 std::vector<Vec3> corners_of(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t first, std::uint32_t end) {
@@ -67,10 +69,7 @@ Slab slab_about(const std::vector<Vec3>& corners) {
   return best;
 }
 
-/// The center of a MovedSlab at both ends, from the point that eight others are from.
-typedef std::array<Float3, 2> Ends;
-
-float sum_of_sizes(const Float3& x) {
+TEGOTAE_INLINE float sum_of_sizes(const Float3& x) {
   return std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
 }
 
@@ -95,7 +94,12 @@ TEGOTAE_INLINE Lane along(const Lanes3& n, const Float3& x) {
   return n.x * x[0] + n.y * x[1] + n.z * x[2];
 }
 
-TEGOTAE_WIDE std::uint32_t apart_of(const Ends& at, const SlabSides& a, const SlabLanes& b, float floor) {
+/// As kept_apart(): `shift` is the origin of `a` from that of `b`, m.
+TEGOTAE_INLINE std::uint32_t apart_of(const SlabEnds& a, const SlabLanes& b, const Float3& shift, float floor_of_all) {
+  const float floor = floor_of_all + kGapError * (a.size + b.size + sum_of_sizes(shift));
+  std::array<Float3, 2> at;
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t i = 0; i < 3; ++i) at[k][i] = a.center[k][i] + shift[i];
   const Lanes3 center = all_of(b.center), normal = all_of(b.normal);
   Lane thickness = all_of(b.thickness) + floor;
   // Across B's faces, then across A's.
@@ -117,6 +121,73 @@ TEGOTAE_WIDE std::uint32_t apart_of(const Ends& at, const SlabSides& a, const Sl
   apart |= ((off[0] >= most[0]) & (off[1] >= most[1])) | ((-off[0] >= most[0]) & (-off[1] >= most[1]));
   constexpr LaneBits kOf = {1, 2, 4, 8, 16, 32, 64, 128};
   return together(apart & kOf);
+}
+
+TEGOTAE_INLINE Float3 from_to(const Vec3& from, const Vec3& to) {
+  const Vec3 d = to - from;
+  return {static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
+}
+
+TEGOTAE_WIDE std::uint32_t apart_of_eight(const SlabEnds& a, const SlabLanes& b, const Float3& shift, float floor) {
+  return apart_of(a, b, shift, floor);
+}
+
+TEGOTAE_WIDE std::uint32_t not_apart_under(const std::uint32_t* nodes, std::uint32_t count,
+                                           std::uint32_t level_of_nodes, const FaceBlocks& blocks,
+                                           const BlockSlabs& slabs, const SlabEnds& a, const Vec3& origin,
+                                           const AxisBox& box, float floor, std::uint32_t* out, std::uint32_t most) {
+  std::uint32_t found = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t bits = overlap(blocks.boxes_below(level_of_nodes - 1, nodes[i]), box);
+    if (bits == 0) continue;
+    const SlabLanes& b = slabs.lanes(level_of_nodes - 1, nodes[i]);
+    bits &= ~apart_of(a, b, from_to(b.origin, origin), floor);
+    for (; bits != 0; bits &= bits - 1) {
+      if (found == most) return most + 1;
+      out[found++] = FaceBlocks::kFan * nodes[i] + static_cast<std::uint32_t>(__builtin_ctz(bits));
+    }
+  }
+  return found;
+}
+
+/// A rotation in single precision, row by row, and where a point comes to.
+struct Turn {
+  std::array<Float3, 3> rows;
+  Float3 to;
+
+  Turn(const Mat3& R, const Vec3& at) : to(in_single(at)) {
+    for (std::size_t i = 0; i < 3; ++i) rows[i] = in_single(R.row(static_cast<Eigen::Index>(i)));
+  }
+};
+
+TEGOTAE_INLINE void store8(SlabLanes::Field& field, Lane x) {
+  *reinterpret_cast<Lane*>(field.data()) = x;
+}
+
+TEGOTAE_WIDE void move_slabs(const SlabLanes& a, const std::array<Turn, 2>& turns, MovedSlabs& out) {
+  const Lanes3 center = all_of(a.center), normal = all_of(a.normal);
+  for (std::size_t i = 0; i < 3; ++i) store8(out.normal[i], dot(normal, turns[0].rows[i]));
+  Lane size{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    Lane sum{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Float3& row = turns[k].rows[i];
+      const Lane at = dot(center, row) + turns[k].to[i];
+      Lane reach{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Lane side = dot(all_of(a.sides[c]), row);
+        store8(out.sides[k][c][i], side);
+        reach += size_of(side);
+      }
+      store8(out.center[k][i], at);
+      sum += size_of(at) + reach;
+      const Lane low = at - reach, high = at + reach;
+      store8(out.low[i], k == 0 ? low : lesser(low, all_of(out.low[i])));
+      store8(out.high[i], k == 0 ? high : greater(high, all_of(out.high[i])));
+    }
+    size = greater(size, sum);
+  }
+  store8(out.size, size);
 }
 
 }  // namespace
@@ -184,9 +255,10 @@ double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept {
   return best;
 }
 
-SlabSides::SlabSides(const MovedSlab& a) : normal(in_single(a.axes.col(2))), size(0) {
+SlabEnds::SlabEnds(const MovedSlab& a, const Vec3& origin)
+    : center{in_single(a.from - origin), in_single(a.to - origin)}, normal(in_single(a.axes.col(2))), size(0) {
   for (std::size_t k = 0; k < 2; ++k) {
-    float sum = 0;
+    float sum = sum_of_sizes(center[k]);
     for (std::size_t i = 0; i < 3; ++i) {
       sides[k][i] = in_single((k == 0 ? a.from_axes : a.to_axes).col(static_cast<Eigen::Index>(i)));
       sum += sum_of_sizes(sides[k][i]);
@@ -195,10 +267,46 @@ SlabSides::SlabSides(const MovedSlab& a) : normal(in_single(a.axes.col(2))), siz
   }
 }
 
-std::uint32_t kept_apart(const MovedSlab& a, const SlabSides& sides, const SlabLanes& b, double floor) noexcept {
-  const Ends at = {in_single(a.from - b.origin), in_single(a.to - b.origin)};
-  const float size = sides.size + b.size + std::max(sum_of_sizes(at[0]), sum_of_sizes(at[1]));
-  return apart_of(at, sides, b, static_cast<float>(floor) + kGapError * size);
+void MovedSlabs::set(const SlabLanes& a, const Placement& start, const Placement& end) noexcept {
+  const Vec3 from = start.R * a.origin + start.t, to = end.R * a.origin + end.t;
+  origin = 0.5 * (from + to);
+  move_slabs(a, {Turn(start.R, from - origin), Turn(end.R, to - origin)}, *this);
+}
+
+SlabEnds MovedSlabs::slab(std::uint32_t k) const noexcept {
+  SlabEnds out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.normal[i] = normal[i][k];
+    for (std::size_t end = 0; end < 2; ++end) {
+      out.center[end][i] = center[end][i][k];
+      for (std::size_t c = 0; c < 3; ++c) out.sides[end][c][i] = sides[end][c][i][k];
+    }
+  }
+  out.size = size[k];
+  return out;
+}
+
+AxisBox MovedSlabs::box(std::uint32_t k, double slack) const noexcept {
+  AxisBox out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = static_cast<float>(origin[static_cast<Eigen::Index>(i)]);
+    const float more = static_cast<float>(slack) + kBoxError * (std::abs(at) + size[k]);
+    out.low[i] = at + low[i][k] - more;
+    out.high[i] = at + high[i][k] + more;
+  }
+  return out;
+}
+
+std::uint32_t kept_apart(const SlabEnds& a, const Vec3& origin, const SlabLanes& b, double floor) noexcept {
+  return apart_of_eight(a, b, from_to(b.origin, origin), static_cast<float>(floor));
+}
+
+std::uint32_t not_kept_apart_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,
+                                   const FaceBlocks& blocks, const BlockSlabs& slabs, const SlabEnds& a,
+                                   const Vec3& origin, const AxisBox& box, double floor, std::uint32_t* out,
+                                   std::uint32_t most) noexcept {
+  return not_apart_under(nodes, count, level_of_nodes, blocks, slabs, a, origin, box, static_cast<float>(floor), out,
+                         most);
 }
 
 }  // namespace tegotae

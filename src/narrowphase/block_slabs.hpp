@@ -65,21 +65,47 @@ class BlockSlabs {
   std::vector<std::vector<SlabLanes>> lanes_;  ///< likewise
 };
 
+/// A slab at the two ends of a motion in single precision, from a point near it, in the axes of what it moves past.
+struct SlabEnds {
+  std::array<std::array<float, 3>, 2> center;                ///< m
+  std::array<std::array<std::array<float, 3>, 3>, 2> sides;  ///< its axes, as long as its halves, m
+  std::array<float, 3> normal;                               ///< the last axis at the start
+  float size;                                                ///< largest sum of all these coordinates, m
+
+  SlabEnds() = default;
+  explicit SlabEnds(const MovedSlab& a, const Vec3& origin);
+};
+
+/// Eight slabs of A at the two ends of a motion, field after field, from a point near them.
+struct alignas(64) MovedSlabs {
+  typedef SlabLanes::Field Field;
+  Vec3 origin;  ///< m
+  alignas(32) std::array<std::array<Field, 3>, 2> center;
+  std::array<std::array<std::array<Field, 3>, 3>, 2> sides;
+  std::array<Field, 3> normal;
+  std::array<Field, 3> low, high;  ///< of all that they pass, from the point, m
+  Field size;                      ///< as that of SlabEnds
+
+  /// `start` and `end` bring A's slabs, from the origin of its tree, to where they are.
+  void set(const SlabLanes& a, const Placement& start, const Placement& end) noexcept;
+  SlabEnds slab(std::uint32_t k) const noexcept;
+  /// About all that slab `k` passes, and `slack` (m) around it.
+  AxisBox box(std::uint32_t k, double slack) const noexcept;
+};
+
 /// The share of a straight motion, from its start, in which a fixed plane along a side of a slab keeps `a` at
 /// least `floor` (m) apart from `b`; 0 where none does at the start.
 double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept;
 
-/// The axes of a MovedSlab in single precision.
-struct SlabSides {
-  std::array<std::array<std::array<float, 3>, 3>, 2> sides;  ///< at both ends, as long as its halves, m
-  std::array<float, 3> normal;                               ///< the last one at the start
-  float size;                                                ///< largest sum of the sides' coordinates, m
+/// Of eight slabs, those that planes across A's faces or across theirs keep at least `floor` apart from `a`, whose
+/// point is `origin`, all along the motion: a bit each. The rounding in single precision is taken off.
+std::uint32_t kept_apart(const SlabEnds& a, const Vec3& origin, const SlabLanes& b, double floor) noexcept;
 
-  explicit SlabSides(const MovedSlab& a);
-};
-
-/// Of eight slabs, those that planes across A's faces or across theirs keep at least `floor` apart from `a` all along
-/// the motion: a bit each. The rounding in single precision is taken off.
-std::uint32_t kept_apart(const MovedSlab& a, const SlabSides& sides, const SlabLanes& b, double floor) noexcept;
+/// Of the nodes under some of B's, those that meet `box` and that planes do not keep apart from `a` in this way: up to
+/// `most` of them to `out`. Returns how many, or more than `most` if there are more.
+std::uint32_t not_kept_apart_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,
+                                   const FaceBlocks& blocks, const BlockSlabs& slabs, const SlabEnds& a,
+                                   const Vec3& origin, const AxisBox& box, double floor, std::uint32_t* out,
+                                   std::uint32_t most) noexcept;
 
 }  // namespace tegotae

@@ -215,19 +215,57 @@ void SweepWorker::push_below(const Node& node) {
   const std::uint32_t below = surface_a_->blocks.nodes(node.level - 1), first = node.index * FaceBlocks::kFan;
   prefetch(surface_a_->blocks.boxes_below(node.level - 1, node.index));
   if (node.level <= surface_a_->slabs.levels()) surface_a_->slabs.call_for(node.level - 1, node.index);
-  if (by_nodes() && node.level <= kTopLevels)
-    for (std::uint32_t i = 0; i < tops_[node.level - 1].count; ++i)
-      prefetch(surface_b().slabs.lanes(node.level - 1, tops_[node.level - 1].nodes[i]));
   for (std::uint32_t i = first; i < std::min(first + FaceBlocks::kFan, below); ++i)
     stack_[stacked_++] = {node.level - 1, i};
+}
+
+/// Of the blocks under A's node, those that are not told apart as a whole all at once.
+void SweepWorker::push_blocks(const Node& node) {
+  const std::uint32_t first = node.index * FaceBlocks::kFan;
+  const std::uint32_t end = std::min(first + FaceBlocks::kFan, surface_a_->blocks.count());
+  const Surface& b = surface_b();
+  for (std::uint32_t i = 0; i < tops_[0].count; ++i) {
+    prefetch(b.blocks.boxes_below(0, tops_[0].nodes[i]));
+    prefetch(b.slabs.lanes(0, tops_[0].nodes[i]));
+  }
+  Placement from = sweep_.start, to = sweep_.end;
+  from.t += from.R * offset_a_;
+  to.t += to.R * offset_a_;
+  MovedSlabs eight;
+  eight.set(surface_a_->slabs.lanes(0, node.index), from, to);
+  for (std::uint32_t block = first; block < end; ++block) {
+    if (recedes({0, block})) continue;
+    const std::uint32_t k = block - first;
+    const std::uint32_t open =
+        not_kept_apart_under(tops_[0].nodes.data(), tops_[0].count, 1, b.blocks, b.slabs, eight.slab(k), eight.origin,
+                             eight.box(k, floor_), floor_, found_.data(), kBeside);
+    ++blocks_asked_;
+    if (open == 0 || (open <= kBeside && apart_from_faces(block, open))) {
+      ++blocks_told_;
+    } else {
+      stack_[stacked_++] = {0, block, true};
+    }
+  }
+}
+
+/// Whether the faces of each of so many blocks in found_ are apart from what A's block is in.
+bool SweepWorker::apart_from_faces(std::uint32_t block, std::uint32_t count) {
+  const MovedSlab slab = moved(surface_a_->slabs.slab(0, block));
+  const Vec3 middle = 0.5 * (slab.from + slab.to);
+  const MovedBox corners = slab.corners(middle);
+  return std::all_of(found_.data(), found_.data() + count, [&](std::uint32_t other) {
+    const FaceLanes& b = surface_b().lanes[other];
+    return not_kept_apart(corners, b, middle - b.origin, floor_) == 0;
+  });
 }
 
 /// Looks at the next node of A's hierarchy as a whole; a block's faces one by one where that is not enough.
 void SweepWorker::next_node() {
   const Node node = stack_[--stacked_];
+  if (node.level == 1) prefetch(surface_a_->slabs.lanes(0, node.index));
   if (recedes(node)) return;
-  const double apart = node_apart_for(node);
-  if (node.level == 0) {
+  const double apart = node.open && question().look == Look::faces ? 0 : node_apart_for(node);
+  if (node.level == 0 && !node.open) {
     ++blocks_asked_;
     if (apart == 1) ++blocks_told_;
   }
@@ -238,6 +276,8 @@ void SweepWorker::next_node() {
     task_->end.lower({kept, true});
     set_share(kept);
     ++stacked_;
+  } else if (node.level == 1 && tops_[0].count > 0) {
+    push_blocks(node);
   } else if (node.level > 0) {
     push_below(node);
   } else if (question().layer != Layer::faces || question().look == Look::faces || may_search()) {
@@ -280,8 +320,8 @@ double SweepWorker::node_apart_for(const Node& node) {
   const bool flat = node.level < surface_a_->slabs.levels() && level < surface_b().slabs.levels();
   if (!flat) return walk_.next(found_.data(), 1) == 0 ? 1 : 0;
   const MovedSlab slab = moved(surface_a_->slabs.slab(node.level, node.index));
-  const SlabSides sides(slab);
   const Vec3 middle = 0.5 * (slab.from + slab.to);
+  const SlabEnds ends(slab, middle);
   std::optional<MovedBox> corners;
   double apart = 1;
   std::uint32_t eight = kNone, kept = 0;
@@ -290,7 +330,7 @@ double SweepWorker::node_apart_for(const Node& node) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t other = found_[i];
       if (std::exchange(eight, other / FaceBlocks::kFan) != other / FaceBlocks::kFan)
-        kept = kept_apart(slab, sides, surface_b().slabs.lanes(level, eight), floor_);
+        kept = kept_apart(ends, middle, surface_b().slabs.lanes(level, eight), floor_);
       if ((kept >> (other % FaceBlocks::kFan) & 1) != 0) continue;
       if (node.level == 0) {
         // Maybe each of its faces is apart from what A's block is in.

@@ -35,6 +35,7 @@ class SweepWorker {
  private:
   struct Node {
     std::uint32_t level, index;
+    bool open = false;  ///< it is known not to be apart as a whole for all of the motion
   };
   /// Nodes of B beside one of A on the same level: what is under that is beside what is under these.
   struct Tops {
@@ -61,6 +62,8 @@ class SweepWorker {
   bool is_enough(double apart) const;
   double few_blocks() const;
   bool may_search() const;
+  void push_blocks(const Node& node);
+  bool apart_from_faces(std::uint32_t block, std::uint32_t count);
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
   void walk_beside(const Node& node, std::uint32_t level);
