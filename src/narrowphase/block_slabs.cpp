@@ -13,6 +13,8 @@ namespace {
 constexpr double kSlabError = 1e-12;
 /// Faces of which edges are tried as the direction of a slab.
 constexpr std::size_t kEdgesTried = 8;
+/// Of a ball in single precision, as a share of all coordinates.
+constexpr double kRadiusError = 1e-6;
 /// Boxes are grown by this share of the coordinates that they come from, in single precision.
 constexpr float kBoxError = 1e-6F;
 
@@ -212,6 +214,13 @@ SlabLanes::SlabLanes(const Slab* slabs, std::size_t count) {
     thickness[k] = static_cast<float>(slab.half.z());
     size = std::max(size, static_cast<float>((slab.center - origin).lpNorm<1>() + slab.half.sum()));
   }
+}
+
+double SlabLanes::radius(std::uint32_t k) const noexcept {
+  double square = 0;
+  for (const auto& side : sides)
+    for (const Field& along : side) square += double{along[k]} * double{along[k]};
+  return std::sqrt(square) + kRadiusError * size;
 }
 
 BlockSlabs::BlockSlabs(const PatchTree& tree, const FaceBlocks& blocks) {

@@ -38,6 +38,11 @@ struct alignas(64) SlabLanes {
   std::array<std::array<Field, 3>, 3> sides;  ///< the axes, as long as the halves, m
 
   SlabLanes(const Slab* slabs, std::size_t count);
+
+  /// The center of one, from that of the tree.
+  Vec3 middle(std::uint32_t k) const { return origin + Vec3(center[0][k], center[1][k], center[2][k]); }
+  /// Of a ball about it that holds the slab, m.
+  double radius(std::uint32_t k) const noexcept;
 };
 
 /// The slabs of the lowest levels of FaceBlocks: they tell whole blocks of surfaces that face each other apart, up to

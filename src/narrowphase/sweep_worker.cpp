@@ -231,11 +231,13 @@ void SweepWorker::push_blocks(const Node& node) {
   Placement from = sweep_.start, to = sweep_.end;
   from.t += from.R * offset_a_;
   to.t += to.R * offset_a_;
+  const SlabLanes& lanes = surface_a_->slabs.lanes(0, node.index);
   MovedSlabs eight;
-  eight.set(surface_a_->slabs.lanes(0, node.index), from, to);
+  eight.set(lanes, from, to);
   for (std::uint32_t block = first; block < end; ++block) {
-    if (recedes({0, block})) continue;
     const std::uint32_t k = block - first;
+    if (may_recede() && passing_.recedes(seen(cones().nodes[0][block]), lanes.middle(k) + offset_a_, lanes.radius(k)))
+      continue;
     const std::uint32_t open =
         not_kept_apart_under(tops_[0].nodes.data(), tops_[0].count, 1, b.blocks, b.slabs, eight.slab(k), eight.origin,
                              eight.box(k, floor_), floor_, found_.data(), kBeside);
@@ -262,7 +264,10 @@ bool SweepWorker::apart_from_faces(std::uint32_t block, std::uint32_t count) {
 /// Looks at the next node of A's hierarchy as a whole; a block's faces one by one where that is not enough.
 void SweepWorker::next_node() {
   const Node node = stack_[--stacked_];
-  if (node.level == 1) prefetch(surface_a_->slabs.lanes(0, node.index));
+  if (node.level == 1) {
+    prefetch(surface_a_->slabs.lanes(0, node.index));
+    if (may_recede()) prefetch(&cones().nodes[0][node.index * FaceBlocks::kFan], FaceBlocks::kFan * sizeof(NormalCone));
+  }
   if (recedes(node)) return;
   const double apart = node.open && question().look == Look::faces ? 0 : node_apart_for(node);
   if (node.level == 0 && !node.open) {
