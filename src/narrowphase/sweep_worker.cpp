@@ -343,7 +343,6 @@ double SweepWorker::node_apart_for(const Node& node) {
         const FaceLanes& b = surface_b().lanes[other];
         if (not_kept_apart(*corners, b, middle - b.origin, floor_) == 0) continue;
       }
-      if (question().look == Look::faces) return 0;
       const double share = apart_for(slab, surface_b().slabs.slab(level, other), floor_);
       if (share == 1) continue;
       apart = std::min(apart, share);
