@@ -8,8 +8,6 @@
 namespace tegotae {
 namespace {
 
-/// Boxes are grown by this share of the coordinates that they come from, in single precision.
-constexpr float kBoxError = 1e-6F;
 /// Blocks that are called for before they are read.
 constexpr std::uint32_t kAhead = 3;
 

@@ -15,8 +15,6 @@ constexpr double kSlabError = 1e-12;
 constexpr std::size_t kEdgesTried = 8;
 /// Of a ball in single precision, as a share of all coordinates.
 constexpr double kRadiusError = 1e-6;
-/// Boxes are grown by this share of the coordinates that they come from, in single precision.
-constexpr float kBoxError = 1e-6F;
 
 /// The corners of faces in a row.
 std::vector<Vec3> corners_of(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t first, std::uint32_t end) {
@@ -125,11 +123,6 @@ TEGOTAE_INLINE std::uint32_t apart_of(const SlabEnds& a, const SlabLanes& b, con
   return together(apart & kOf);
 }
 
-TEGOTAE_INLINE Float3 from_to(const Vec3& from, const Vec3& to) {
-  const Vec3 d = to - from;
-  return {static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
-}
-
 TEGOTAE_WIDE std::uint32_t apart_of_eight(const SlabEnds& a, const SlabLanes& b, const Float3& shift, float floor) {
   return apart_of(a, b, shift, floor);
 }
@@ -143,7 +136,7 @@ TEGOTAE_WIDE std::uint32_t not_apart_under(const std::uint32_t* nodes, std::uint
     std::uint32_t bits = overlap(blocks.boxes_below(level_of_nodes - 1, nodes[i]), box);
     if (bits == 0) continue;
     const SlabLanes& b = slabs.lanes(level_of_nodes - 1, nodes[i]);
-    bits &= ~apart_of(a, b, from_to(b.origin, origin), floor);
+    bits &= ~apart_of(a, b, in_single(origin - b.origin), floor);
     for (; bits != 0; bits &= bits - 1) {
       if (found == most) return most + 1;
       out[found++] = FaceBlocks::kFan * nodes[i] + static_cast<std::uint32_t>(__builtin_ctz(bits));
@@ -307,7 +300,7 @@ AxisBox MovedSlabs::box(std::uint32_t k, double slack) const noexcept {
 }
 
 std::uint32_t kept_apart(const SlabEnds& a, const Vec3& origin, const SlabLanes& b, double floor) noexcept {
-  return apart_of_eight(a, b, from_to(b.origin, origin), static_cast<float>(floor));
+  return apart_of_eight(a, b, in_single(origin - b.origin), static_cast<float>(floor));
 }
 
 std::uint32_t not_kept_apart_under(const std::uint32_t* nodes, std::uint32_t count, std::uint32_t level_of_nodes,

@@ -11,6 +11,9 @@ namespace tegotae {
 /// Faces of a block of FaceBlocks.
 inline constexpr std::uint32_t kBlockFaces = 16;
 
+/// Boxes are grown by this share of the coordinates that they come from, in single precision.
+inline constexpr float kBoxError = 1e-6F;
+
 /// A box along the axes of a PatchTree, from its origin, m.
 struct AxisBox {
   std::array<float, 3> low, high;

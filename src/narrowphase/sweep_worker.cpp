@@ -21,8 +21,6 @@ constexpr double kExact = 5e-7;
 constexpr int kHalvings = 24;
 /// Faces after which the clock is looked at.
 constexpr std::uint32_t kFacesAtOnce = 4;
-/// Boxes are grown by this share of the coordinates that they come from, in single precision.
-constexpr float kBoxError = 1e-6F;
 constexpr double kRadiusSlack = 1 + 1e-9;
 /// What is free that blocks tell is taken a little shorter: they are looked at again.
 constexpr double kShareKept = 0.999;
