@@ -34,6 +34,8 @@ constexpr double kPassedWay = 4, kAskedWay = 1;
 constexpr double kEnoughAtFirst = 0.98, kEnough = 0.85;
 /// Few blocks of A: so many, and one of so many.
 constexpr std::uint32_t kFewBlocks = 32, kBlocksShare = 24;
+/// What is under a node of B is asked where it is so many times as large as that of A.
+constexpr double kMuchLarger = 2;
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 /// Asking a block as a whole takes half of the time that its faces take, about.
 constexpr std::uint32_t kSomeBlocks = 16;
@@ -127,7 +129,8 @@ void SweepWorker::start_piece() {
   const std::uint32_t stride = sample_stride(surface_a_->blocks);
   const std::uint32_t block = stride / 2 + stride * *piece_;
   refresh_share();
-  if (!all_recede(block)) place(block);
+  const Node node = {0, block};
+  if (!recedes(node) && node_apart_for(node) < 1 && !all_recede(block)) place(block);
 }
 
 /// Goes on with a piece. False when it is done, by this thread or another.
@@ -181,11 +184,13 @@ void SweepWorker::next_block() {
   }
 }
 
-/// Walks over what of B is beside A's node. What is under one goes on from what was found for it.
-void SweepWorker::walk_beside(const Node& node, std::uint32_t level) {
+/// Walks over what of B is beside A's node, and meets the box that is returned. What is under one goes on from what was
+/// found for it.
+AxisBox SweepWorker::walk_beside(const Node& node, std::uint32_t level) {
   const AxisBox box = swept(surface_a_->blocks.box(node.level, node.index));
   find_tops(node, box);
   walk(box, level);
+  return box;
 }
 
 /// Those of A's node, if it may have nodes under it, in place of those of its level and below.
@@ -319,7 +324,7 @@ bool SweepWorker::may_search() const {
 /// The share of the motion in which all faces under A's node are apart from B, or less.
 double SweepWorker::node_apart_for(const Node& node) {
   const std::uint32_t level = std::min(node.level, surface_b().blocks.levels() - 1);
-  walk_beside(node, level);
+  const AxisBox box = walk_beside(node, level);
   const bool flat = node.level < surface_a_->slabs.levels() && level < surface_b().slabs.levels();
   if (!flat) return walk_.next(found_.data(), 1) == 0 ? 1 : 0;
   const MovedSlab slab = moved(surface_a_->slabs.slab(node.level, node.index));
@@ -341,12 +346,34 @@ double SweepWorker::node_apart_for(const Node& node) {
         const FaceLanes& b = surface_b().lanes[other];
         if (not_kept_apart(*corners, b, middle - b.origin, floor_) == 0) continue;
       }
-      const double share = apart_for(slab, surface_b().slabs.slab(level, other), floor_);
+      const double share = apart_from(slab, ends, middle, box, {level, other});
       if (share == 1) continue;
       apart = std::min(apart, share);
       if (!is_enough(apart)) return 0;
     }
   }
+  return apart;
+}
+
+/// The share in which a slab of A is apart from a node of B, or from all that is under it, where that is much larger: a
+/// few such nodes, of faces that are left over from others, are beside most of A.
+double SweepWorker::apart_from(const MovedSlab& slab, const SlabEnds& ends, const Vec3& middle, const AxisBox& box,
+                               const Node& other) const {
+  const Surface& b = surface_b();
+  const double size2 = kMuchLarger * kMuchLarger * slab.from_axes.squaredNorm();
+  std::array<std::uint32_t, kBeside> nodes{other.index}, below;
+  std::uint32_t count = 1, level = other.level;
+  const auto is_large = [&](std::uint32_t i) { return b.slabs.slab(level, i).half.squaredNorm() > size2; };
+  while (level > 0 && std::any_of(nodes.begin(), nodes.begin() + count, is_large)) {
+    count = not_kept_apart_under(nodes.data(), count, level, b.blocks, b.slabs, ends, middle, box, floor_, below.data(),
+                                 kBeside);
+    if (count > kBeside) return 0;
+    nodes = below;
+    --level;
+  }
+  double apart = 1;
+  for (std::uint32_t i = 0; i < count; ++i)
+    apart = std::min(apart, apart_for(slab, b.slabs.slab(level, nodes[i]), floor_));
   return apart;
 }
 

@@ -59,6 +59,8 @@ class SweepWorker {
   void next_block();
   void next_node();
   double node_apart_for(const Node& node);
+  double apart_from(const MovedSlab& slab, const SlabEnds& ends, const Vec3& middle, const AxisBox& box,
+                    const Node& other) const;
   bool is_enough(double apart) const;
   double few_blocks() const;
   bool may_search() const;
@@ -66,7 +68,7 @@ class SweepWorker {
   bool apart_from_faces(std::uint32_t block, std::uint32_t count);
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
-  void walk_beside(const Node& node, std::uint32_t level);
+  AxisBox walk_beside(const Node& node, std::uint32_t level);
   void find_tops(const Node& node, const AxisBox& box);
   void walk(const AxisBox& box, std::uint32_t level);
   bool recedes(const Node& node) const;

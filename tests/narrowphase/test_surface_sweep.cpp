@@ -43,6 +43,16 @@ double run(SurfaceSweep& sweep, const Pose& X, const Displacement& d, bool outsi
   return sweep.share();
 }
 
+/// The surface and a box of few faces below it.
+MeshPtr on_base(const MeshPtr& surface) {
+  TriangleMesh both = *surface;
+  const MeshPtr base = box({0.06, 0.06, 0.02});
+  const auto first = static_cast<std::uint32_t>(both.vertices.size());
+  for (const Vec3& v : base->vertices) both.vertices.emplace_back(v - Vec3(0, 0, 0.025));
+  for (const auto& t : base->triangles) both.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  return std::make_shared<const TriangleMesh>(both);
+}
+
 Pose random_start(std::mt19937& rng, const Scene& scene) {
   return displaced(scene.start, scene.center, {random_in_ball(rng, scene.move), random_in_ball(rng, scene.turn)});
 }
@@ -91,6 +101,9 @@ TEST_CASE("what whole blocks tell to be free is free, and most of it or as much 
   auto all = scenes();
   all.push_back({"sheet", wave(0.1, 0.01, 0.05, 40), wave(0.1, 0.01, 0.05, 57), Vec3::Zero(),
                  Pose{Quat::Identity(), Vec3(0, 0, 0.01)}, 0.004, 0.02});
+  // What is under large nodes of small faces and large ones is asked.
+  all.push_back({"sheet on a die with a base", wave(0.05, 0.002, 0.05, 60), on_base(wave(0.1, 0.002, 0.05, 80)),
+                 Vec3::Zero(), Pose{Quat::Identity(), Vec3(0, 0, 0.002)}, 0.001, 0.02});
   for (const Scene& scene : all) {
     INFO(scene.name);
     const Oracle oracle(scene.a, scene.b);
