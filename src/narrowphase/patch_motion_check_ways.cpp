@@ -21,6 +21,8 @@ constexpr double kBesideWay = 0.1;
 constexpr std::size_t kMostSwept = 256;
 // Ways ahead are longer by so many ticks for each face: what looking at it takes at most.
 constexpr double kTicksPerFace = 1e-3;
+// The ticks that a look from beside the pen's way is taken to last: as long as the last one, and so many at most.
+constexpr std::uint64_t kMostSoon = 10;
 // The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
 constexpr double kSameWay = 0.95, kStands = 1e-7;
 // The ticks that the pen takes to come as far as whole blocks of faces are to prove at least, of a part of no more than
@@ -269,9 +271,10 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
   // It takes as long however far it goes, and meanwhile the pen goes on. Aside, contacts may be in the way of that, and
   // where something touches, they let A go where `d` leads.
   double ticks = 0;
-  if (!heading_.whole && same_way(d, heading_.pen)) {
-    // From beside the pen's way, soon onto it.
-    ticks = beside_pen(d) > heading_.near_gap ? std::min(look_ticks(), kSweptTicks) : kSweptTicks;
+  if (!heading_.whole && (!heading_.touches || same_way(d, heading_.pen))) {
+    // From beside the pen's way, to where the pen will be by then.
+    const double soon = static_cast<double>(std::clamp<std::uint64_t>(swept_for_, 1, kMostSoon));
+    ticks = same_way(d, heading_.pen) && beside_pen(d) <= heading_.near_gap ? kSweptTicks : soon;
     ticks = std::min(ticks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands));
   }
   const Displacement all = heading_.touches
