@@ -119,8 +119,7 @@ TEGOTAE_INLINE std::uint32_t apart_of(const SlabEnds& a, const SlabLanes& b, con
     most[k] = thickness + size_along(a.normal, a.sides[k]);
   }
   apart |= ((off[0] >= most[0]) & (off[1] >= most[1])) | ((-off[0] >= most[0]) & (-off[1] >= most[1]));
-  constexpr LaneBits kOf = {1, 2, 4, 8, 16, 32, 64, 128};
-  return together(apart & kOf);
+  return together(apart & kEachBit);
 }
 
 TEGOTAE_WIDE std::uint32_t apart_of_eight(const SlabEnds& a, const SlabLanes& b, const Float3& shift, float floor) {

@@ -12,6 +12,9 @@ namespace tegotae {
 /// Eight numbers, bit by bit.
 typedef std::int32_t EightBits __attribute__((vector_size(8 * sizeof(std::int32_t)), may_alias));
 
+/// One bit in each of eight numbers, the first in the first.
+constexpr EightBits kEachBit = {1, 2, 4, 8, 16, 32, 64, 128};
+
 /// All bits of eight numbers in one.
 TEGOTAE_INLINE std::uint32_t together(const EightBits& bits) {
   std::array<std::uint64_t, 4> in_pairs;
@@ -25,7 +28,7 @@ TEGOTAE_INLINE std::uint32_t together(const EightBits& bits) {
 TEGOTAE_INLINE std::uint32_t overlap(const BoxLanes& boxes, const AxisBox& box) {
   typedef float Lane __attribute__((vector_size(BoxLanes::kBoxes * sizeof(float)), may_alias));
   static_assert(sizeof(Lane) == sizeof(EightBits));
-  EightBits all = EightBits{1, 2, 4, 8, 16, 32, 64, 128};
+  EightBits all = kEachBit;
   for (std::size_t i = 0; i < 3; ++i) {
     const Lane low = *reinterpret_cast<const Lane*>(boxes.low[i].data());
     const Lane high = *reinterpret_cast<const Lane*>(boxes.high[i].data());

@@ -155,8 +155,7 @@ TEGOTAE_INLINE Lane gaps_along(const Along& a, const FaceLanes& b, std::uint32_t
 
 /// Bits of sixteen conditions.
 TEGOTAE_INLINE std::uint32_t bits_of(LaneBits one, LaneBits other) {
-  constexpr LaneBits kOf = {1, 2, 4, 8, 16, 32, 64, 128};
-  return together((one & kOf) | (other & (kOf << kLane)));
+  return together((one & kEachBit) | (other & (kEachBit << kLane)));
 }
 
 /// A bit for each face of `b` that has less than `floor`. Planes keep most apart, and axes few more. Both halves go

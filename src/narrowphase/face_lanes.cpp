@@ -88,12 +88,11 @@ TEGOTAE_WIDE void move_lanes(const FaceLanes& faces, const Moved& start, const M
 
 TEGOTAE_WIDE AxisBox box_of(const MovedLanes& faces, std::uint32_t skipped) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
-  const LaneBits bit = {1, 2, 4, 8, 16, 32, 64, 128};
   AxisBox box;
   for (std::size_t i = 0; i < 3; ++i) {
     Lane low = Lane{} + kFar, high = Lane{} - kFar;
     for (std::uint32_t first = 0; first < kBlockFaces; first += kLane) {
-      const LaneBits without = (static_cast<std::int32_t>(skipped >> first) & bit) != 0;
+      const LaneBits without = (static_cast<std::int32_t>(skipped >> first) & kEachBit) != 0;
       low = without ? low : lesser(low, load(faces.low[i], first));
       high = without ? high : greater(high, load(faces.high[i], first));
     }
