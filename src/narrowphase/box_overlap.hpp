@@ -13,7 +13,7 @@ namespace tegotae {
 typedef std::int32_t EightBits __attribute__((vector_size(8 * sizeof(std::int32_t)), may_alias));
 
 /// One bit in each of eight numbers, the first in the first.
-constexpr EightBits kEachBit = {1, 2, 4, 8, 16, 32, 64, 128};
+inline constexpr EightBits kEachBit = {1, 2, 4, 8, 16, 32, 64, 128};
 
 /// All bits of eight numbers in one.
 TEGOTAE_INLINE std::uint32_t together(const EightBits& bits) {

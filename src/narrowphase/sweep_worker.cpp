@@ -368,7 +368,7 @@ double SweepWorker::apart_from(const MovedSlab& slab, const SlabEnds& ends, cons
     count = not_kept_apart_under(nodes.data(), count, level, b.blocks, b.slabs, ends, middle, box, floor_, below.data(),
                                  kBeside);
     if (count > kBeside) return 0;
-    nodes = below;
+    std::copy_n(below.begin(), count, nodes.begin());
     --level;
   }
   double apart = 1;
