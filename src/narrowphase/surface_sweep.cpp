@@ -123,11 +123,11 @@ void SurfaceSweep::finish_part() {
 
 void SurfaceSweep::collect_met() {
   std::array<SweepTask::Met, SweepTask::kMostMet> met;
-  const std::size_t count = task_->met(met);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (blocking_.size() == blocking_.capacity()) blocking_.erase(blocking_.begin());
-    blocking_.push_back({near_[at_], met[i].a, met[i].b});
-  }
+  // It is all nearer than what was met before, which had ended the motion that was looked at.
+  const std::size_t count = std::min(task_->met(met), blocking_.capacity());
+  blocking_.resize(std::min(blocking_.size(), blocking_.capacity() - count));
+  blocking_.insert(blocking_.begin(), count, {});
+  for (std::size_t i = 0; i < count; ++i) blocking_[i] = {near_[at_], met[i].a, met[i].b};
 }
 
 void SurfaceSweep::next_part() {

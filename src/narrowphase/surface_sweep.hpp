@@ -71,7 +71,7 @@ class SurfaceSweep {
   /// When done: the part of the motion, from its start, that is free. What is met ends it, a little before it is
   /// touched where that can be.
   double share() const { return end_.share; }
-  /// When done: what was met, the nearest last; at most as many as the constructor was told. Nothing where the motion
+  /// When done: what was met, the nearest first; at most as many as the constructor was told. Nothing where the motion
   /// was ended early.
   const std::vector<FacePair>& blocking() const { return blocking_; }
   /// When done: a few faces met something at once (see SweepAim::blocked_within).

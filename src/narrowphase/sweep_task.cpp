@@ -49,7 +49,7 @@ std::size_t SweepTask::met(std::array<Met, kMostMet>& out) const noexcept {
     const auto same = [&](const Met& other) { return other.a == one.a && other.b == one.b; };
     if (std::any_of(out.begin(), last, same)) continue;
     const auto at =
-        std::upper_bound(out.begin(), last, one.share, [](double s, const Met& other) { return s > other.share; });
+        std::upper_bound(out.begin(), last, one.share, [](double s, const Met& other) { return s < other.share; });
     std::move_backward(at, last, last + 1);
     *at = one;
     ++count;

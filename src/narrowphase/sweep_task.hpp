@@ -109,7 +109,7 @@ class SweepTask {
   void end_with(Ending ending) noexcept { ending_.store(ending); }
 
   void add_met(const Met& met) noexcept;
-  /// Owner, when there is no piece to do: what was met, the nearest last. How many there are.
+  /// Owner, when there is no piece to do: what was met, the nearest first. How many there are.
   std::size_t met(std::array<Met, kMostMet>& out) const noexcept;
 
   SharedLimit end;                         ///< of what is free; early: not since something was met

@@ -85,7 +85,7 @@ TEST_CASE("the first part of a motion is free as far as is said, and what was me
       CHECK(sweep.blocking().empty() == sweep.ended_early());
       if (n % 3 != 0 || sweep.ended_early()) continue;
       // Straight ways end where there is something, and it is told.
-      const FacePair met = sweep.blocking().back();
+      const FacePair met = sweep.blocking().front();
       const Pose end = displaced(X, scene.center, share * d);
       CHECK(Oracle(single(*scene.a, met.a), single(*scene.b, met.b)).distance(end) < kEndsBefore);
       CHECK(oracle.distance(end) < kEndsBefore);

@@ -99,22 +99,22 @@ TEST_CASE("each piece is taken once, and again by those who have none left while
   CHECK(task.is_over());
 }
 
-TEST_CASE("what is met is told once, the nearest last, however much and in whatever order") {
+TEST_CASE("what is met is told once, the nearest first, however much and in whatever order") {
   SweepTask task(1);
   std::array<SweepTask::Met, SweepTask::kMostMet> met;
   task.open(with_pieces(1), {1, false}, {1, false}, 0);
   CHECK(task.met(met) == 0);
   for (const double share : {0.7, 0.3, 0.5, 0.3}) task.add_met({share, static_cast<std::uint32_t>(10 * share), 2});
   REQUIRE(task.met(met) == 3);
-  CHECK(met[0].share == 0.7);
+  CHECK(met[0].share == 0.3);
   CHECK(met[1].share == 0.5);
-  CHECK(met[2].share == 0.3);
-  CHECK(met[2].a == 3);
-  CHECK(met[2].b == 2);
+  CHECK(met[2].share == 0.7);
+  CHECK(met[0].a == 3);
+  CHECK(met[0].b == 2);
   // Of more than there is room for the last ones are kept.
   for (std::uint32_t i = 0; i < 3 * SweepTask::kMostMet; ++i) task.add_met({1.0 / (i + 1), i, i});
   REQUIRE(task.met(met) == SweepTask::kMostMet);
-  for (std::size_t i = 0; i < met.size(); ++i) CHECK(met[i].a == 2 * SweepTask::kMostMet + i);
+  for (std::size_t i = 0; i < met.size(); ++i) CHECK(met[i].a == 3 * SweepTask::kMostMet - 1 - i);
 }
 
 TEST_CASE("with helpers, the first part of a motion is free as far as without, and what ends it is told") {
@@ -149,7 +149,7 @@ TEST_CASE("with helpers, the first part of a motion is free as far as without, a
     } else if (!alone.ended_early() && share[0] != share[1]) {
       // Each ends a little before something is touched. What ended the shorter one is as near, and apart, where the
       // longer one ends: along a slope that is farther than it is near.
-      const FacePair met = (share[0] < share[1] ? alone : helped).blocking().back();
+      const FacePair met = (share[0] < share[1] ? alone : helped).blocking().front();
       const Pose end = displaced(X, Vec3::Zero(), std::max(share[0], share[1]) * d);
       const double gap = Oracle(single(*sheets.sheet, met.a), single(*sheets.die, met.b)).distance(end);
       CHECK(gap > 0.9 * kClearance);
@@ -158,7 +158,7 @@ TEST_CASE("with helpers, the first part of a motion is free as far as without, a
     if (share[1] == 1) {
       ++whole;
     } else if (!helped.ended_early()) {
-      const FacePair met = helped.blocking().back();
+      const FacePair met = helped.blocking().front();
       const Pose end = displaced(X, Vec3::Zero(), share[1] * d);
       CHECK(met.part == 0);
       CHECK(Oracle(single(*sheets.sheet, met.a), single(*sheets.die, met.b)).distance(end) < kEndsBefore);
