@@ -163,6 +163,11 @@ class PatchMotionCheck final : public MotionCheck {
   double product(const Displacement& a, const Displacement& b) const {
     return a.dp.dot(b.dp) + radius_ * radius_ * a.dr.dot(b.dr);
   }
+  /// How many ticks a look lasts, about, by the last one.
+  double soon() const noexcept;
+  /// From `from`, the motion onto the way of the pen, which goes on from `pen`, and on along it. So many ticks of the
+  /// pen long where it begins beside that way no farther than what counts as near, else as soon as may be.
+  Displacement onto_pen_way(const Pose& from, const Pose& pen, double ticks) const noexcept;
   /// How many ticks a look at all faces takes, about.
   double look_ticks() const;
   /// How far `d` leads beside the pen's way, m.
@@ -188,9 +193,9 @@ class PatchMotionCheck final : public MotionCheck {
   void forget_small_cells(const Displacement& d) noexcept;
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;
-  void prepare_way(const Pose& X) noexcept;
-  bool begin_ahead(const Pose& X) noexcept;
-  void finish_way() noexcept;
+  void prepare_way(const Pose& X, const Displacement& next) noexcept;
+  bool begin_ahead(const Pose& X, const Displacement& next) noexcept;
+  void finish_way(const Pose& X) noexcept;
   CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
   /// Asks for ever more clearance at rest by `ask`, until something is nearer or time is over.
   template <typename Ask>
@@ -244,6 +249,9 @@ class PatchMotionCheck final : public MotionCheck {
   std::vector<bool> left_out_;      ///< of each part: it may be
   double clearance_ = 0;            ///< of the last check, m
   bool looks_ahead_ = false;        ///< it is at a way that A has not come to yet
+  bool turns_off_ = false;          ///< that does not begin at the end of the last way, but before
+  Displacement pen_then_;           ///< the pen's motion when that look began
+  std::uint64_t ahead_since_ = 0;   ///< and the begin()
   Heading heading_;                 ///< see heads()
   bool fronts_busy_ = false;        ///< they took long when they were asked last
   int behind_for_ = 0;              ///< ticks in a row, up to

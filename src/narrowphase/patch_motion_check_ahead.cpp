@@ -68,7 +68,7 @@ void PatchMotionCheck::prepare(const Pose& X, const Displacement& next, std::int
   // Ways first: where they are proved, fronts are not needed.
   const std::int64_t now_ns = monotonic_ns();
   limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kWayShare * static_cast<double>(deadline_ns - now_ns));
-  prepare_way(X);
+  prepare_way(X, next);
   limit_.deadline_ns = deadline_ns;
   prepare_fronts(X);
   prepare_cells(X, next);

@@ -273,8 +273,7 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
   double ticks = 0;
   if (!heading_.whole && (!heading_.touches || same_way(d, heading_.pen))) {
     // From beside the pen's way, to where the pen will be by then.
-    const double soon = static_cast<double>(std::clamp<std::uint64_t>(swept_for_, 1, kMostSoon));
-    ticks = same_way(d, heading_.pen) && beside_pen(d) <= heading_.near_gap ? kSweptTicks : soon;
+    ticks = same_way(d, heading_.pen) && beside_pen(d) <= heading_.near_gap ? kSweptTicks : soon();
     ticks = std::min(ticks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands));
   }
   const Displacement all = heading_.touches
@@ -296,34 +295,75 @@ void PatchMotionCheck::add_way() noexcept {
   ways_.add(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near(), sweep_->blocking());
 }
 
-void PatchMotionCheck::finish_way() noexcept {
+double PatchMotionCheck::soon() const noexcept {
+  return static_cast<double>(std::clamp<std::uint64_t>(swept_for_, 1, kMostSoon));
+}
+
+Displacement PatchMotionCheck::onto_pen_way(const Pose& from, const Pose& pen, double ticks) const noexcept {
+  const Displacement &step = heading_.pen, to_pen = displacement(from, pen, center_);
+  const double beside = beside_pen(to_pen);
+  if (beside > heading_.near_gap) ticks = std::min(ticks, soon() + beside / size(step));
+  // From where it is nearest to `from`, or from `pen`.
+  ticks += std::max(0.0, -product(to_pen, step) / product(step, step));
+  return displacement(from, displaced(pen, center_, ticks * step), center_);
+}
+
+void PatchMotionCheck::finish_way(const Pose& X) noexcept {
   looks_ahead_ = false;
-  if (sweep_->share() > 0) add_way();
+  swept_for_ = now_ - ahead_since_ + 1;
+  if (!(sweep_->share() > 0)) return;
+  if (turns_off_) {
+    const Displacement left = displacement(X, sweep_->start(), center_);
+    // A has come past the place where it begins.
+    if (product(left, heading_.pen) < 0 && size(left) > kStill) return;
+    ways_.turn_off(X, sweep_->start());
+  }
+  add_way();
 }
 
 /// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
 /// come to by then.
-void PatchMotionCheck::prepare_way(const Pose& X) noexcept {
+void PatchMotionCheck::prepare_way(const Pose& X, const Displacement& next) noexcept {
   if (!may_look_ahead() || sweeping_ || heading_.whole || !(size(heading_.pen) > kStands)) return;
   ways_.come_to(X);
-  looks_ahead_ = looks_ahead_ && same_way(sweep_->motion(), heading_.pen) && covers_near(sweep_->near());
-  if (!looks_ahead_ && !begin_ahead(X)) return;
+  looks_ahead_ = looks_ahead_ && same_way(pen_then_, heading_.pen) && covers_near(sweep_->near());
+  if (!looks_ahead_ && !begin_ahead(X, next)) return;
   looks_ahead_ = true;
-  if (sweep_->go_on(limit_.deadline_ns)) finish_way();
+  if (sweep_->go_on(limit_.deadline_ns)) finish_way(X);
 }
 
-bool PatchMotionCheck::begin_ahead(const Pose& X) noexcept {
+bool PatchMotionCheck::begin_ahead(const Pose& X, const Displacement& next) noexcept {
   const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, heading_.pen); };
   const bool on_way = !ways_.empty() && covers_near(ways_.last().way.parts()) && leads_on(ways_.first().way);
-  // What is met there would end the next one at once.
-  if (on_way && (ways_.full() || !ways_.last().met.empty() || !same_way(ways_.last().way.motion(), heading_.pen)))
-    return false;
+  if (on_way && ways_.full()) return false;
+  const Pose pen = displaced(X, center_, next);
   const double faces = static_cast<double>(held_->mesh().triangles.size());
   const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(heading_.pen));
-  const Pose from = on_way ? ways_.last().way.end() : X;
-  if (size(displacement(X, from, center_)) > far * size(heading_.pen)) return false;
-  if (!find_swept(X, from, far * heading_.pen)) return false;
-  look_at(from, far * heading_.pen, clearance_, worth({}, far * heading_.pen));
+  Pose from = X;
+  turns_off_ = false;
+  if (on_way) {
+    const ProvedWay& last = ways_.last().way;
+    const double beside = beside_pen(displacement(last.end(), pen, center_));
+    const bool goes_on = same_way(last.motion(), heading_.pen) || beside <= heading_.near_gap;
+    const double left = size(displacement(X, last.end(), center_));
+    if (goes_on && (beside <= heading_.near_gap || left <= 2 * soon() * size(heading_.pen))) {
+      // What is met there would end the next one at once.
+      if (!ways_.last().met.empty() || left > far * size(heading_.pen)) return false;
+      from = last.end();
+    } else if (const auto along = ways_.first().way.toward(
+                   X, {next.dp + soon() * heading_.pen.dp, next.dr + soon() * heading_.pen.dr})) {
+      // From where A will be by then, to where the pen goes.
+      turns_off_ = true;
+      from = displaced(X, center_, *along);
+    } else {
+      return false;
+    }
+  }
+  const Displacement d = onto_pen_way(from, pen, far);
+  if (!find_swept(X, from, d)) return false;
+  look_at(from, d, clearance_, worth({}, d));
+  pen_then_ = heading_.pen;
+  ahead_since_ = now_;
   return true;
 }
 

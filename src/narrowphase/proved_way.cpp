@@ -23,6 +23,14 @@ void ProvedWay::set(const Pose& X, const Displacement& d, const std::vector<std:
   to_ = 0;
 }
 
+void ProvedWay::cut(const Pose& X, const Pose& at) noexcept {
+  X_ = X;
+  d_ = displacement(X, at, center_);
+  length2_ = product(d_, d_);
+  known_ = length2_ > 0;
+  from_ = to_ = 0;
+}
+
 void ProvedWay::come_to(const Pose& X) noexcept {
   if (!is_on(X)) return;
   from_ = std::min(from_, std::clamp(place(X), 0.0, 1.0));
@@ -79,6 +87,13 @@ void ProvedWays::add(const Pose& X, const Displacement& d, const std::vector<std
   Stretch& added = stretches_[count_++];
   added.way.set(X, d, parts);
   added.met.assign(met.begin(), met.end());
+}
+
+void ProvedWays::turn_off(const Pose& X, const Pose& at) noexcept {
+  if (count_ == 0 || !first().way.is_on(X) || !first().way.is_on(at)) return;
+  stretches_[0].way.cut(X, at);
+  stretches_[0].met.clear();
+  count_ = 1;
 }
 
 }  // namespace tegotae

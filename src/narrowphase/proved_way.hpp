@@ -22,6 +22,8 @@ class ProvedWay {
   /// The way from `X` (of A's file frame in the world) by `d` is free of `parts`.
   void set(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& parts) noexcept;
   void drop() noexcept { known_ = false; }
+  /// A is at `X` on the way: what is left of it leads from there to the place `at` on it.
+  void cut(const Pose& X, const Pose& at) noexcept;
   /// A is at `X`. The way is proved for an A that comes to it from its beginning, or from where A came to it.
   void come_to(const Pose& X) noexcept;
   /// From `X`, the motion along the way that brings A as near as it can to where `d` would; none where A is not on the
@@ -87,6 +89,9 @@ class ProvedWays {
   /// of them, or if they are full.
   void add(const Pose& X, const Displacement& d, const std::vector<std::uint32_t>& parts,
            const std::vector<FacePair>& met) noexcept;
+  /// A is at `X` on the first way, which leads from there to the place `at` on it from now on; the others go. Nothing
+  /// where one of both is not on it.
+  void turn_off(const Pose& X, const Pose& at) noexcept;
   void drop() noexcept { count_ = 0; }
 
  private:
