@@ -172,6 +172,7 @@ class ContactLoop final : public ProxyLoop {
   std::optional<Shortcut> shortcut_;
   Pose in_vain_;                         ///< where the last one was not proved
   int stuck_ = 0;                        ///< ticks in a row that were out of time
+  int waited_ = 0;                       ///< those of them that waited for the rest of a look
   std::vector<FacePair> touched_faces_;  ///< of the trail; blocking_ is of the motion that is owed
   Pose X_;
   Pose last_Y_;

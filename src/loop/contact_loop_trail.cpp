@@ -19,6 +19,9 @@ constexpr double kComesBack = 0.5;
 // Where the pen does not come back to what was touched, ways to it are looked at in a few ticks. A look begins anew
 // wherever the part goes, and has the first of so many ticks: more of them each time, or it would never come to an end.
 constexpr int kPatience = 4, kTicksOfLooks = 16;
+// Where more than this share of a look is done, the part waits for the rest, for so many ticks.
+constexpr double kMostIsThere = 0.5;
+constexpr int kWaitsForRest = 2;
 // A way across to a place on it, beside all that lies between, is no longer than so much of the gap to what is known to
 // be near, and has so many ticks to be proved.
 constexpr double kClear = 0.3;
@@ -118,6 +121,8 @@ void ContactLoop::follow_trail(const Pose& Y, const Displacement& pen, double tr
   if (to.pose == 0) return;
   const int patience = kPatience * (stuck_ / kTicksOfLooks + (comes_back ? 0 : 1));
   const bool waits = at_.check->goes_on() && stuck_ % kTicksOfLooks < patience;
+  if (at_.check->progress() > kMostIsThere && ++waited_ <= kWaitsForRest) return;
+  waited_ = 0;
   if (waits && std::sqrt(to.left) > lag_bound(at_.radius)) return;
   // Along the trail it would come there too, but maybe to the other side of what it has been around.
   if (to.across) {

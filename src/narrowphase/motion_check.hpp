@@ -64,6 +64,8 @@ class MotionCheck {
   virtual bool prefers_long() const { return false; }
   /// The last check() begins to answer, and one of the next, from the same pose, has the answer.
   virtual bool goes_on() const { return false; }
+  /// How much of that answer is there, as a share, about.
+  virtual double progress() const { return 0; }
   /// Part of the motion that the last check() answered for, from its start, that may be made whatever the answer; in
   /// [0, 1].
   virtual double free_share() const = 0;

@@ -53,6 +53,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::optional<Displacement> instead() const override { return instead_; }
   bool prefers_long() const override { return behind_for_ >= kTicksBehind && (!heading_.touches || stands_still()); }
   bool goes_on() const override { return sweeping_; }
+  double progress() const override { return sweeping_ ? sweep_->progress() : 0; }
   double free_share() const override { return share_; }
   MotionAnswer stands(const Pose& X, std::uint32_t part, double clearance, std::int64_t deadline_ns) noexcept override;
   Pose near_contact(const Pose& X, const Displacement&, const std::vector<FacePair>&) noexcept override { return X; }
@@ -67,6 +68,14 @@ class PatchMotionCheck final : public MotionCheck {
   static constexpr int kTicksBehind = 2;
   /// What has not moved for so many ticks meanwhile has to be looked at as a whole.
   static constexpr int kTicksStill = 8;
+
+  /// What is looked at as a whole goes on for as far as the pen comes in so many ticks, and for this share of the
+  /// part's radius at most.
+  static constexpr double kSweptTicks = 50, kLongestSweep = 0.5;
+  /// A look from beside the pen's way is taken to last for so many ticks at most.
+  static constexpr std::uint64_t kMostSoon = 10;
+  /// What has come less far stands, and motions of the pen in a tick that are none, m.
+  static constexpr double kStill = 1e-6, kStands = 1e-7;
 
   /// What a near part is certified by.
   enum class Certificate : std::uint8_t {
@@ -163,6 +172,8 @@ class PatchMotionCheck final : public MotionCheck {
   double product(const Displacement& a, const Displacement& b) const {
     return a.dp.dot(b.dp) + radius_ * radius_ * a.dr.dot(b.dr);
   }
+  /// A look took so many ticks.
+  void lasted(std::uint64_t ticks) noexcept;
   /// How many ticks a look lasts, about, by the last one.
   double soon() const noexcept;
   /// From `from`, the motion onto the way of the pen, which goes on from `pen`, and on along it. So many ticks of the
@@ -194,6 +205,7 @@ class PatchMotionCheck final : public MotionCheck {
   void prepare_fronts(const Pose& X) noexcept;
   void prepare_cells(const Pose& X, const Displacement& next) noexcept;
   void prepare_way(const Pose& X, const Displacement& next) noexcept;
+  std::optional<Pose> place_soon(const Pose& X, const Displacement& next) const noexcept;
   bool begin_ahead(const Pose& X, const Displacement& next) noexcept;
   void finish_way(const Pose& X) noexcept;
   CertifyReport ask_cells(const Pose& X, const Displacement& d, double clearance) noexcept;
@@ -264,6 +276,7 @@ class PatchMotionCheck final : public MotionCheck {
   std::uint64_t swept_since_ = 0,
                 swept_until_ = 0;  ///< the begin() since which A waited for the last sweep, and of its end
   std::uint64_t swept_for_ = 0;    ///< and the ticks that it took
+  std::uint64_t slow_until_ = 0;   ///< the begin() until which looks are taken to be slow
   Pose swept_from_;                ///< where it began
   Displacement swept_motion_;      ///< and what it was about
   bool sweeping_ = false;          ///< it was begun, and its answer not yet given

@@ -15,6 +15,8 @@ constexpr int kEnoughPairs = 4000;
 constexpr double kAheadShare = 0.5, kAheadEnough = 0.35, kMinAhead = 30e-6;
 // The share of a tick's spare time that goes to the way ahead.
 constexpr double kWayShare = 0.9;
+// Ways ahead are longer by so many ticks for each face: what looking at it takes at most.
+constexpr double kTicksPerFace = 1e-3;
 
 }  // namespace
 
@@ -102,6 +104,77 @@ void PatchMotionCheck::prepare_cells(const Pose& X, const Displacement& next) no
     headway_.learn(report.share, cells_->met());
     if (report.status == CertifyStatus::out_of_budget) return;
   }
+}
+
+Displacement PatchMotionCheck::onto_pen_way(const Pose& from, const Pose& pen, double ticks) const noexcept {
+  const Displacement &step = heading_.pen, to_pen = displacement(from, pen, center_);
+  const double beside = beside_pen(to_pen);
+  if (beside > heading_.near_gap) ticks = std::min(ticks, soon() + beside / size(step));
+  // From where it is nearest to `from`, or from `pen`.
+  ticks += std::max(0.0, -product(to_pen, step) / product(step, step));
+  return displacement(from, displaced(pen, center_, ticks * step), center_);
+}
+
+/// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
+/// come to by then.
+void PatchMotionCheck::prepare_way(const Pose& X, const Displacement& next) noexcept {
+  if (!may_look_ahead() || sweeping_ || heading_.whole || !(size(heading_.pen) > kStands)) return;
+  ways_.come_to(X);
+  looks_ahead_ = looks_ahead_ && same_way(pen_then_, heading_.pen) && covers_near(sweep_->near());
+  if (!looks_ahead_ && !begin_ahead(X, next)) return;
+  looks_ahead_ = true;
+  if (sweep_->go_on(limit_.deadline_ns)) finish_way(X);
+}
+
+/// Where A will be when a look that begins now is done: on the first way, as near to the pen as it comes there. None
+/// where looks are slow: they come too late, and back along the way A comes to what it touched in no time.
+std::optional<Pose> PatchMotionCheck::place_soon(const Pose& X, const Displacement& next) const noexcept {
+  if (now_ < slow_until_) return std::nullopt;
+  const Displacement& pen = heading_.pen;
+  const auto along = ways_.first().way.toward(X, {next.dp + soon() * pen.dp, next.dr + soon() * pen.dr});
+  if (!along) return std::nullopt;
+  return displaced(X, center_, *along);
+}
+
+bool PatchMotionCheck::begin_ahead(const Pose& X, const Displacement& next) noexcept {
+  const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, heading_.pen); };
+  const bool on_way = !ways_.empty() && covers_near(ways_.last().way.parts()) && leads_on(ways_.first().way);
+  if (on_way && ways_.full()) return false;
+  const Pose pen = displaced(X, center_, next);
+  const double faces = static_cast<double>(held_->mesh().triangles.size()), step = size(heading_.pen);
+  const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / step);
+  std::optional<Pose> from = X;
+  turns_off_ = false;
+  if (on_way) {
+    const ProvedWay& last = ways_.last().way;
+    const double left = size(displacement(X, last.end(), center_));
+    const bool onto_pen = product(last.motion(), heading_.pen) > 0 &&
+                          beside_pen(displacement(last.end(), pen, center_)) <= heading_.near_gap;
+    turns_off_ = !onto_pen && !(same_way(last.motion(), heading_.pen) && left <= 2 * soon() * step);
+    // What is met at its end would end the next one at once.
+    if (!turns_off_ && (!ways_.last().met.empty() || left > far * step)) return false;
+    from = turns_off_ ? place_soon(X, next) : last.end();
+  }
+  if (!from) return false;
+  const Displacement d = onto_pen_way(*from, pen, far);
+  if (!find_swept(X, *from, d)) return false;
+  look_at(*from, d, clearance_, worth({}, d));
+  pen_then_ = heading_.pen;
+  ahead_since_ = now_;
+  return true;
+}
+
+void PatchMotionCheck::finish_way(const Pose& X) noexcept {
+  looks_ahead_ = false;
+  lasted(now_ - ahead_since_ + 1);
+  if (!(sweep_->share() > 0)) return;
+  if (turns_off_) {
+    const Displacement left = displacement(X, sweep_->start(), center_);
+    // A has come past the place where it begins.
+    if (product(left, heading_.pen) < 0 && size(left) > kStill) return;
+    ways_.turn_off(X, sweep_->start());
+  }
+  add_way();
 }
 
 }  // namespace tegotae

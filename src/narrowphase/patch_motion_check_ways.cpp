@@ -10,21 +10,14 @@
 namespace tegotae {
 namespace {
 
-// What is looked at as a whole goes on for as far as the pen comes in so many ticks, and for this share of the part's
-// radius at most.
-constexpr double kSweptTicks = 50, kLongestSweep = 0.5;
 // A goes along a way that is proved where that leaves no more than this share of what is wanted.
 constexpr double kWayLeaves = 0.5;
 // Where fronts are asked about each motion, it keeps to the way where that leaves no more than this.
 constexpr double kBesideWay = 0.1;
 // Near parts that are no bundle, at most: all lists are gone through for each of them.
 constexpr std::size_t kMostSwept = 256;
-// Ways ahead are longer by so many ticks for each face: what looking at it takes at most.
-constexpr double kTicksPerFace = 1e-3;
-// The ticks that a look from beside the pen's way is taken to last: as long as the last one, and so many at most.
-constexpr std::uint64_t kMostSoon = 10;
-// The pen keeps its direction up to this cosine; motions of it in a tick that are none, m.
-constexpr double kSameWay = 0.95, kStands = 1e-7;
+// The pen keeps its direction up to this cosine.
+constexpr double kSameWay = 0.95;
 // The ticks that the pen takes to come as far as whole blocks of faces are to prove at least, of a part of no more than
 // some faces and for each face: about as long as the look at all faces takes. No less than this share of what is
 // wanted, and no more than that of all that is looked at. Fewer faces are looked at one by one.
@@ -39,6 +32,8 @@ constexpr double kNearTold = 4;
 constexpr std::uint64_t kTicksOffAxes = 16;
 // Turns of one kind after which the other is tried.
 constexpr int kTurnsInARow = 6;
+// Ticks for which looks are taken to be slow that were so once.
+constexpr std::uint64_t kSlowTicks = 500;
 // Ticks in which a look may wait for its turn to begin.
 constexpr int kTurnWaits = 8;
 // How often a look may wait until it is known what is outside what.
@@ -47,8 +42,6 @@ constexpr int kWaitsForSides = 4;
 constexpr std::uint64_t kPatience = 4;
 // How often at one place a few faces that met something are enough.
 constexpr int kMostBlocked = 8;
-// What has come less far (m) stands.
-constexpr double kStill = 1e-6;
 
 }  // namespace
 
@@ -295,76 +288,13 @@ void PatchMotionCheck::add_way() noexcept {
   ways_.add(sweep_->start(), sweep_->share() * sweep_->motion(), sweep_->near(), sweep_->blocking());
 }
 
+void PatchMotionCheck::lasted(std::uint64_t ticks) noexcept {
+  swept_for_ = ticks;
+  if (ticks > kMostSoon) slow_until_ = now_ + kSlowTicks;
+}
+
 double PatchMotionCheck::soon() const noexcept {
   return static_cast<double>(std::clamp<std::uint64_t>(swept_for_, 1, kMostSoon));
-}
-
-Displacement PatchMotionCheck::onto_pen_way(const Pose& from, const Pose& pen, double ticks) const noexcept {
-  const Displacement &step = heading_.pen, to_pen = displacement(from, pen, center_);
-  const double beside = beside_pen(to_pen);
-  if (beside > heading_.near_gap) ticks = std::min(ticks, soon() + beside / size(step));
-  // From where it is nearest to `from`, or from `pen`.
-  ticks += std::max(0.0, -product(to_pen, step) / product(step, step));
-  return displacement(from, displaced(pen, center_, ticks * step), center_);
-}
-
-void PatchMotionCheck::finish_way(const Pose& X) noexcept {
-  looks_ahead_ = false;
-  swept_for_ = now_ - ahead_since_ + 1;
-  if (!(sweep_->share() > 0)) return;
-  if (turns_off_) {
-    const Displacement left = displacement(X, sweep_->start(), center_);
-    // A has come past the place where it begins.
-    if (product(left, heading_.pen) < 0 && size(left) > kStill) return;
-    ways_.turn_off(X, sweep_->start());
-  }
-  add_way();
-}
-
-/// A way ahead of A is looked at as a whole in the time that is left. It begins here, and holds from where A will have
-/// come to by then.
-void PatchMotionCheck::prepare_way(const Pose& X, const Displacement& next) noexcept {
-  if (!may_look_ahead() || sweeping_ || heading_.whole || !(size(heading_.pen) > kStands)) return;
-  ways_.come_to(X);
-  looks_ahead_ = looks_ahead_ && same_way(pen_then_, heading_.pen) && covers_near(sweep_->near());
-  if (!looks_ahead_ && !begin_ahead(X, next)) return;
-  looks_ahead_ = true;
-  if (sweep_->go_on(limit_.deadline_ns)) finish_way(X);
-}
-
-bool PatchMotionCheck::begin_ahead(const Pose& X, const Displacement& next) noexcept {
-  const auto leads_on = [&](const ProvedWay& way) { return way.is_on(X) || way.leads_on(X, heading_.pen); };
-  const bool on_way = !ways_.empty() && covers_near(ways_.last().way.parts()) && leads_on(ways_.first().way);
-  if (on_way && ways_.full()) return false;
-  const Pose pen = displaced(X, center_, next);
-  const double faces = static_cast<double>(held_->mesh().triangles.size());
-  const double far = std::min(kSweptTicks + kTicksPerFace * faces, kLongestSweep * radius_ / size(heading_.pen));
-  Pose from = X;
-  turns_off_ = false;
-  if (on_way) {
-    const ProvedWay& last = ways_.last().way;
-    const double beside = beside_pen(displacement(last.end(), pen, center_));
-    const bool goes_on = same_way(last.motion(), heading_.pen) || beside <= heading_.near_gap;
-    const double left = size(displacement(X, last.end(), center_));
-    if (goes_on && (beside <= heading_.near_gap || left <= 2 * soon() * size(heading_.pen))) {
-      // What is met there would end the next one at once.
-      if (!ways_.last().met.empty() || left > far * size(heading_.pen)) return false;
-      from = last.end();
-    } else if (const auto along = ways_.first().way.toward(
-                   X, {next.dp + soon() * heading_.pen.dp, next.dr + soon() * heading_.pen.dr})) {
-      // From where A will be by then, to where the pen goes.
-      turns_off_ = true;
-      from = displaced(X, center_, *along);
-    } else {
-      return false;
-    }
-  }
-  const Displacement d = onto_pen_way(from, pen, far);
-  if (!find_swept(X, from, d)) return false;
-  look_at(from, d, clearance_, worth({}, d));
-  pen_then_ = heading_.pen;
-  ahead_since_ = now_;
-  return true;
 }
 
 /// A few faces were in the way: what they met turns the motion aside before all others are looked at for nothing.
@@ -399,7 +329,7 @@ MotionAnswer PatchMotionCheck::ask_sweep(const Pose& X, const Displacement& d,
   const auto along = way.toward(X, d);
   instead_ = along ? *along : Displacement{};
   if (way.ends_at(displaced(X, center_, *instead_))) tell(met, blocking);
-  swept_for_ = now_ - swept_since_ + 1;
+  lasted(now_ - swept_since_ + 1);
   swept_until_ = now_;
   swept_from_ = sweep_->start();
   swept_motion_ = sweep_->motion();

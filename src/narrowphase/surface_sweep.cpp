@@ -81,6 +81,11 @@ bool SurfaceSweep::go_on(std::int64_t deadline_ns) noexcept {
   return !under_way_;
 }
 
+double SurfaceSweep::progress() const {
+  const bool last = question_.look != Look::sample && question_.layer == Layer::faces && at_ + 1 == near_.size();
+  return last && task_ != nullptr ? task_->taken() : 0;
+}
+
 void SurfaceSweep::start_part() {
   question_.part = near_[at_];
   question_.outside = outside_[at_];

@@ -62,6 +62,8 @@ class SurfaceSweep {
   bool go_on(std::int64_t deadline_ns) noexcept;
   /// Whether begin() may name the part.
   bool knows(std::uint32_t part) const { return model_->parts[part].surface != nullptr; }
+  /// Of what comes last about A itself, past the last part, how much is done, as a share; 0 before that.
+  double progress() const;
   /// Begun and not done.
   bool under_way() const { return under_way_; }
 

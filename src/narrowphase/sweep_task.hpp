@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -99,6 +100,10 @@ class SweepTask {
 
   /// A piece to do; none: all are done.
   std::optional<std::uint32_t> take() noexcept;
+  /// Of the pieces those that were taken, as a share.
+  double taken() const noexcept {
+    return question_.pieces == 0 ? 1 : std::min(1.0, static_cast<double>(next_.load()) / question_.pieces);
+  }
   bool is_done(std::uint32_t piece) const noexcept { return done_[piece].load(std::memory_order_acquire) != 0; }
   void finish(std::uint32_t piece) noexcept { done_[piece].store(1, std::memory_order_release); }
   /// Whether there is no use in going on.

@@ -217,6 +217,24 @@ TEST_CASE("a sweep that is interrupted at every step ends like one that is not")
   }
 }
 
+TEST_CASE("of several parts, what is met nearest is told first") {
+  // Plates of 4 mm under the left and the right of a third, one of them nearer.
+  const auto plate = tree_of(box({0.01, 0.01, 0.002})), held = tree_of(box({0.03, 0.005, 0.002}));
+  for (const int nearer : {0, 1}) {
+    const auto down = [&](int part) { return part == nearer ? -0.01 : -0.02; };
+    const std::vector<CellFront::FixedPart> fixed = {{plate, {Quat::Identity(), Vec3(-0.015, 0, down(0))}},
+                                                     {plate, {Quat::Identity(), Vec3(0.015, 0, down(1))}}};
+    SurfaceSweep sweep(held, Vec3::Zero(), fixed, nullptr, nullptr, 24);
+    sweep.begin(Pose{}, {{0, 0, -0.05}, Vec3::Zero()}, {0, 1}, {false, false}, {kClearance});
+    sweep.go_on(kNoDeadline);
+    REQUIRE(!sweep.blocking().empty());
+    CHECK(sweep.blocking().front().part == static_cast<std::uint32_t>(nearer));
+    CHECK(std::abs(sweep.share() - 0.006 / 0.05) < kEndsBefore / 0.05);
+    // What was met before, farther on, is told after it.
+    if (nearer == 1) CHECK(sweep.blocking().back().part == 0);
+  }
+}
+
 TEST_CASE("of a solid the faces that recede need not be looked at") {
   std::mt19937 rng(34);
   const MeshPtr a = box({0.02, 0.015, 0.01}), b = knot(0.05, 0.006, 800);
