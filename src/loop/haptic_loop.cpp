@@ -11,6 +11,7 @@
 #include "loop/contact_list.hpp"
 #include "loop/lag.hpp"
 #include "loop/scene_changes.hpp"
+#include "loop/tick_reserve.hpp"
 #include "tegotae/core/clock.hpp"
 
 namespace tegotae {
@@ -36,6 +37,7 @@ struct HapticLoop::State {
   TickReport report;
   ContactList contacts;
   LagCounter lag;
+  TickReserve reserve;
   Pose last_X;            // after the last tick
   LatestValue<7> latest;  // p, q
 
@@ -130,10 +132,12 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   const bool placed = is_valid(Y), timed = is_valid_time(dt);
   s.report.flags.input_ignored = !(placed && timed);
   if (placed) s.Y = {Y.q.normalized(), Y.p};
-  s.now->loop->step(s.target(), timed ? dt : 0, deadline_after(now_ns, s.now->settings.tick_budget), s.report);
+  const std::int64_t stop_ns = s.reserve.stop_after(now_ns, s.now->settings.tick_budget);
+  s.now->loop->step(s.target(), timed ? dt : 0, stop_ns, s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
   s.contacts.update(s.now->loop->constraints(), s.report, s.report.proxy.X * s.now->mass.center);
   s.publish();
+  s.reserve.ended(stop_ns, monotonic_ns(), s.now->settings.tick_budget);
   return s.finish(now_ns);
 }
 

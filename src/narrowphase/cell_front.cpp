@@ -16,7 +16,7 @@ namespace {
 /// Foresight takes pieces apart that are small enough for motions: beyond this part of the capacity there is none.
 constexpr double kCrowded = 0.4;
 /// Cells looked at between two looks at the clock, and anchors; nodes of B that count as one search.
-constexpr int kClockStride = 8, kAskStride = 256, kVisitsPerSearch = 8;
+constexpr int kClockStride = 8, kAskStride = 128, kVisitsPerSearch = 8;
 /// So many cells that allow least of the motion are looked at in any case.
 constexpr std::ptrdiff_t kFirst = 64;
 /// Cells are sorted by how often the share of the motion that they allow has to be doubled, up to so many times, and in
@@ -240,21 +240,28 @@ void CellFront::collect_due() {
   const double bound = travel_ + need_, least = travel_ + clearance_ + kLengthSlack;
   std::array<std::uint32_t, kGrades + 1> first{};
   int asked = 0;
+  std::ptrdiff_t unasked = 0;
   bool late = false;
   for (std::uint32_t slot = 0; slot < count(); ++slot) {
     if (!(expiry_[slot] < bound)) continue;
     const std::uint32_t later = slot + kCellsAhead;
-    if (later < count() && expiry_[later] < bound) prefetch_allowed(later);
-    const std::uint32_t id = slots_[slot].node;
+    if (!late && later < count() && expiry_[later] < bound) prefetch_allowed(later);
     if (asked_[slots_[slot].part] != now_) continue;
     const double straight = std::clamp((expiry_[slot] - least) / (bound - least), 0.0, 1.0);
-    if (++asked % kAskStride == 0) late = late || past(limit_.deadline_ns);
+    if (late && ++unasked > kFirst) {
+      // Nobody will look at it.
+      report_.share = std::min(report_.share, straight);
+      continue;
+    }
     const double share = late ? straight : std::max(straight, allowed(slot));
+    if (++asked % kAskStride == 0) late = late || past(limit_.deadline_ns);
     if (share == 1) continue;
+    const std::uint32_t id = slots_[slot].node;
     nodes_[id].due = call_;
     unsorted_.push_back({id, share});
     ++first[grade(share) + 1];
   }
+  report_.exhausted = late;
   // By halvings of the share: those that allow least come first. Where the part touches something they find it, and
   // where time runs out before all have been looked at, the others allow more.
   for (int k = 0; k < kGrades; ++k) first[k + 1] += first[k];

@@ -2,6 +2,7 @@
 // depends on what else the machine does.
 #include "bodies.hpp"
 #include "catch.hpp"
+#include "loop/tick_reserve.hpp"
 #include "stress_run.hpp"
 #include "tegotae/loop/haptic_loop.hpp"
 
@@ -50,4 +51,34 @@ TEST_CASE("a tick that ends after its budget says so, whatever it did", "[budget
   const TickFlags changed = step(0.3);
   CHECK(changed.part_changed);
   CHECK(changed.timed_out);
+}
+
+TEST_CASE("ticks stop before their budget ends by what the last late ones needed afterwards", "[budget]") {
+  constexpr double kBudget = 8e-4;
+  constexpr std::int64_t kBegin = 1'000'000'000, kEnd = kBegin + 800'000;
+  TickReserve reserve;
+  const auto kept = [&] { return kEnd - reserve.stop_after(kBegin, kBudget); };
+  CHECK(kept() == 0);
+  // What ends before it has to stop tells nothing.
+  reserve.ended(kEnd, kEnd - 1000, kBudget);
+  CHECK(kept() == 0);
+  reserve.ended(kEnd, kEnd + 100'000, kBudget);
+  CHECK(std::abs(kept() - 100'000) <= 1);
+  // Shorter ones make it less, little by little, and no less than they need.
+  reserve.ended(kEnd, kEnd + 20'000, kBudget);
+  const std::int64_t less = kept();
+  CHECK(less > 20'000);
+  CHECK(less < 100'000);
+  for (int i = 0; i < 1000; ++i) reserve.ended(kEnd, kEnd + 20'000, kBudget);
+  CHECK(std::abs(kept() - 20'000) <= 1);
+  // A tick that lasted for a second leaves most of the budget to those to come, and is soon forgotten.
+  reserve.ended(kEnd, kEnd + 1'000'000'000, kBudget);
+  CHECK(kept() > 20'000);
+  CHECK(kept() < 400'000);
+  for (int i = 0; i < 100; ++i) reserve.ended(kEnd, kEnd + 20'000, kBudget);
+  CHECK(std::abs(kept() - 20'000) <= 1);
+  // No deadline stays none, whatever was late before.
+  CHECK(reserve.stop_after(kBegin, INFINITY) == kNoDeadline);
+  reserve.ended(kNoDeadline, kEnd, kBudget);
+  CHECK(reserve.stop_after(kBegin, INFINITY) == kNoDeadline);
 }
