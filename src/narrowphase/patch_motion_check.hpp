@@ -153,6 +153,7 @@ class PatchMotionCheck final : public MotionCheck {
   bool at_end_of_way(const Pose& X) const noexcept;
   /// Whether A goes along the way that is proved, which makes most of `d`.
   bool goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept;
+  bool slides_along(const Pose& X, const Displacement& d) noexcept;
   void fronts_left() noexcept;
   bool same_way(const Displacement& a, const Displacement& b) const noexcept;
   /// From beside the way: most of `d`, onto it.

@@ -12,6 +12,8 @@ namespace {
 
 // A goes along a way that is proved where that leaves no more than this share of what is wanted.
 constexpr double kWayLeaves = 0.5;
+// What touches does so where it leaves no more than this share of the gap that counts as contact.
+constexpr double kSlideLeaves = 0.25;
 // Where fronts are asked about each motion, it keeps to the way where that leaves no more than this.
 constexpr double kBesideWay = 0.1;
 // Near parts that are no bundle, at most: all lists are gone through for each of them.
@@ -151,7 +153,21 @@ bool PatchMotionCheck::may_look_ahead() const noexcept {
   return may_sweep() && trusted_ && !heading_.touches && (may_go_along() || may_be_behind());
 }
 
+/// What touches and was looked at as a whole goes on along that way while contacts let it go where that leads, but for
+/// what nobody feels: most of the ticks of a part that slides need no look.
+bool PatchMotionCheck::slides_along(const Pose& X, const Displacement& d) noexcept {
+  if (!behind_ || !may_sweep() || !trusted_ || ways_.empty()) return false;
+  ways_.come_to(X);
+  const ProvedWay& way = ways_.first().way;
+  const auto along = way.toward(X, d);
+  if (!along || !covers_near(way.parts())) return false;
+  if (left_of(X, d, *along) > std::min(kWayLeaves * size(d), kSlideLeaves * heading_.contact_gap)) return false;
+  instead_ = along;
+  return true;
+}
+
 bool PatchMotionCheck::goes_along(const Pose& X, const Displacement& d, std::vector<FacePair>& blocking) noexcept {
+  if (heading_.touches) return slides_along(X, d);
   if (!may_look_ahead()) return false;
   ways_.come_to(X);
   if (!may_go_along() || ways_.empty()) return false;
