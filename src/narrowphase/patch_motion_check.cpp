@@ -318,8 +318,7 @@ MotionAnswer PatchMotionCheck::ask(const Pose& X, const Displacement& wanted, do
   }
   const Displacement d = instead_ ? *instead_ : wanted;
   const std::int64_t deadline_ns = limit_.deadline_ns;
-  const bool sweeps_now =
-      may_sweep() && behind_for_ >= (heading_.whole ? 1 : kTicksBehind) && !rests(X, d) && !cells_turn();
+  const bool sweeps_now = may_sweep() && behind_for_ >= ticks_behind() && !rests(X, d) && !cells_turn();
   if (sweeps_now) {
     const std::int64_t now_ns = monotonic_ns();
     limit_.deadline_ns = now_ns + static_cast<std::int64_t>(kShareBehind * static_cast<double>(deadline_ns - now_ns));

@@ -145,6 +145,8 @@ class PatchMotionCheck final : public MotionCheck {
   bool rests(const Pose& X, const Displacement& d) const noexcept;
   bool may_sweep() const noexcept;
   bool all_on_axes() const noexcept;
+  /// So many ticks in a row cells and fronts may be behind until motions are looked at as a whole.
+  int ticks_behind() const noexcept;
   bool all_in_threads() const noexcept;
   bool may_go_along() const noexcept;
   bool may_look_ahead() const noexcept;

@@ -30,6 +30,8 @@ constexpr std::size_t kManyFaces = 1U << 12;
 constexpr double kKeptOfContact = 0.6;
 // What a few faces meet after a way of so many times the gap that explains a lag is told before the look is done.
 constexpr double kNearTold = 4;
+// Ticks in which fronts of threads and bores get over a jam.
+constexpr int kTicksJammed = 16;
 // Ticks after which fronts of threads and bores that were behind are asked again.
 constexpr std::uint64_t kTicksOffAxes = 16;
 // Turns of one kind after which the other is tried.
@@ -131,6 +133,14 @@ bool PatchMotionCheck::may_sweep() const noexcept {
 bool PatchMotionCheck::all_on_axes() const noexcept {
   return std::all_of(near_fronts_.begin(), near_fronts_.end(),
                      [this](std::uint32_t part) { return !axes_[part]->empty(); });
+}
+
+/// Fronts of what jams in a bore get over it in some ticks, if they are left the time. Looks at all of it would leave
+/// them a third, and so take their place for good.
+int PatchMotionCheck::ticks_behind() const noexcept {
+  if (heading_.whole) return 1;
+  const bool jams = heading_.touches && near_cells_.empty() && all_on_axes() && !stands_still();
+  return jams ? kTicksJammed : kTicksBehind;
 }
 
 /// What touches goes on by short motions in many directions. Fronts know better, as long as they are not behind; those
