@@ -166,7 +166,8 @@ bool PatchMotionCheck::may_look_ahead() const noexcept {
 /// What touches and was looked at as a whole goes on along that way while contacts let it go where that leads, but for
 /// what nobody feels: most of the ticks of a part that slides need no look.
 bool PatchMotionCheck::slides_along(const Pose& X, const Displacement& d) noexcept {
-  if (!behind_ || !may_sweep() || !trusted_ || ways_.empty()) return false;
+  // What stands asks for what is near, not for a way.
+  if (!behind_ || !may_sweep() || !trusted_ || ways_.empty() || size(d) < kStill) return false;
   ways_.come_to(X);
   const ProvedWay& way = ways_.first().way;
   const auto along = way.toward(X, d);
