@@ -37,9 +37,9 @@ struct HapticLoop::State {
   TickReport report;
   ContactList contacts;
   LagCounter lag;
-  TickReserve reserve;
-  Pose last_X;            // after the last tick
-  LatestValue<7> latest;  // p, q
+  TickReserve touching, in_air;  // where nothing touches there are no forces to work out, and looks take all they get
+  Pose last_X;                   // after the last tick
+  LatestValue<7> latest;         // p, q
 
   explicit State(const Scene& scene)
       : now(std::make_unique<RunningScene>(scene)),
@@ -127,17 +127,18 @@ const TickReport& HapticLoop::step(const Pose& Y, double dt) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const std::uint64_t before = s.changes->in_force();
   if (s.adopt(now_ns)) return s.suspend(now_ns);
+  TickReserve& reserve = s.report.contacts > 0 ? s.touching : s.in_air;
   reset(s.report);
   s.report.flags.scene_changed = s.changes->in_force() != before;
   const bool placed = is_valid(Y), timed = is_valid_time(dt);
   s.report.flags.input_ignored = !(placed && timed);
   if (placed) s.Y = {Y.q.normalized(), Y.p};
-  const std::int64_t stop_ns = s.reserve.stop_after(now_ns, s.now->settings.tick_budget);
+  const std::int64_t stop_ns = reserve.stop_after(now_ns, s.now->settings.tick_budget);
   s.now->loop->step(s.target(), timed ? dt : 0, stop_ns, s.report);
   if (!placed) s.report.lag_reason = LagReason::suspended;
   s.contacts.update(s.now->loop->constraints(), s.report, s.report.proxy.X * s.now->mass.center);
   s.publish();
-  s.reserve.ended(stop_ns, monotonic_ns(), s.now->settings.tick_budget);
+  reserve.ended(stop_ns, monotonic_ns(), s.now->settings.tick_budget);
   return s.finish(now_ns);
 }
 

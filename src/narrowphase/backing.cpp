@@ -120,6 +120,8 @@ bool Backing::outside(const Vec3& p, Side side) const noexcept {
   const double depth = out_.norm(), at = from.dot(out_) / depth, slack = 2 * kNear * depth;
   const double low = at - (side == Side::plus ? depth : 0) - slack,
                high = at + (side == Side::plus ? 0 : depth) + slack;
+  // Most parts of an assembly are not beside it.
+  if (!columns_.reach(low, high)) return true;
   for (const auto& [face_low, face_high, face] : columns_.beside(from)) {
     if (face_high < low || face_low > high) continue;
     std::array<Vec3, 3> v;

@@ -89,6 +89,7 @@ FaceColumns::FaceColumns(const PatchTree& tree, const Vec3& axis, const std::vec
     }
     const Face told = {static_cast<float>(low), static_cast<float>(high), face};
     for_cells(face, [&](std::size_t cell) { faces_[next[cell]++] = told; });
+    all_ = {std::min(all_.low, told.low), std::max(all_.high, told.high)};
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "narrowphase/patch_tree.hpp"
@@ -26,6 +27,8 @@ class FaceColumns {
     const Face* begin() const { return first; }
     const Face* end() const { return last; }
   };
+  /// Whether some face may reach between two places along the axis (m, from the tree's origin).
+  bool reach(double low, double high) const noexcept { return all_.high >= low && all_.low <= high; }
   /// All faces, and maybe more, that the line through `p` (m, from the tree's origin) along the axis passes.
   Faces beside(const Vec3& p) const noexcept;
 
@@ -42,6 +45,9 @@ class FaceColumns {
   std::array<std::uint32_t, 2> cells_{{}};  ///< along each of the grid's axes
   std::vector<std::uint32_t> first_;        ///< of each cell, in faces_; the end after the last
   std::vector<Face> faces_;
+  struct {
+    float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
+  } all_;  ///< of all faces
 };
 
 }  // namespace tegotae

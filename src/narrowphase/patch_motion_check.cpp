@@ -204,6 +204,7 @@ void PatchMotionCheck::make_bodies(const std::shared_ptr<const TriangleMesh>& he
     const auto found = known.find(fixed[part].get());
     if (found == known.end()) known.emplace(fixed[part].get(), body(fixed[part], fixed_[part]));
     bodies_[part] = known.at(fixed[part].get());
+    for (Vec3& p : bodies_[part].points) p = poses_[part] * p;
   }
   if (!bundle_) return;
   for (std::uint32_t part = 0; part < fixed.size(); ++part)

@@ -92,7 +92,7 @@ class PatchMotionCheck final : public MotionCheck {
   };
 
   /// What leaving motions need to know of A and of each part: which way it faces, if it bounds a solid, and a point of
-  /// each of its pieces.
+  /// each of its pieces (of A in its file frame, of the others in that of the assembly, m).
   struct Body {
     std::shared_ptr<const Facing> facing;
     std::vector<Vec3> points;

@@ -29,10 +29,10 @@ const PatchMotionCheck::Sides& PatchMotionCheck::sides_of(std::uint32_t part, co
   Sides& sides = sides_[part];
   if (sides.known) return sides;
   const Body &A = held_body_, &B = bodies_[part];
-  const Pose X_BA = poses_[part].inverse() * X, X_AB = X_BA.inverse();
+  const Pose X_BA = poses_[part].inverse() * X, to_held = X.inverse();
   sides = {true, B.facing && !A.points.empty(), A.facing && !B.points.empty()};
   for (const Vec3& p : A.points) sides.a_outside = sides.a_outside && B.facing->outside(X_BA * p);
-  for (const Vec3& p : B.points) sides.b_outside = sides.b_outside && A.facing->outside(X_AB * p);
+  for (const Vec3& p : B.points) sides.b_outside = sides.b_outside && A.facing->outside(to_held * p);
   return sides;
 }
 

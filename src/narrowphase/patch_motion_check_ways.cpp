@@ -258,12 +258,13 @@ std::optional<Backing::Side> PatchMotionCheck::drawn_for(const Pose& from, const
   const double along = backing_->drawn(Backing::Side::plus).dot(from.q.conjugate() * d.dp);
   if (along == 0) return std::nullopt;
   const Backing::Side side = along > 0 ? Backing::Side::plus : Backing::Side::minus;
+  // Once for all points: an assembly has thousands of parts.
   const Pose to_held = from.inverse();
+  const Mat3 R = to_held.q.toRotationMatrix();
   const auto outside = [&](std::uint32_t part) {
-    const Pose X = to_held * poses_[part];
     const auto& points = bodies_[part].points;
-    return !points.empty() &&
-           std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return backing_->outside(X * p, side); });
+    return !points.empty() && std::all_of(points.begin(), points.end(),
+                                          [&](const Vec3& p) { return backing_->outside(R * p + to_held.p, side); });
   };
   for (const std::uint32_t part : swept_) {
     if (part < fixed_.size() && !outside(part)) return std::nullopt;
