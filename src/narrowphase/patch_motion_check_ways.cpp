@@ -297,9 +297,10 @@ bool PatchMotionCheck::begin_sweep(const Pose& X, const Displacement& d, double 
     ticks = same_way(d, heading_.pen) && beside_pen(d) <= heading_.near_gap ? kSweptTicks : soon();
     ticks = std::min(ticks, kLongestSweep * radius_ / std::max(size(heading_.pen), kStands));
   }
-  const Displacement all = heading_.touches
-                               ? (1 + ticks * size(heading_.pen) / std::max(size(d), kStands)) * d
-                               : Displacement{d.dp + ticks * heading_.pen.dp, d.dr + ticks * heading_.pen.dr};
+  Displacement all = heading_.touches ? (1 + ticks * size(heading_.pen) / std::max(size(d), kStands)) * d
+                                      : Displacement{d.dp + ticks * heading_.pen.dp, d.dr + ticks * heading_.pen.dr};
+  // Where the pen comes back past A meanwhile, what is in the way now has to be known, and sweeps() goes on with that.
+  if (!(product(all, d) > 0)) all = d;
   if (!find_swept(X, X, all)) return false;
   look_at(X, all, clearance, worth(d, all));
   return true;
