@@ -13,8 +13,6 @@ namespace {
 constexpr double kSlabError = 1e-12;
 /// Faces of which edges are tried as the direction of a slab.
 constexpr std::size_t kEdgesTried = 8;
-/// Of a ball in single precision, as a share of all coordinates.
-constexpr double kRadiusError = 1e-6;
 
 /// The corners of faces in a row.
 std::vector<Vec3> corners_of(const PatchTree& tree, const FaceBlocks& blocks, std::uint32_t first, std::uint32_t end) {
@@ -67,23 +65,6 @@ Slab slab_about(const std::vector<Vec3>& corners) {
     }
   }
   return best;
-}
-
-TEGOTAE_INLINE float sum_of_sizes(const Float3& x) {
-  return std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
-}
-
-TEGOTAE_INLINE Lane all_of(const SlabLanes::Field& field) {
-  static_assert(FaceBlocks::kFan == kLane);
-  return *reinterpret_cast<const Lane*>(field.data());
-}
-
-TEGOTAE_INLINE Lanes3 all_of(const std::array<SlabLanes::Field, 3>& f) {
-  return {all_of(f[0]), all_of(f[1]), all_of(f[2])};
-}
-
-TEGOTAE_INLINE Lane size_of(Lane x) {
-  return greater(x, -x);
 }
 
 TEGOTAE_INLINE float size_along(const Float3& n, const std::array<Float3, 3>& sides) {
@@ -154,10 +135,6 @@ struct Turn {
   }
 };
 
-TEGOTAE_INLINE void store8(SlabLanes::Field& field, Lane x) {
-  *reinterpret_cast<Lane*>(field.data()) = x;
-}
-
 TEGOTAE_WIDE void move_slabs(const SlabLanes& a, const std::array<Turn, 2>& turns, MovedSlabs& out) {
   const Lanes3 center = all_of(a.center), normal = all_of(a.normal);
   for (std::size_t i = 0; i < 3; ++i) store8(out.normal[i], dot(normal, turns[0].rows[i]));
@@ -186,85 +163,26 @@ TEGOTAE_WIDE void move_slabs(const SlabLanes& a, const std::array<Turn, 2>& turn
 
 }  // namespace
 
-SlabLanes::SlabLanes(const Slab* slabs, std::size_t count) {
-  Vec3 low = slabs[0].center, high = low;
-  for (std::size_t i = 0; i < count; ++i) {
-    low = low.cwiseMin(slabs[i].center);
-    high = high.cwiseMax(slabs[i].center);
-  }
-  origin = 0.5 * (low + high);
-  for (std::size_t k = 0; k < FaceBlocks::kFan; ++k) {
-    const Slab& slab = slabs[std::min(k, count - 1)];
-    const Float3 at = in_single(slab.center - origin), across = in_single(slab.axes.col(2));
-    for (std::size_t i = 0; i < 3; ++i) {
-      center[i][k] = at[i];
-      normal[i][k] = across[i];
-      const auto axis = static_cast<Eigen::Index>(i);
-      const Float3 side = in_single(slab.half[axis] * slab.axes.col(axis));
-      for (std::size_t c = 0; c < 3; ++c) sides[i][c][k] = side[c];
-    }
-    thickness[k] = static_cast<float>(slab.half.z());
-    size = std::max(size, static_cast<float>((slab.center - origin).lpNorm<1>() + slab.half.sum()));
-  }
-}
-
-double SlabLanes::radius(std::uint32_t k) const noexcept {
-  double square = 0;
-  for (const auto& side : sides)
-    for (const Field& along : side) square += double{along[k]} * double{along[k]};
-  return std::sqrt(square) + kRadiusError * size;
-}
-
 BlockSlabs::BlockSlabs(const PatchTree& tree, const FaceBlocks& blocks) {
   std::uint32_t each = 1;
   for (std::uint32_t level = 0; level < std::min(kLevels, blocks.levels()); ++level, each *= FaceBlocks::kFan) {
     slabs_.emplace_back();
-    for (std::uint32_t first = 0; first < blocks.count(); first += each)
-      slabs_.back().push_back(slab_about(corners_of(tree, blocks, first, std::min(first + each, blocks.count()))));
-    for (Slab& slab : slabs_.back()) slab.half += Vec3::Constant(kSlabError * tree.radius());
-    lanes_.emplace_back();
-    const std::size_t count = slabs_.back().size();
-    for (std::size_t first = 0; first < count; first += FaceBlocks::kFan)
-      lanes_.back().emplace_back(&slabs_.back()[first], std::min<std::size_t>(FaceBlocks::kFan, count - first));
-  }
-}
-
-MovedBox MovedSlab::corners(const Vec3& origin) const {
-  std::array<Vec3, 8> start, end;
-  for (unsigned i = 0; i < 8; ++i) {
-    const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-    start[i] = from + from_axes * side - origin;
-    end[i] = to + to_axes * side - origin;
-  }
-  return MovedBox(start, end);
-}
-
-double apart_for(const MovedSlab& a, const Slab& b, double floor) noexcept {
-  double best = 0;
-  const auto look_along = [&](const Vec3& n) {
-    const double reach = (n.transpose() * b.axes).cwiseAbs().dot(b.half) + floor;
-    const double start = n.dot(a.from - b.center), end = n.dot(a.to - b.center);
-    const double least = (n.transpose() * a.from_axes).cwiseAbs().sum() + reach;
-    const double then = (n.transpose() * a.to_axes).cwiseAbs().sum() + reach;
-    // From B's slab to A's, on the side where A is.
-    const double side = start < 0 ? -1 : 1, before = side * start - least, after = side * end - then;
-    if (before >= 0) best = std::max(best, after >= 0 ? 1 : before / (before - after));
-  };
-  look_along(b.axes.col(2));
-  for (int i = 2; i >= 0 && best < 1; --i) look_along(a.axes.col(i));
-  for (int i = 0; i < 2 && best < 1; ++i) look_along(b.axes.col(i));
-  return best;
-}
-
-SlabEnds::SlabEnds(const MovedSlab& a, const Vec3& origin)
-    : center{in_single(a.from - origin), in_single(a.to - origin)}, normal(in_single(a.axes.col(2))), size(0) {
-  for (std::size_t k = 0; k < 2; ++k) {
-    float sum = sum_of_sizes(center[k]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      sides[k][i] = in_single((k == 0 ? a.from_axes : a.to_axes).col(static_cast<Eigen::Index>(i)));
-      sum += sum_of_sizes(sides[k][i]);
+    std::vector<std::optional<Quadric>> quadrics;
+    for (std::uint32_t first = 0; first < blocks.count(); first += each) {
+      const std::vector<Vec3> corners = corners_of(tree, blocks, first, std::min(first + each, blocks.count()));
+      Slab slab = slab_about(corners);
+      slab.half += Vec3::Constant(kSlabError * tree.radius());
+      slabs_.back().push_back(slab);
+      quadrics.push_back(quadric_of(corners, slab));
     }
-    size = std::max(size, sum);
+    lanes_.emplace_back();
+    quadrics_.emplace_back();
+    const std::size_t count = slabs_.back().size();
+    for (std::size_t first = 0; first < count; first += FaceBlocks::kFan) {
+      const std::size_t together = std::min<std::size_t>(FaceBlocks::kFan, count - first);
+      lanes_.back().emplace_back(&slabs_.back()[first], together);
+      quadrics_.back().emplace_back(&slabs_.back()[first], &quadrics[first], together);
+    }
   }
 }
 

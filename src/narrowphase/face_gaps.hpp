@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "narrowphase/box_overlap.hpp"
@@ -48,6 +49,26 @@ TEGOTAE_INLINE Lane dot(const Lanes3& a, const Float3& b) {
 
 TEGOTAE_INLINE float dot(const Float3& a, const Float3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+TEGOTAE_INLINE float sum_of_sizes(const Float3& x) {
+  return std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
+}
+
+/// Eight numbers, one a lane.
+typedef std::array<float, kLane> EightFloats;
+
+TEGOTAE_INLINE Lane all_of(const EightFloats& field) {
+  return *reinterpret_cast<const Lane*>(field.data());
+}
+TEGOTAE_INLINE Lanes3 all_of(const std::array<EightFloats, 3>& f) {
+  return {all_of(f[0]), all_of(f[1]), all_of(f[2])};
+}
+TEGOTAE_INLINE void store8(EightFloats& field, Lane x) {
+  *reinterpret_cast<Lane*>(field.data()) = x;
+}
+TEGOTAE_INLINE Lane size_of(Lane x) {
+  return greater(x, -x);
 }
 
 TEGOTAE_INLINE void store(FaceLanes::Field& field, std::uint32_t first, Lane x) {

@@ -241,11 +241,11 @@ void SweepWorker::push_blocks(const Node& node) {
     const std::uint32_t k = block - first;
     if (may_recede() && passing_.recedes(seen(cones().nodes[0][block]), lanes.middle(k) + offset_a_, lanes.radius(k)))
       continue;
-    const std::uint32_t open =
-        not_kept_apart_under(tops_[0].nodes.data(), tops_[0].count, 1, b.blocks, b.slabs, eight.slab(k), eight.origin,
-                             eight.box(k, floor_), floor_, found_.data(), kBeside);
+    const SlabEnds ends = eight.slab(k);
+    const std::uint32_t open = not_kept_apart_under(tops_[0].nodes.data(), tops_[0].count, 1, b.blocks, b.slabs, ends,
+                                                    eight.origin, eight.box(k, floor_), floor_, found_.data(), kBeside);
     ++blocks_asked_;
-    if (open == 0 || (open <= kBeside && apart_from_faces(block, open))) {
+    if (open == 0 || (open <= kBeside && apart_from_faces(block, ends, eight.origin, open))) {
       ++blocks_told_;
     } else {
       stack_[stacked_++] = {0, block, true};
@@ -253,11 +253,20 @@ void SweepWorker::push_blocks(const Node& node) {
   }
 }
 
-/// Whether the faces of each of so many blocks in found_ are apart from what A's block is in.
-bool SweepWorker::apart_from_faces(std::uint32_t block, std::uint32_t count) {
+/// Whether the faces of each of so many blocks in found_ are apart from those of A's block, or from what that is in.
+bool SweepWorker::apart_from_faces(std::uint32_t block, const SlabEnds& ends, const Vec3& origin, std::uint32_t count) {
+  std::uint32_t eight = kNone, higher = 0, left = 0;
+  QuadricLanes::Field share;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t other = found_[i], group = other / FaceBlocks::kFan;
+    if (std::exchange(eight, group) != group) higher = apart_by_heights({0, block}, ends, origin, {0, group}, share);
+    if ((higher >> (other % FaceBlocks::kFan) & 1) == 0) found_[left++] = other;
+  }
+  if (left == 0) return true;
   const MovedSlab slab = moved(surface_a_->slabs.slab(0, block));
   const Vec3 middle = 0.5 * (slab.from + slab.to);
   const MovedBox corners = slab.corners(middle);
+  count = left;
   return std::all_of(found_.data(), found_.data() + count, [&](std::uint32_t other) {
     const FaceLanes& b = surface_b().lanes[other];
     return not_kept_apart(corners, b, middle - b.origin, floor_) == 0;
@@ -332,7 +341,8 @@ double SweepWorker::node_apart_for(const Node& node) {
   const SlabEnds ends(slab, middle);
   std::optional<MovedBox> corners;
   double apart = 1;
-  std::uint32_t eight = kNone, kept = 0;
+  std::uint32_t eight = kNone, kept = 0, by_heights = kNone, higher = 0;
+  QuadricLanes::Field share_of_heights;
   for (std::uint32_t count = kBeside; count == kBeside;) {
     count = walk_.next(found_.data(), kBeside);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -346,7 +356,11 @@ double SweepWorker::node_apart_for(const Node& node) {
         const FaceLanes& b = surface_b().lanes[other];
         if (not_kept_apart(*corners, b, middle - b.origin, floor_) == 0) continue;
       }
-      const double share = apart_from(slab, ends, middle, box, {level, other});
+      if (std::exchange(by_heights, eight) != eight)
+        higher = apart_by_heights(node, ends, middle, {level, eight}, share_of_heights);
+      if ((higher >> (other % FaceBlocks::kFan) & 1) != 0) continue;
+      const double share = std::max(apart_from(slab, ends, middle, box, {level, other}),
+                                    std::min(kShareKept, double{share_of_heights[other % FaceBlocks::kFan]}));
       if (share == 1) continue;
       apart = std::min(apart, share);
       if (!is_enough(apart)) return 0;
@@ -375,6 +389,19 @@ double SweepWorker::apart_from(const MovedSlab& slab, const SlabEnds& ends, cons
   for (std::uint32_t i = 0; i < count; ++i)
     apart = std::min(apart, apart_for(slab, b.slabs.slab(level, nodes[i]), floor_));
   return apart;
+}
+
+/// Of eight of B's nodes, those that are apart from what A's node is in by heights over quadrics: a bit each, and for
+/// how much of the motion the others are.
+std::uint32_t SweepWorker::apart_by_heights(const Node& node, const SlabEnds& ends, const Vec3& middle,
+                                            const Node& eight, QuadricLanes::Field& share) const {
+  const QuadricLanes& of_a = surface_a_->slabs.quadrics(node.level, node.index / FaceBlocks::kFan);
+  const QuadricLanes& of_b = surface_b().slabs.quadrics(eight.level, eight.index);
+  const std::uint32_t k = node.index % FaceBlocks::kFan;
+  share.fill(0);
+  if ((of_a.fits >> k & 1) == 0 || of_b.fits == 0) return 0;
+  return kept_apart_by_heights(ends, of_a, k, middle, surface_b().slabs.lanes(eight.level, eight.index), of_b, floor_,
+                               share);
 }
 
 MovedSlab SweepWorker::moved(const Slab& slab) const {

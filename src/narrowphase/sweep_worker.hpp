@@ -61,11 +61,13 @@ class SweepWorker {
   double node_apart_for(const Node& node);
   double apart_from(const MovedSlab& slab, const SlabEnds& ends, const Vec3& middle, const AxisBox& box,
                     const Node& other) const;
+  std::uint32_t apart_by_heights(const Node& node, const SlabEnds& ends, const Vec3& middle, const Node& eight,
+                                 QuadricLanes::Field& share) const;
   bool is_enough(double apart) const;
   double few_blocks() const;
   bool may_search() const;
   void push_blocks(const Node& node);
-  bool apart_from_faces(std::uint32_t block, std::uint32_t count);
+  bool apart_from_faces(std::uint32_t block, const SlabEnds& ends, const Vec3& origin, std::uint32_t count);
   MovedSlab moved(const Slab& slab) const;
   void push_below(const Node& node);
   AxisBox walk_beside(const Node& node, std::uint32_t level);

@@ -1,9 +1,8 @@
 // Eight blocks at once, of which looks at all faces are made: against exact tests of triangles and closed forms.
 #include <algorithm>
 
+#include "block_shapes.hpp"
 #include "catch.hpp"
-#include "narrowphase/block_slabs.hpp"
-#include "patch_oracle.hpp"
 #include "patch_scenes.hpp"
 
 using namespace tegotae;
@@ -12,31 +11,6 @@ using namespace tegotae::test;
 namespace {
 
 constexpr double kFloor = 1.1e-6;
-
-struct Blocks {
-  explicit Blocks(const MeshPtr& of) : mesh(of), tree(of), blocks(tree), slabs(tree, blocks) {}
-
-  Corners corners(std::uint32_t block, std::uint32_t k) const {
-    const auto& t = mesh->triangles[blocks.face(block, k)];
-    return {mesh->vertices[t[0]] - tree.origin(), mesh->vertices[t[1]] - tree.origin(),
-            mesh->vertices[t[2]] - tree.origin()};
-  }
-
-  MeshPtr mesh;
-  PatchTree tree;
-  FaceBlocks blocks;
-  BlockSlabs slabs;
-};
-
-/// A motion and where it brings a point.
-struct Way {
-  Placement start, end;
-
-  Vec3 at(const Vec3& p, double s) const {
-    const Vec3 from = start.R * p + start.t, to = end.R * p + end.t;
-    return from + s * (to - from);
-  }
-};
 
 /// How far (m) a plane across one of the two slabs keeps them apart at both ends.
 double gap(const Slab& a, const Way& way, const Slab& b) {
