@@ -399,7 +399,9 @@ std::uint32_t SweepWorker::apart_by_heights(const Node& node, const SlabEnds& en
   const QuadricLanes& of_b = surface_b().slabs.quadrics(eight.level, eight.index);
   const std::uint32_t k = node.index % FaceBlocks::kFan;
   share.fill(0);
-  if ((of_a.fits >> k & 1) == 0 || of_b.fits == 0) return 0;
+  // What touches is nearer to most of the faces beside it than they follow quadrics, which would be asked for nothing.
+  const bool touches = !std::isfinite(question().worth);
+  if (touches || (of_a.fits >> k & 1) == 0 || of_b.fits == 0) return 0;
   return kept_apart_by_heights(ends, of_a, k, middle, surface_b().slabs.lanes(eight.level, eight.index), of_b, floor_,
                                share);
 }
